@@ -4,6 +4,64 @@
 ///
 /// 4 legs, 12 joints, 4 actuators, 3 degrees of freedom; 64 standard parameters, 49 base parameters.
 /// Source: Briot, Krut, Gautier 2015, sections 5.1 and 5.2.
+///
+/// # Names
+///
+/// | name | symbol | meaning |
+/// |---|---|---|
+/// | `vx` | v | platform's velocity that fits the actuators' best, eq. (21) |
+/// | `dvx` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
+/// | `c_phi` | cos φ | of the platform's angle |
+/// | `s_phi` | sin φ | of the platform's angle |
+/// | `c12_leg1` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
+/// | `s12_leg1` | sin q | as the cosine |
+/// | `p_x_leg3` | p | from the platform's origin to the leg's end, base axes, m |
+/// | `d_x_leg1` | D | from the leg's first joint to its end, in the leg's plane, m |
+/// | `rho_squared_leg1` | ρ² | D · D, m² |
+/// | `h_squared_leg1` | h² | l₁²/ρ² - a², the square of h |
+/// | `h_leg1` | h | the elbow stands at a D ± h D⊥, eq. (7) solved |
+/// | `l1_x_leg1` | l₁ e₁ | the proximal link, in the leg's plane, m |
+/// | `l2_x_leg1` | l₂ e₂ | the distal link, in the leg's plane, m |
+/// | `det_leg1` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
+/// | `k1_leg1` | k_i | common factor of one of the leg's wrenches |
+/// | `rate_1_leg2` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
+/// | `rate_1_squared_leg1` | u_i² | its square |
+/// | `rate_dot_1_leg2` | u̇_i | derivative of that rate, eq. (10) |
+/// | `bias_rate_dot_1_leg2` | u̇_i at v̇ = 0 | what is left of the derivative without the platform's acceleration, eq. (10) |
+/// | `g1_vx_leg1` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
+/// | `gq2_vx_leg2` | ∂q̇_i/∂v | the same of the joint's own rate; of an actuated joint a row of J_p^inv, eq. (20) |
+/// | `qd_2_leg1` | q̇_i | rate of a joint, rad/s or m/s, eq. (9) |
+/// | `qdd_2_leg1` | q̈_i | acceleration of a joint, eq. (10) |
+/// | `v_end_x_leg1` | Ṗ | velocity of the leg's end, m/s |
+/// | `a_end_x_leg1` | P̈ | acceleration of the leg's end, m/s² |
+/// | `v_arm_x_leg3` | ω × p | velocity of the leg's end beside the platform's origin |
+/// | `a_arm_x_leg1` | ω̇ × p + ω × (ω × p) | acceleration of the leg's end beside the platform's origin |
+/// | `bias_a_end_x_leg1` | P̈ at v̇ = 0 | acceleration of the leg's end without the platform's acceleration |
+/// | `a_on_f2_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
+/// | `bias_a_on_f1_leg1` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
+/// | `a_x_platform` | Rᵀ a | acceleration of the platform's origin in its own axes |
+/// | `a2_x_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
+/// | `v2_by_1_x_leg2` | ∂V_j/∂u_i | partial velocity of the origin of body j |
+/// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
+/// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
+/// | `tau_1_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
+/// | `bias_a2_y_leg1` | a_j - g at v̇ = 0 | acceleration of the origin of body j, likewise |
+/// | `s_1_1` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
+/// | `schur_2_3` | S' | S after elimination of the columns before |
+/// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
+/// | `inv_pivot_1` | 1/d_k | its reciprocal |
+/// | `l_2_1` | L | entry of L |
+/// | `normal_1_1` | (I - J J⁺) e | a vector of the null space of (J_p^inv)ᵀ, before it is made one of length 1, eq. (50) |
+/// | `norm_1` | ‖(I - J J⁺) e‖ | its length |
+/// | `inv_norm_1` | 1/‖(I - J J⁺) e‖ | the reciprocal |
+/// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
+/// | `vx_by_a2` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
+/// | `g1_a1_leg4` | ∂u_i/∂q̇_a | the reduced Jacobian on a kept actuator, eq. (36) |
+///
+/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
+/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
+/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -263,36 +321,47 @@ impl DualV {
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// 2 r_p
+        const TWICE_R_P: ::core::primitive::f64 = 0.22;
+        // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3),
         (s1_leg4, c1_leg4)] = ::overact::math::sin_cos_all([
             actuators[0], actuators[1], actuators[2], actuators[3],
         ]);
-        let t3 = 0.3950502153918333 + 0.28 * c1_leg1;
-        let t8 = 0.28 * c1_leg2 - 0.3950502153918333 - t3;
-        let t12 = 0.28 * s1_leg1;
-        let t13 = 0.28 * s1_leg2 - t12;
-        let t16 = t8 * t8 + t13 * t13;
-        let t19 = (0.0784 - 0.25 * t16) / t16;
-        ::overact::guard::reach(t19, "leg1")?;
-        let t20 = ::overact::math::sqrt(t19);
-        let t22 = t3 + 0.5 * t8 - t13 * t20;
-        let t26 = 0.28 * c1_leg3 - 0.3950502153918333;
-        let t31 = 0.3950502153918333 + 0.28 * c1_leg4 - t26;
-        let t35 = 0.28 * s1_leg3;
-        let t36 = 0.28 * s1_leg4 - t35;
-        let t39 = t31 * t31 + t36 * t36;
-        let t42 = (0.0784 - 0.25 * t39) / t39;
-        ::overact::guard::reach(t42, "leg3")?;
-        let t43 = ::overact::math::sqrt(t42);
-        let t45 = t26 + 0.5 * t31 - t36 * t43;
-        let t52 = 0.10970563941232059 + t12 + 0.5 * t13 + t8 * t20;
-        let t57 = t35 - 0.10970563941232059 + 0.5 * t36 + t31 * t43;
-        let t60 = t45 - t22;
-        let t62 = t57 - t52;
-        let t68 = 1.0 / ::overact::math::sqrt(0.0484 * (t62 * t62 + t60 * t60));
+        let t1 = 0.3950502153918333 + L_AB * c1_leg1;
+        let t2 = L_AB * c1_leg2 - 0.3950502153918333 - t1;
+        let l_ab_s1_leg1 = L_AB * s1_leg1;
+        let l_ab_s1_leg2_minus_l_ab_s1_leg1 = L_AB * s1_leg2 - l_ab_s1_leg1;
+        let t3 = t2 * t2
+            + l_ab_s1_leg2_minus_l_ab_s1_leg1 * l_ab_s1_leg2_minus_l_ab_s1_leg1;
+        let t4 = (L_AB_SQUARED - 0.25 * t3) / t3;
+        ::overact::guard::reach(t4, "leg1")?;
+        let t5 = ::overact::math::sqrt(t4);
+        let t6 = t1 + 0.5 * t2 - l_ab_s1_leg2_minus_l_ab_s1_leg1 * t5;
+        let t7 = L_AB * c1_leg3 - 0.3950502153918333;
+        let t8 = 0.3950502153918333 + L_AB * c1_leg4 - t7;
+        let l_ab_s1_leg3 = L_AB * s1_leg3;
+        let l_ab_s1_leg4_minus_l_ab_s1_leg3 = L_AB * s1_leg4 - l_ab_s1_leg3;
+        let t9 = t8 * t8
+            + l_ab_s1_leg4_minus_l_ab_s1_leg3 * l_ab_s1_leg4_minus_l_ab_s1_leg3;
+        let t10 = (L_AB_SQUARED - 0.25 * t9) / t9;
+        ::overact::guard::reach(t10, "leg3")?;
+        let t11 = ::overact::math::sqrt(t10);
+        let t12 = t7 + 0.5 * t8 - l_ab_s1_leg4_minus_l_ab_s1_leg3 * t11;
+        let t13 = 0.10970563941232059 + l_ab_s1_leg1
+            + 0.5 * l_ab_s1_leg2_minus_l_ab_s1_leg1 + t2 * t5;
+        let t14 = l_ab_s1_leg3 - 0.10970563941232059
+            + 0.5 * l_ab_s1_leg4_minus_l_ab_s1_leg3 + t8 * t11;
+        let t15 = t12 - t6;
+        let t16 = t14 - t13;
+        let t17 = 1.0 / ::overact::math::sqrt(0.0484 * (t16 * t16 + t15 * t15));
         ::core::result::Result::Ok([
-            0.5 * (t22 + t45), 0.5 * (t52 + t57),
-            ::overact::math::atan2(0.22 * t60 * t68, -(0.22 * t62 * t68)),
+            0.5 * (t6 + t12), 0.5 * (t13 + t14),
+            ::overact::math::atan2(TWICE_R_P * t15 * t17, -(TWICE_R_P * t16 * t17)),
         ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
@@ -309,113 +378,133 @@ impl DualV {
     pub fn joints(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t4 = pose[1] + t2 - 0.10970563941232059;
-        let t5 = 0.5 * t4;
-        let t6 = 0.11 * s_phi;
-        let t7 = pose[0] - t6;
-        let t8 = t7 - 0.3950502153918333;
-        let t10 = t4 * t4;
-        let t11 = t8 * t8 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = t5 - t8 * t14;
-        let t20 = 0.5 * t8 + t4 * t14;
-        let t29 = t11 * t14;
-        let t31 = t11 - 0.1568;
-        let s12_leg1 = 3.5714285714285716 * (t4 - t16);
-        let c12_leg1 = 3.5714285714285716 * (t8 - t20);
+        // --- leg1
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let s12_leg1 = INV_L_AB * l2_y_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let c12_leg1 = INV_L_AB * l2_x_leg1;
         let s3_leg1 = c_phi * s12_leg1 - s_phi * c12_leg1;
         let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
-        let t59 = t7 + 0.3950502153918333;
-        let t61 = t59 * t59 + t10;
-        let t63 = 0.0784 / t61 - 0.25;
-        ::overact::guard::reach(t63, "leg2")?;
-        let t64 = ::overact::math::sqrt(t63);
-        let t66 = t5 + t59 * t64;
-        let t70 = 0.5 * t59 - t4 * t64;
-        let t78 = t61 * t64;
-        let t80 = t61 - 0.1568;
-        let s12_leg2 = 3.5714285714285716 * (t4 - t66);
-        let c12_leg2 = 3.5714285714285716 * (t59 - t70);
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let s12_leg2 = INV_L_AB * l2_y_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let c12_leg2 = INV_L_AB * l2_x_leg2;
         let s3_leg2 = c_phi * s12_leg2 - s_phi * c12_leg2;
         let minus_c3_leg2 = c_phi * c12_leg2 + s_phi * s12_leg2;
-        let t108 = pose[1] - t2 + 0.10970563941232059;
-        let t109 = 0.5 * t108;
-        let t110 = pose[0] + t6;
-        let t111 = t110 + 0.3950502153918333;
-        let t113 = t108 * t108;
-        let t114 = t111 * t111 + t113;
-        let t116 = 0.0784 / t114 - 0.25;
-        ::overact::guard::reach(t116, "leg3")?;
-        let t117 = ::overact::math::sqrt(t116);
-        let t119 = t109 - t111 * t117;
-        let t123 = 0.5 * t111 + t108 * t117;
-        let t131 = t114 * t117;
-        let t133 = t114 - 0.1568;
-        let c12_leg3 = 3.5714285714285716 * (t111 - t123);
-        let s12_leg3 = 3.5714285714285716 * (t108 - t119);
+        // --- leg3
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let c12_leg3 = INV_L_AB * l2_x_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let s12_leg3 = INV_L_AB * l2_y_leg3;
         let s3_leg3 = s_phi * c12_leg3 - c_phi * s12_leg3;
         let c3_leg3 = c_phi * c12_leg3 + s_phi * s12_leg3;
-        let t160 = t110 - 0.3950502153918333;
-        let t163 = t160 * t160 + t113;
-        let t165 = 0.0784 / t163 - 0.25;
-        ::overact::guard::reach(t165, "leg4")?;
-        let t166 = ::overact::math::sqrt(t165);
-        let t168 = 0.5 * t160 - t108 * t166;
-        let t171 = t109 + t160 * t166;
-        let t180 = t163 * t166;
-        let t182 = t163 - 0.1568;
-        let c12_leg4 = 3.5714285714285716 * (t160 - t168);
-        let s12_leg4 = 3.5714285714285716 * (t108 - t171);
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let c12_leg4 = INV_L_AB * l2_x_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let s12_leg4 = INV_L_AB * l2_y_leg4;
         let c3_leg4 = c_phi * c12_leg4 + s_phi * s12_leg4;
         let s3_leg4 = s_phi * c12_leg4 - c_phi * s12_leg4;
         ::core::result::Result::Ok([
             ::overact::math::atan2(
-                -(2.5175667811089752 * t16 + 2.533171834572799 * t20),
-                2.533171834572799 * t16 - 2.5175667811089752 * t20,
+                -(2.5175667811089752 * l1_y_leg1 + 2.533171834572799 * l1_x_leg1),
+                2.533171834572799 * l1_y_leg1 - 2.5175667811089752 * l1_x_leg1,
             ) + 2.353104842321743,
             ::overact::math::atan2(
-                -(0.05980911892498931 * t29 + 6.377480908260923 * t31),
-                12.754961816521845 * t29 - 0.029904559462494654 * t31,
+                -(0.05980911892498931 * det_leg1 + 6.377480908260923 * t1_leg1),
+                12.754961816521845 * det_leg1 - 0.029904559462494654 * t1_leg1,
             ) + 1.5754853789017922,
             ::overact::math::atan2(
                 0.70597492766447 * s3_leg1 - 0.7082368258634582 * minus_c3_leg1,
                 -(0.70597492766447 * minus_c3_leg1 + 0.7082368258634582 * s3_leg1),
             ) - 0.7869975676342108,
             ::overact::math::atan2(
-                2.517566781108974 * t66 - 2.5331718345728005 * t70,
-                2.517566781108974 * t70 + 2.5331718345728005 * t66,
+                2.517566781108974 * l1_y_leg2 - 2.5331718345728005 * l1_x_leg2,
+                2.517566781108974 * l1_x_leg2 + 2.5331718345728005 * l1_y_leg2,
             ) + 0.7884878112680508,
             ::overact::math::atan2(
-                0.05980911892500914 * t78 + 6.377480908260923 * t80,
-                12.754961816521845 * t78 - 0.02990455946250457 * t80,
+                0.05980911892500914 * det_leg2 + 6.377480908260923 * t1_leg2,
+                12.754961816521845 * det_leg2 - 0.02990455946250457 * t1_leg2,
             ) - 1.5754853789017937,
             ::overact::math::atan2(
                 -(0.7059749276644692 * s3_leg2 + 0.7082368258634589 * minus_c3_leg2),
                 0.7059749276644692 * minus_c3_leg2 - 0.7082368258634589 * s3_leg2,
             ) + 3.928590221224005,
             ::overact::math::atan2(
-                2.517566781108974 * t119 + 2.5331718345728005 * t123,
-                2.517566781108974 * t123 - 2.5331718345728005 * t119,
+                2.517566781108974 * l1_y_leg3 + 2.5331718345728005 * l1_x_leg3,
+                2.517566781108974 * l1_x_leg3 - 2.5331718345728005 * l1_y_leg3,
             ) - 0.7884878112680508,
             ::overact::math::atan2(
-                -(0.05980911892500914 * t131 + 6.377480908260923 * t133),
-                12.754961816521845 * t131 - 0.02990455946250457 * t133,
+                -(0.05980911892500914 * det_leg3 + 6.377480908260923 * t1_leg3),
+                12.754961816521845 * det_leg3 - 0.02990455946250457 * t1_leg3,
             ) + 1.5754853789017937,
             ::overact::math::atan2(
                 0.7059749276644692 * s3_leg3 + 0.7082368258634589 * c3_leg3,
                 0.7059749276644692 * c3_leg3 - 0.7082368258634589 * s3_leg3,
             ) - 0.7869975676342119,
             ::overact::math::atan2(
-                2.5331718345727996 * t168 - 2.517566781108975 * t171,
-                -(2.517566781108975 * t168 + 2.5331718345727996 * t171),
+                2.5331718345727996 * l1_x_leg4 - 2.517566781108975 * l1_y_leg4,
+                -(2.517566781108975 * l1_x_leg4 + 2.5331718345727996 * l1_y_leg4),
             ) + 3.9300804648578436,
             ::overact::math::atan2(
-                0.05980911892499215 * t180 + 6.377480908260923 * t182,
-                12.754961816521845 * t180 - 0.029904559462496073 * t182,
+                0.05980911892499215 * det_leg4 + 6.377480908260923 * t1_leg4,
+                12.754961816521845 * det_leg4 - 0.029904559462496073 * t1_leg4,
             ) - 1.5754853789017924,
             ::overact::math::atan2(
                 0.7082368258634582 * c3_leg4 - 0.70597492766447 * s3_leg4,
@@ -437,57 +526,69 @@ impl DualV {
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t4 = pose[1] + t2 - 0.10970563941232059;
-        let t5 = 0.5 * t4;
-        let t6 = 0.11 * s_phi;
-        let t7 = pose[0] - t6;
-        let t8 = t7 - 0.3950502153918333;
-        let t10 = t4 * t4;
-        let t13 = 0.0784 / (t8 * t8 + t10) - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = t5 - t8 * t14;
-        let t20 = 0.5 * t8 + t4 * t14;
-        let t29 = t7 + 0.3950502153918333;
-        let t33 = 0.0784 / (t29 * t29 + t10) - 0.25;
-        ::overact::guard::reach(t33, "leg2")?;
-        let t34 = ::overact::math::sqrt(t33);
-        let t36 = t5 + t29 * t34;
-        let t40 = 0.5 * t29 - t4 * t34;
-        let t49 = pose[1] - t2 + 0.10970563941232059;
-        let t50 = 0.5 * t49;
-        let t51 = pose[0] + t6;
-        let t52 = t51 + 0.3950502153918333;
-        let t54 = t49 * t49;
-        let t57 = 0.0784 / (t52 * t52 + t54) - 0.25;
-        ::overact::guard::reach(t57, "leg3")?;
-        let t58 = ::overact::math::sqrt(t57);
-        let t60 = t50 - t52 * t58;
-        let t64 = 0.5 * t52 + t49 * t58;
-        let t72 = t51 - 0.3950502153918333;
-        let t77 = 0.0784 / (t72 * t72 + t54) - 0.25;
-        ::overact::guard::reach(t77, "leg4")?;
-        let t78 = ::overact::math::sqrt(t77);
-        let t80 = 0.5 * t72 - t49 * t78;
-        let t83 = t50 + t72 * t78;
+        // --- leg1
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        // --- leg3
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         ::core::result::Result::Ok([
             ::overact::math::atan2(
-                -(2.5175667811089752 * t16 + 2.533171834572799 * t20),
-                2.533171834572799 * t16 - 2.5175667811089752 * t20,
+                -(2.5175667811089752 * l1_y_leg1 + 2.533171834572799 * l1_x_leg1),
+                2.533171834572799 * l1_y_leg1 - 2.5175667811089752 * l1_x_leg1,
             ) + 2.353104842321743,
             ::overact::math::atan2(
-                2.517566781108974 * t36 - 2.5331718345728005 * t40,
-                2.517566781108974 * t40 + 2.5331718345728005 * t36,
+                2.517566781108974 * l1_y_leg2 - 2.5331718345728005 * l1_x_leg2,
+                2.517566781108974 * l1_x_leg2 + 2.5331718345728005 * l1_y_leg2,
             ) + 0.7884878112680508,
             ::overact::math::atan2(
-                2.517566781108974 * t60 + 2.5331718345728005 * t64,
-                2.517566781108974 * t64 - 2.5331718345728005 * t60,
+                2.517566781108974 * l1_y_leg3 + 2.5331718345728005 * l1_x_leg3,
+                2.517566781108974 * l1_x_leg3 - 2.5331718345728005 * l1_y_leg3,
             ) - 0.7884878112680508,
             ::overact::math::atan2(
-                2.5331718345727996 * t80 - 2.517566781108975 * t83,
-                -(2.517566781108975 * t80 + 2.5331718345727996 * t83),
+                2.5331718345727996 * l1_x_leg4 - 2.517566781108975 * l1_y_leg4,
+                -(2.517566781108975 * l1_x_leg4 + 2.5331718345727996 * l1_y_leg4),
             ) + 3.9300804648578436,
         ])
     }
@@ -505,61 +606,77 @@ impl DualV {
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t17 = t11 * t14;
-        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
-        let t18 = 1.0 / t17;
-        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
-        let t20 = t3 + 0.3950502153918333;
-        let t23 = t20 * t20 + t10;
-        let t25 = 0.0784 / t23 - 0.25;
-        ::overact::guard::reach(t25, "leg2")?;
-        let t26 = ::overact::math::sqrt(t25);
-        let t29 = t23 * t26;
-        ::overact::guard::leg(t29, 0.07839913810297301, "leg2")?;
-        let t30 = 1.0 / t29;
-        let minus_g1_vx_leg2 = (0.5 * t20 + t8 * t26) * t30;
-        let t32 = pose[0] + t2;
-        let t33 = t32 + 0.3950502153918333;
-        let t36 = pose[1] - t6 + 0.10970563941232059;
-        let t38 = t36 * t36;
-        let t39 = t33 * t33 + t38;
-        let t41 = 0.0784 / t39 - 0.25;
-        ::overact::guard::reach(t41, "leg3")?;
-        let t42 = ::overact::math::sqrt(t41);
-        let t45 = t39 * t42;
-        ::overact::guard::leg(t45, 0.07839913810297301, "leg3")?;
-        let t46 = 1.0 / t45;
-        let g1_vx_leg3 = (0.5 * t33 - t36 * t42) * t46;
-        let t48 = t32 - 0.3950502153918333;
-        let t51 = t48 * t48 + t38;
-        let t53 = 0.0784 / t51 - 0.25;
-        ::overact::guard::reach(t53, "leg4")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let t57 = t51 * t54;
-        ::overact::guard::leg(t57, 0.07839913810297301, "leg4")?;
-        let t58 = 1.0 / t57;
-        let minus_g1_vx_leg4 = (0.5 * t48 + t36 * t54) * t58;
-        let t60 = 0.5 * t8;
-        let g1_vy_leg1 = (t60 + t4 * t14) * t18;
-        let minus_g1_vy_leg2 = (t60 - t20 * t26) * t30;
-        let t67 = 0.5 * t36;
-        let g1_vy_leg3 = (t67 + t33 * t42) * t46;
-        let minus_g1_vy_leg4 = (t67 - t48 * t54) * t58;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         ::core::result::Result::Ok([
             [g1_vx_leg1, g1_vy_leg1, -minus_g1_wz_leg1],
             [-minus_g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
@@ -583,37 +700,43 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
-        let t0 = joints[0] + joints[1];
-        let t6 = joints[3] + joints[4];
-        let t12 = joints[6] + joints[7];
-        let t18 = joints[9] + joints[10];
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        let q1_plus_q2_leg1 = joints[0] + joints[1];
+        let q1_plus_q2_leg2 = joints[3] + joints[4];
+        let q1_plus_q2_leg3 = joints[6] + joints[7];
+        let q1_plus_q2_leg4 = joints[9] + joints[10];
+        // --- sines and cosines
         let [(s12_leg1, c12_leg1), (s2_leg1, _), (s12_leg2, c12_leg2), (s2_leg2, _),
         (s12_leg3, c12_leg3), (s2_leg3, _), (s12_leg4, c12_leg4), (s2_leg4, _),
         (s_phi, c_phi)] = ::overact::math::sin_cos_all([
-            t0, joints[1], t6, joints[4], t12, joints[7], t18, joints[10], pose[2],
+            q1_plus_q2_leg1, joints[1], q1_plus_q2_leg2, joints[4], q1_plus_q2_leg3, joints[7],
+            q1_plus_q2_leg4, joints[10], pose[2],
         ]);
         ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
-        let t4 = 3.5714285714285716 / s2_leg1;
-        let g1_vx_leg1 = c12_leg1 * t4;
-        let t10 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t10;
-        let t16 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t16;
-        let t22 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t22;
-        let g1_vy_leg1 = s12_leg1 * t4;
-        let g1_vy_leg2 = s12_leg2 * t10;
-        let g1_vy_leg3 = s12_leg3 * t16;
-        let g1_vy_leg4 = s12_leg4 * t22;
-        let t30 = 0.11 * s_phi;
-        let t32 = 0.11 * c_phi;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t30 + g1_vx_leg1 * t32;
-        let minus_g1_wz_leg2 = t30 * g1_vy_leg2 + t32 * g1_vx_leg2;
-        let g1_wz_leg3 = t30 * g1_vy_leg3 + t32 * g1_vx_leg3;
-        let g1_wz_leg4 = t30 * g1_vy_leg4 + t32 * g1_vx_leg4;
+        let k1_leg1 = INV_L_AB / s2_leg1;
+        let g1_vx_leg1 = c12_leg1 * k1_leg1;
+        let k1_leg2 = INV_L_AB / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * k1_leg2;
+        let k1_leg3 = INV_L_AB / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * k1_leg3;
+        let k1_leg4 = INV_L_AB / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * k1_leg4;
+        let g1_vy_leg1 = s12_leg1 * k1_leg1;
+        let g1_vy_leg2 = s12_leg2 * k1_leg2;
+        let g1_vy_leg3 = s12_leg3 * k1_leg3;
+        let g1_vy_leg4 = s12_leg4 * k1_leg4;
+        let p_x_leg3 = R_P * s_phi;
+        let p_y_leg1 = R_P * c_phi;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+        let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
         ::core::result::Result::Ok([
             [g1_vx_leg1, g1_vy_leg1, -minus_g1_wz_leg1],
             [g1_vx_leg2, g1_vy_leg2, -minus_g1_wz_leg2], [g1_vx_leg3, g1_vy_leg3, g1_wz_leg3],
@@ -634,106 +757,131 @@ impl DualV {
     pub fn jacobian(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t17 = t11 * t14;
-        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
-        let t18 = 1.0 / t17;
-        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
-        let t21 = t3 + 0.3950502153918333;
-        let t24 = t21 * t21 + t10;
-        let t26 = 0.0784 / t24 - 0.25;
-        ::overact::guard::reach(t26, "leg2")?;
-        let t27 = ::overact::math::sqrt(t26);
-        let t30 = t24 * t27;
-        ::overact::guard::leg(t30, 0.07839913810297301, "leg2")?;
-        let t31 = 1.0 / t30;
-        let minus_g1_vx_leg2 = (0.5 * t21 + t8 * t27) * t31;
-        let t35 = pose[0] + t2;
-        let t36 = t35 + 0.3950502153918333;
-        let t39 = pose[1] - t6 + 0.10970563941232059;
-        let t41 = t39 * t39;
-        let t42 = t36 * t36 + t41;
-        let t44 = 0.0784 / t42 - 0.25;
-        ::overact::guard::reach(t44, "leg3")?;
-        let t45 = ::overact::math::sqrt(t44);
-        let t48 = t42 * t45;
-        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
-        let t49 = 1.0 / t48;
-        let g1_vx_leg3 = (0.5 * t36 - t39 * t45) * t49;
-        let t53 = t35 - 0.3950502153918333;
-        let t56 = t53 * t53 + t41;
-        let t58 = 0.0784 / t56 - 0.25;
-        ::overact::guard::reach(t58, "leg4")?;
-        let t59 = ::overact::math::sqrt(t58);
-        let t62 = t56 * t59;
-        ::overact::guard::leg(t62, 0.07839913810297301, "leg4")?;
-        let t63 = 1.0 / t62;
-        let minus_g1_vx_leg4 = (0.5 * t53 + t39 * t59) * t63;
-        let t66 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t66, 25.429161076750646, "actuators")?;
-        let t67 = 1.0 / t66;
-        let t69 = 0.5 * t8;
-        let g1_vy_leg1 = (t69 + t4 * t14) * t18;
-        let minus_g1_vy_leg2 = (t69 - t21 * t27) * t31;
-        let t79 = 0.5 * t39;
-        let g1_vy_leg3 = (t79 + t36 * t45) * t49;
-        let minus_g1_vy_leg4 = (t79 - t53 * t59) * t63;
-        let t89 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t90 = t89 * t67;
-        let t99 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t89 * t90;
-        ::overact::guard::platform(t99, 25.592368899353342, "actuators")?;
-        let t100 = 1.0 / t99;
-        let t102 = g1_vy_leg1 - g1_vx_leg1 * t90;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t129 = g1_vx_leg3 * g1_wz_leg3
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let g1_vy_minus_g1_vx_l_2_1_leg1 = g1_vy_leg1 - g1_vx_leg1 * l_2_1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t130 = t129 * t67;
-        let t132 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t89 * t130;
-        let t133 = t132 * t100;
-        let t144 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t129 * t130
-            - t132 * t133;
-        ::overact::guard::platform(t144, 0.3076928490286828, "actuators")?;
-        let t145 = 1.0 / t144;
-        let t150 = t145 * (minus_g1_wz_leg1 + g1_vx_leg1 * t130 + t133 * t102);
-        let t152 = t100 * t102 + t133 * t150;
-        let t159 = minus_g1_vx_leg2 * t90 - minus_g1_vy_leg2;
-        let t165 = t145 * (g1_wz_leg2 + minus_g1_vx_leg2 * t130 - t133 * t159);
-        let t167 = t100 * t159 - t133 * t165;
-        let t174 = g1_vy_leg3 - g1_vx_leg3 * t90;
-        let t180 = t145 * (g1_wz_leg3 - g1_vx_leg3 * t130 - t133 * t174);
-        let t182 = t100 * t174 - t133 * t180;
-        let t189 = minus_g1_vx_leg4 * t90 - minus_g1_vy_leg4;
-        let t195 = t145 * (minus_g1_vx_leg4 * t130 - minus_g1_wz_leg4 - t133 * t189);
-        let t197 = t100 * t189 - t133 * t195;
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let inv_pivot_3 = 1.0 / pivot_3;
+        let t1 = inv_pivot_3
+            * (minus_g1_wz_leg1 + g1_vx_leg1 * l_3_1
+                + l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg1);
+        let t2 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg1 + l_3_2 * t1;
+        let g1_vy_minus_g1_vx_l_2_1_leg2 = minus_g1_vx_leg2 * l_2_1 - minus_g1_vy_leg2;
+        let t3 = inv_pivot_3
+            * (g1_wz_leg2 + minus_g1_vx_leg2 * l_3_1
+                - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg2);
+        let t4 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg2 - l_3_2 * t3;
+        let g1_vy_minus_g1_vx_l_2_1_leg3 = g1_vy_leg3 - g1_vx_leg3 * l_2_1;
+        let t5 = inv_pivot_3
+            * (g1_wz_leg3 - g1_vx_leg3 * l_3_1 - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg3);
+        let t6 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg3 - l_3_2 * t5;
+        let g1_vy_minus_g1_vx_l_2_1_leg4 = minus_g1_vx_leg4 * l_2_1 - minus_g1_vy_leg4;
+        let t7 = inv_pivot_3
+            * (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
+                - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4);
+        let t8 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t7;
         ::core::result::Result::Ok([
             [
-                g1_vx_leg1 * t67 - t90 * t152 + t130 * t150,
-                -(minus_g1_vx_leg2 * t67 + t90 * t167 + t130 * t165),
-                g1_vx_leg3 * t67 - t90 * t182 - t130 * t180,
-                -(minus_g1_vx_leg4 * t67 + t90 * t197 + t130 * t195),
+                g1_vx_leg1 * inv_pivot_1 - l_2_1 * t2 + l_3_1 * t1,
+                -(minus_g1_vx_leg2 * inv_pivot_1 + l_2_1 * t4 + l_3_1 * t3),
+                g1_vx_leg3 * inv_pivot_1 - l_2_1 * t6 - l_3_1 * t5,
+                -(minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t8 + l_3_1 * t7),
             ],
-            [t152, t167, t182, t197],
-            [-t150, t165, t180, t195],
+            [t2, t4, t6, t8],
+            [-t1, t3, t5, t7],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -750,50 +898,54 @@ impl DualV {
         _pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> [[::core::primitive::f64; 12]; 12] {
-        let t2 = joints[0] + joints[1];
-        let t13 = joints[3] + joints[4];
-        let t24 = joints[6] + joints[7];
-        let t35 = joints[9] + joints[10];
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        let q1_plus_q2_leg1 = joints[0] + joints[1];
+        let q1_plus_q2_leg2 = joints[3] + joints[4];
+        let q1_plus_q2_leg3 = joints[6] + joints[7];
+        let q1_plus_q2_leg4 = joints[9] + joints[10];
+        // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s12_leg1, c12_leg1), (s1_leg2, c1_leg2),
         (s12_leg2, c12_leg2), (s1_leg3, c1_leg3), (s12_leg3, c12_leg3),
         (s1_leg4, c1_leg4), (s12_leg4, c12_leg4)] = ::overact::math::sin_cos_all([
-            joints[0], t2, joints[3], t13, joints[6], t24, joints[9], t35,
+            joints[0], q1_plus_q2_leg1, joints[3], q1_plus_q2_leg2, joints[6], q1_plus_q2_leg3,
+            joints[9], q1_plus_q2_leg4,
         ]);
         [
             [
-                -(0.28 * (s1_leg1 + s12_leg1)), -(0.28 * s12_leg1), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(L_AB * (s1_leg1 + s12_leg1)), -(L_AB * s12_leg1), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.28 * (c1_leg1 + c12_leg1), 0.28 * c12_leg1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                L_AB * (c1_leg1 + c12_leg1), L_AB * c12_leg1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0,
             ],
             [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             [
-                0.0, 0.0, 0.0, -(0.28 * (s1_leg2 + s12_leg2)), -(0.28 * s12_leg2), 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, -(L_AB * (s1_leg2 + s12_leg2)), -(L_AB * s12_leg2), 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.28 * (c1_leg2 + c12_leg2), 0.28 * c12_leg2, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, L_AB * (c1_leg2 + c12_leg2), L_AB * c12_leg2, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0,
             ],
             [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(0.28 * (s1_leg3 + s12_leg3)), -(0.28 * s12_leg3),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(L_AB * (s1_leg3 + s12_leg3)), -(L_AB * s12_leg3),
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.28 * (c1_leg3 + c12_leg3), 0.28 * c12_leg3, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, L_AB * (c1_leg3 + c12_leg3), L_AB * c12_leg3, 0.0,
                 0.0, 0.0, 0.0,
             ],
             [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(0.28 * (s1_leg4 + s12_leg4)),
-                -(0.28 * s12_leg4), 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(L_AB * (s1_leg4 + s12_leg4)),
+                -(L_AB * s12_leg4), 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.28 * (c1_leg4 + c12_leg4),
-                0.28 * c12_leg4, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, L_AB * (c1_leg4 + c12_leg4),
+                L_AB * c12_leg4, 0.0,
             ],
             [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
         ]
@@ -812,13 +964,16 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
         _joints: &[::core::primitive::f64; 12],
     ) -> [[::core::primitive::f64; 3]; 12] {
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t3 = 0.11 * s_phi;
+        // --- leg1
+        let p_y_leg1 = R_P * c_phi;
+        let p_x_leg3 = R_P * s_phi;
         [
-            [1.0, 0.0, -t2], [0.0, 1.0, -t3], [0.0, 0.0, 1.0], [1.0, 0.0, -t2], [0.0, 1.0, -t3],
-            [0.0, 0.0, 1.0], [1.0, 0.0, t2], [0.0, 1.0, t3], [0.0, 0.0, 1.0], [1.0, 0.0, t2],
-            [0.0, 1.0, t3], [0.0, 0.0, 1.0],
+            [1.0, 0.0, -p_y_leg1], [0.0, 1.0, -p_x_leg3], [0.0, 0.0, 1.0], [1.0, 0.0, -p_y_leg1],
+            [0.0, 1.0, -p_x_leg3], [0.0, 0.0, 1.0], [1.0, 0.0, p_y_leg1], [0.0, 1.0, p_x_leg3],
+            [0.0, 0.0, 1.0], [1.0, 0.0, p_y_leg1], [0.0, 1.0, p_x_leg3], [0.0, 0.0, 1.0],
         ]
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
@@ -837,42 +992,60 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
-        let t0 = joints[0] + joints[1];
-        let t4 = joints[3] + joints[4];
-        let t8 = joints[6] + joints[7];
-        let t12 = joints[9] + joints[10];
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        let q1_plus_q2_leg1 = joints[0] + joints[1];
+        let q1_plus_q2_leg2 = joints[3] + joints[4];
+        let q1_plus_q2_leg3 = joints[6] + joints[7];
+        let q1_plus_q2_leg4 = joints[9] + joints[10];
+        // --- sines and cosines
         let [(s12_leg1, c12_leg1), (s12_leg2, c12_leg2), (s12_leg3, c12_leg3),
         (s12_leg4, c12_leg4), (s2_leg1, _), (s_phi, c_phi), (s2_leg2, _), (s2_leg3, _),
         (s2_leg4, _)] = ::overact::math::sin_cos_all([
-            t0, t4, t8, t12, joints[1], pose[2], joints[4], joints[7], joints[10],
+            q1_plus_q2_leg1, q1_plus_q2_leg2, q1_plus_q2_leg3, q1_plus_q2_leg4, joints[1], pose[2],
+            joints[4], joints[7], joints[10],
         ]);
         ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
-        let t22 = 3.5714285714285716 / s2_leg1;
-        let g1_vy_leg1 = s12_leg1 * t22;
-        let t26 = 0.11 * s_phi;
-        let g1_vx_leg1 = c12_leg1 * t22;
-        let t29 = 0.11 * c_phi;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t26 + g1_vx_leg1 * t29;
-        let t35 = 3.5714285714285716 / s2_leg2;
-        let g1_vy_leg2 = s12_leg2 * t35;
-        let g1_vx_leg2 = c12_leg2 * t35;
-        let minus_g1_wz_leg2 = t26 * g1_vy_leg2 + t29 * g1_vx_leg2;
-        let t44 = 3.5714285714285716 / s2_leg3;
-        let g1_vy_leg3 = s12_leg3 * t44;
-        let g1_vx_leg3 = c12_leg3 * t44;
-        let g1_wz_leg3 = t26 * g1_vy_leg3 + t29 * g1_vx_leg3;
-        let t53 = 3.5714285714285716 / s2_leg4;
-        let g1_vy_leg4 = s12_leg4 * t53;
-        let g1_vx_leg4 = c12_leg4 * t53;
-        let g1_wz_leg4 = t26 * g1_vy_leg4 + t29 * g1_vx_leg4;
+        // --- leg1
+        let k1_leg1 = INV_L_AB / s2_leg1;
+        let g1_vy_leg1 = s12_leg1 * k1_leg1;
+        let p_x_leg3 = R_P * s_phi;
+        let g1_vx_leg1 = c12_leg1 * k1_leg1;
+        let p_y_leg1 = R_P * c_phi;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+        // --- leg2
+        let k1_leg2 = INV_L_AB / s2_leg2;
+        let g1_vy_leg2 = s12_leg2 * k1_leg2;
+        let g1_vx_leg2 = c12_leg2 * k1_leg2;
+        let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+        // --- leg3
+        let k1_leg3 = INV_L_AB / s2_leg3;
+        let g1_vy_leg3 = s12_leg3 * k1_leg3;
+        let g1_vx_leg3 = c12_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let k1_leg4 = INV_L_AB / s2_leg4;
+        let g1_vy_leg4 = s12_leg4 * k1_leg4;
+        let g1_vx_leg4 = c12_leg4 * k1_leg4;
+        let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
         ::core::result::Result::Ok([
-            [0.28 * c12_leg1, 0.28 * s12_leg1, -(0.0784 * s2_leg1 * minus_g1_wz_leg1)],
-            [0.28 * c12_leg2, 0.28 * s12_leg2, -(0.0784 * s2_leg2 * minus_g1_wz_leg2)],
-            [0.28 * c12_leg3, 0.28 * s12_leg3, 0.0784 * s2_leg3 * g1_wz_leg3],
-            [0.28 * c12_leg4, 0.28 * s12_leg4, 0.0784 * s2_leg4 * g1_wz_leg4],
+            [
+                L_AB * c12_leg1, L_AB * s12_leg1, -(L_AB_SQUARED * s2_leg1 * minus_g1_wz_leg1),
+            ],
+            [
+                L_AB * c12_leg2, L_AB * s12_leg2, -(L_AB_SQUARED * s2_leg2 * minus_g1_wz_leg2),
+            ],
+            [L_AB * c12_leg3, L_AB * s12_leg3, L_AB_SQUARED * s2_leg3 * g1_wz_leg3],
+            [L_AB * c12_leg4, L_AB * s12_leg4, L_AB_SQUARED * s2_leg4 * g1_wz_leg4],
         ])
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
@@ -889,12 +1062,15 @@ impl DualV {
         _pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> [[::core::primitive::f64; 4]; 4] {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        // --- sines and cosines
         let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _), (s2_leg4, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10],
         ]);
         [
-            [-(0.0784 * s2_leg1), 0.0, 0.0, 0.0], [0.0, -(0.0784 * s2_leg2), 0.0, 0.0],
-            [0.0, 0.0, -(0.0784 * s2_leg3), 0.0], [0.0, 0.0, 0.0, -(0.0784 * s2_leg4)],
+            [-(L_AB_SQUARED * s2_leg1), 0.0, 0.0, 0.0], [0.0, -(L_AB_SQUARED * s2_leg2), 0.0, 0.0],
+            [0.0, 0.0, -(L_AB_SQUARED * s2_leg3), 0.0], [0.0, 0.0, 0.0, -(L_AB_SQUARED * s2_leg4)],
         ]
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
@@ -913,92 +1089,118 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = (t4 - t16) * t19;
-        let t21 = t6 * twist[2];
-        let t22 = twist[0] - t21;
-        let t24 = 0.5 * t8;
-        let t26 = t24 - t4 * t14;
-        let g1_vy_leg1 = (t8 - t26) * t19;
-        let t29 = t2 * twist[2];
-        let t30 = twist[1] - t29;
-        let rate_1_leg1 = g1_vx_leg1 * t22 + g1_vy_leg1 * t30;
-        let minus_g2_vx_leg1 = t16 * t19;
-        let minus_g2_vy_leg1 = t26 * t19;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t22 + minus_g2_vy_leg1 * t30;
-        let t40 = t3 + 0.3950502153918333;
-        let t43 = t40 * t40 + t10;
-        let t45 = 0.0784 / t43 - 0.25;
-        ::overact::guard::reach(t45, "leg2")?;
-        let t46 = ::overact::math::sqrt(t45);
-        let t48 = 0.5 * t40 - t8 * t46;
-        let t50 = t43 * t46;
-        ::overact::guard::leg(t50, 0.07839913810297301, "leg2")?;
-        let t51 = 1.0 / t50;
-        let minus_g1_vx_leg2 = (t40 - t48) * t51;
-        let t55 = t24 + t40 * t46;
-        let minus_g1_vy_leg2 = (t8 - t55) * t51;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t22 + minus_g1_vy_leg2 * t30;
-        let g2_vx_leg2 = t48 * t51;
-        let g2_vy_leg2 = t55 * t51;
-        let rate_2_leg2 = g2_vx_leg2 * t22 + g2_vy_leg2 * t30;
-        let t67 = pose[0] + t2;
-        let t68 = t67 + 0.3950502153918333;
-        let t71 = pose[1] - t6 + 0.10970563941232059;
-        let t73 = t71 * t71;
-        let t74 = t68 * t68 + t73;
-        let t76 = 0.0784 / t74 - 0.25;
-        ::overact::guard::reach(t76, "leg3")?;
-        let t77 = ::overact::math::sqrt(t76);
-        let t79 = 0.5 * t68 + t71 * t77;
-        let t81 = t74 * t77;
-        ::overact::guard::leg(t81, 0.07839913810297301, "leg3")?;
-        let t82 = 1.0 / t81;
-        let g1_vx_leg3 = (t68 - t79) * t82;
-        let t84 = twist[0] + t21;
-        let t86 = 0.5 * t71;
-        let t88 = t86 - t68 * t77;
-        let g1_vy_leg3 = (t71 - t88) * t82;
-        let t91 = twist[1] + t29;
-        let rate_1_leg3 = g1_vx_leg3 * t84 + g1_vy_leg3 * t91;
-        let minus_g2_vx_leg3 = t79 * t82;
-        let minus_g2_vy_leg3 = t88 * t82;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t84 + minus_g2_vy_leg3 * t91;
-        let t101 = t67 - 0.3950502153918333;
-        let t104 = t101 * t101 + t73;
-        let t106 = 0.0784 / t104 - 0.25;
-        ::overact::guard::reach(t106, "leg4")?;
-        let t107 = ::overact::math::sqrt(t106);
-        let t109 = 0.5 * t101 - t71 * t107;
-        let t111 = t104 * t107;
-        ::overact::guard::leg(t111, 0.07839913810297301, "leg4")?;
-        let t112 = 1.0 / t111;
-        let minus_g1_vx_leg4 = (t101 - t109) * t112;
-        let t116 = t86 + t101 * t107;
-        let minus_g1_vy_leg4 = (t71 - t116) * t112;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t84 + minus_g1_vy_leg4 * t91;
-        let g2_vx_leg4 = t109 * t112;
-        let g2_vy_leg4 = t116 * t112;
-        let rate_2_leg4 = g2_vx_leg4 * t84 + g2_vy_leg4 * t91;
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
         ::core::result::Result::Ok([
-            rate_1_leg1, -(rate_1_leg1 + minus_rate_2_leg1), minus_rate_2_leg1 + twist[2],
-            -minus_rate_1_leg2, minus_rate_1_leg2 + rate_2_leg2, twist[2] - rate_2_leg2,
-            rate_1_leg3, -(rate_1_leg3 + minus_rate_2_leg3), minus_rate_2_leg3 + twist[2],
-            -minus_rate_1_leg4, minus_rate_1_leg4 + rate_2_leg4, twist[2] - rate_2_leg4,
+            rate_1_leg1, -minus_qd_2_leg1, qd_3_leg1, -minus_rate_1_leg2, qd_2_leg2, qd_3_leg2,
+            rate_1_leg3, -minus_qd_2_leg3, qd_3_leg3, -minus_rate_1_leg4, qd_2_leg4, qd_3_leg4,
         ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -1019,136 +1221,171 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t9 = t8 * t8;
-        let t10 = t4 * t4 + t9;
-        let t12 = 0.0784 / t10 - 0.25;
-        ::overact::guard::reach(t12, "leg1")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t14 = t10 * t13;
-        ::overact::guard::leg(t14, 0.07839913810297301, "leg1")?;
-        let t15 = 1.0 / t14;
-        let t18 = 0.5 * t4 + t8 * t13;
-        let t19 = t4 - t18;
-        let t20 = t6 * acceleration[2];
-        let t22 = t2 * twist[2];
-        let t23 = twist[2] * t22;
-        let t24 = acceleration[0] - t20 + t23;
-        let t26 = 0.5 * t8;
-        let t28 = t26 - t4 * t13;
-        let t29 = t8 - t28;
-        let t30 = t2 * acceleration[2];
-        let t32 = t6 * twist[2];
-        let t33 = twist[2] * t32;
-        let t34 = acceleration[1] - t30 - t33;
-        let minus_g2_vx_leg1 = t18 * t15;
-        let t38 = twist[0] - t32;
-        let minus_g2_vy_leg1 = t28 * t15;
-        let t41 = twist[1] - t22;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t38 + minus_g2_vy_leg1 * t41;
-        let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let g1_vx_leg1 = t19 * t15;
-        let g1_vy_leg1 = t29 * t15;
-        let rate_1_leg1 = g1_vx_leg1 * t38 + g1_vy_leg1 * t41;
-        let t52 = rate_1_leg1 * rate_1_leg1;
-        let t54 = 0.5 * (t10 - 0.1568);
-        let rate_dot_1_leg1 = t15 * (t19 * t24 + t29 * t34 + 0.0784 * t44 + t52 * t54);
-        let minus_rate_dot_2_leg1 = t15
-            * (t18 * t24 + t28 * t34 + 0.0784 * t52 + t44 * t54);
-        let t68 = t3 + 0.3950502153918333;
-        let t70 = t68 * t68 + t9;
-        let t72 = 0.0784 / t70 - 0.25;
-        ::overact::guard::reach(t72, "leg2")?;
-        let t73 = ::overact::math::sqrt(t72);
-        let t74 = t70 * t73;
-        ::overact::guard::leg(t74, 0.07839913810297301, "leg2")?;
-        let t75 = 1.0 / t74;
-        let t78 = 0.5 * t68 - t8 * t73;
-        let t79 = t68 - t78;
-        let t82 = t26 + t68 * t73;
-        let t83 = t8 - t82;
-        let g2_vx_leg2 = t78 * t75;
-        let g2_vy_leg2 = t82 * t75;
-        let rate_2_leg2 = g2_vx_leg2 * t38 + g2_vy_leg2 * t41;
-        let t91 = rate_2_leg2 * rate_2_leg2;
-        let minus_g1_vx_leg2 = t79 * t75;
-        let minus_g1_vy_leg2 = t83 * t75;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t38 + minus_g1_vy_leg2 * t41;
-        let t99 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t101 = 0.5 * (t70 - 0.1568);
-        let minus_rate_dot_1_leg2 = t75
-            * (t79 * t24 + t83 * t34 + 0.0784 * t91 + t99 * t101);
-        let rate_dot_2_leg2 = t75 * (t78 * t24 + t82 * t34 + 0.0784 * t99 + t91 * t101);
-        let t115 = pose[0] + t2;
-        let t116 = t115 + 0.3950502153918333;
-        let t119 = pose[1] - t6 + 0.10970563941232059;
-        let t120 = t119 * t119;
-        let t121 = t116 * t116 + t120;
-        let t123 = 0.0784 / t121 - 0.25;
-        ::overact::guard::reach(t123, "leg3")?;
-        let t124 = ::overact::math::sqrt(t123);
-        let t125 = t121 * t124;
-        ::overact::guard::leg(t125, 0.07839913810297301, "leg3")?;
-        let t126 = 1.0 / t125;
-        let t129 = 0.5 * t116 + t119 * t124;
-        let t130 = t116 - t129;
-        let t132 = acceleration[0] + t20 - t23;
-        let t134 = 0.5 * t119;
-        let t136 = t134 - t116 * t124;
-        let t137 = t119 - t136;
-        let t139 = acceleration[1] + t30 + t33;
-        let minus_g2_vx_leg3 = t129 * t126;
-        let t143 = twist[0] + t32;
-        let minus_g2_vy_leg3 = t136 * t126;
-        let t146 = twist[1] + t22;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t143 + minus_g2_vy_leg3 * t146;
-        let t149 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let g1_vx_leg3 = t130 * t126;
-        let g1_vy_leg3 = t137 * t126;
-        let rate_1_leg3 = g1_vx_leg3 * t143 + g1_vy_leg3 * t146;
-        let t157 = rate_1_leg3 * rate_1_leg3;
-        let t159 = 0.5 * (t121 - 0.1568);
-        let rate_dot_1_leg3 = t126
-            * (t130 * t132 + t137 * t139 + 0.0784 * t149 + t157 * t159);
-        let minus_rate_dot_2_leg3 = t126
-            * (t129 * t132 + t136 * t139 + 0.0784 * t157 + t149 * t159);
-        let t173 = t115 - 0.3950502153918333;
-        let t175 = t173 * t173 + t120;
-        let t177 = 0.0784 / t175 - 0.25;
-        ::overact::guard::reach(t177, "leg4")?;
-        let t178 = ::overact::math::sqrt(t177);
-        let t179 = t175 * t178;
-        ::overact::guard::leg(t179, 0.07839913810297301, "leg4")?;
-        let t180 = 1.0 / t179;
-        let t183 = 0.5 * t173 - t119 * t178;
-        let t184 = t173 - t183;
-        let t187 = t134 + t173 * t178;
-        let t188 = t119 - t187;
-        let g2_vx_leg4 = t183 * t180;
-        let g2_vy_leg4 = t187 * t180;
-        let rate_2_leg4 = g2_vx_leg4 * t143 + g2_vy_leg4 * t146;
-        let t196 = rate_2_leg4 * rate_2_leg4;
-        let minus_g1_vx_leg4 = t184 * t180;
-        let minus_g1_vy_leg4 = t188 * t180;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t143 + minus_g1_vy_leg4 * t146;
-        let t204 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t206 = 0.5 * (t175 - 0.1568);
-        let minus_rate_dot_1_leg4 = t180
-            * (t184 * t132 + t188 * t139 + 0.0784 * t196 + t204 * t206);
-        let rate_dot_2_leg4 = t180
-            * (t183 * t132 + t187 * t139 + 0.0784 * t204 + t196 * t206);
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let p_y_dwz_leg1 = p_y_leg1 * acceleration[2];
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let wz_v_arm_y_leg3 = twist[2] * v_arm_y_leg3;
+        let a_end_x_leg1 = acceleration[0] - p_y_dwz_leg1 + wz_v_arm_y_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let p_x_dwz_leg3 = p_x_leg3 * acceleration[2];
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let wz_v_arm_x_leg3 = twist[2] * v_arm_x_leg3;
+        let a_end_y_leg1 = acceleration[1] - p_x_dwz_leg3 - wz_v_arm_x_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let minus_qdd_2_leg1 = rate_dot_1_leg1 + minus_rate_dot_2_leg1;
+        let qdd_3_leg1 = minus_rate_dot_2_leg1 + acceleration[2];
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let qdd_2_leg2 = minus_rate_dot_1_leg2 + rate_dot_2_leg2;
+        let qdd_3_leg2 = acceleration[2] - rate_dot_2_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let a_end_x_leg3 = acceleration[0] + p_y_dwz_leg1 - wz_v_arm_y_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let a_end_y_leg3 = acceleration[1] + p_x_dwz_leg3 + wz_v_arm_x_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+        let minus_qdd_2_leg3 = rate_dot_1_leg3 + minus_rate_dot_2_leg3;
+        let qdd_3_leg3 = minus_rate_dot_2_leg3 + acceleration[2];
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let qdd_2_leg4 = minus_rate_dot_1_leg4 + rate_dot_2_leg4;
+        let qdd_3_leg4 = acceleration[2] - rate_dot_2_leg4;
         ::core::result::Result::Ok([
-            rate_dot_1_leg1, -(rate_dot_1_leg1 + minus_rate_dot_2_leg1),
-            minus_rate_dot_2_leg1 + acceleration[2], -minus_rate_dot_1_leg2,
-            minus_rate_dot_1_leg2 + rate_dot_2_leg2, acceleration[2] - rate_dot_2_leg2,
-            rate_dot_1_leg3, -(rate_dot_1_leg3 + minus_rate_dot_2_leg3),
-            minus_rate_dot_2_leg3 + acceleration[2], -minus_rate_dot_1_leg4,
-            minus_rate_dot_1_leg4 + rate_dot_2_leg4, acceleration[2] - rate_dot_2_leg4,
+            rate_dot_1_leg1, -minus_qdd_2_leg1, qdd_3_leg1, -minus_rate_dot_1_leg2, qdd_2_leg2,
+            qdd_3_leg2, rate_dot_1_leg3, -minus_qdd_2_leg3, qdd_3_leg3, -minus_rate_dot_1_leg4,
+            qdd_2_leg4, qdd_3_leg4,
         ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -1167,99 +1404,117 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t17 = t11 * t14;
-        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
-        let t18 = 1.0 / t17;
-        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
-        let t21 = t3 + 0.3950502153918333;
-        let t24 = t21 * t21 + t10;
-        let t26 = 0.0784 / t24 - 0.25;
-        ::overact::guard::reach(t26, "leg2")?;
-        let t27 = ::overact::math::sqrt(t26);
-        let t30 = t24 * t27;
-        ::overact::guard::leg(t30, 0.07839913810297301, "leg2")?;
-        let t31 = 1.0 / t30;
-        let minus_g1_vx_leg2 = (0.5 * t21 + t8 * t27) * t31;
-        let t35 = pose[0] + t2;
-        let t36 = t35 + 0.3950502153918333;
-        let t39 = pose[1] - t6 + 0.10970563941232059;
-        let t41 = t39 * t39;
-        let t42 = t36 * t36 + t41;
-        let t44 = 0.0784 / t42 - 0.25;
-        ::overact::guard::reach(t44, "leg3")?;
-        let t45 = ::overact::math::sqrt(t44);
-        let t48 = t42 * t45;
-        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
-        let t49 = 1.0 / t48;
-        let g1_vx_leg3 = (0.5 * t36 - t39 * t45) * t49;
-        let t53 = t35 - 0.3950502153918333;
-        let t56 = t53 * t53 + t41;
-        let t58 = 0.0784 / t56 - 0.25;
-        ::overact::guard::reach(t58, "leg4")?;
-        let t59 = ::overact::math::sqrt(t58);
-        let t62 = t56 * t59;
-        ::overact::guard::leg(t62, 0.07839913810297301, "leg4")?;
-        let t63 = 1.0 / t62;
-        let minus_g1_vx_leg4 = (0.5 * t53 + t39 * t59) * t63;
-        let t66 = g1_vx_leg1 * actuator_velocities[0]
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t73 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t73, 25.429161076750646, "actuators")?;
-        let t74 = 1.0 / t73;
-        let t76 = 0.5 * t8;
-        let g1_vy_leg1 = (t76 + t4 * t14) * t18;
-        let minus_g1_vy_leg2 = (t76 - t21 * t27) * t31;
-        let t86 = 0.5 * t39;
-        let g1_vy_leg3 = (t86 + t36 * t45) * t49;
-        let minus_g1_vy_leg4 = (t86 - t53 * t59) * t63;
-        let t96 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t97 = t96 * t74;
-        let t106 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t96 * t97;
-        ::overact::guard::platform(t106, 25.592368899353342, "actuators")?;
-        let t107 = 1.0 / t106;
-        let t116 = g1_vy_leg1 * actuator_velocities[0]
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t66 * t97;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t143 = g1_vx_leg3 * g1_wz_leg3
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t144 = t143 * t74;
-        let t146 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t96 * t144;
-        let t147 = t146 * t107;
-        let t158 = g1_wz_leg2 * actuator_velocities[1]
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t66 * t144 - t147 * t116;
-        let t169 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t143 * t144
-            - t146 * t147;
-        ::overact::guard::platform(t169, 0.3076928490286828, "actuators")?;
-        let t170 = t158 / t169;
-        let t172 = t107 * t116 - t147 * t170;
-        ::core::result::Result::Ok([t66 * t74 - t97 * t172 - t144 * t170, t172, t170])
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let t4 = t3 / pivot_3;
+        let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1279,152 +1534,192 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         actuator_accelerations: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = t17 * t19;
-        let t21 = 0.5 * t8;
-        let t23 = t21 - t4 * t14;
-        let t24 = t8 - t23;
-        let t25 = t6 * twist[2];
-        let t26 = twist[2] * t25;
-        let t28 = t2 * twist[2];
-        let t29 = twist[2] * t28;
-        let minus_g2_vx_leg1 = t16 * t19;
-        let t33 = twist[0] - t25;
-        let minus_g2_vy_leg1 = t23 * t19;
-        let t36 = twist[1] - t28;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t33 + minus_g2_vy_leg1 * t36;
-        let g1_vy_leg1 = t24 * t19;
-        let rate_1_leg1 = g1_vx_leg1 * t33 + g1_vy_leg1 * t36;
-        let t50 = t24 * t26 - t17 * t29
-            - 0.0784 * (minus_rate_2_leg1 * minus_rate_2_leg1)
-            - rate_1_leg1 * rate_1_leg1 * (0.5 * (t11 - 0.1568));
-        let minus_rate_dot_1_leg1 = t19 * t50;
-        let t52 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t54 = t3 + 0.3950502153918333;
-        let t57 = t54 * t54 + t10;
-        let t59 = 0.0784 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg2")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t62 = 0.5 * t54 - t8 * t60;
-        let t63 = t54 - t62;
-        let t64 = t57 * t60;
-        ::overact::guard::leg(t64, 0.07839913810297301, "leg2")?;
-        let t65 = 1.0 / t64;
-        let minus_g1_vx_leg2 = t63 * t65;
-        let t68 = t21 + t54 * t60;
-        let t69 = t8 - t68;
-        let g2_vx_leg2 = t62 * t65;
-        let g2_vy_leg2 = t68 * t65;
-        let rate_2_leg2 = g2_vx_leg2 * t33 + g2_vy_leg2 * t36;
-        let minus_g1_vy_leg2 = t69 * t65;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t33 + minus_g1_vy_leg2 * t36;
-        let t89 = t69 * t26 - t63 * t29 - 0.0784 * (rate_2_leg2 * rate_2_leg2)
-            - minus_rate_1_leg2 * minus_rate_1_leg2 * (0.5 * (t57 - 0.1568));
-        let rate_dot_1_leg2 = t65 * t89;
-        let t91 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t94 = pose[0] + t2;
-        let t95 = t94 + 0.3950502153918333;
-        let t98 = pose[1] - t6 + 0.10970563941232059;
-        let t100 = t98 * t98;
-        let t101 = t95 * t95 + t100;
-        let t103 = 0.0784 / t101 - 0.25;
-        ::overact::guard::reach(t103, "leg3")?;
-        let t104 = ::overact::math::sqrt(t103);
-        let t106 = 0.5 * t95 + t98 * t104;
-        let t107 = t95 - t106;
-        let t108 = t101 * t104;
-        ::overact::guard::leg(t108, 0.07839913810297301, "leg3")?;
-        let t109 = 1.0 / t108;
-        let g1_vx_leg3 = t107 * t109;
-        let t112 = 0.5 * t98;
-        let t114 = t112 - t95 * t104;
-        let t115 = t98 - t114;
-        let minus_g2_vx_leg3 = t106 * t109;
-        let t119 = twist[0] + t25;
-        let minus_g2_vy_leg3 = t114 * t109;
-        let t122 = twist[1] + t28;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t119 + minus_g2_vy_leg3 * t122;
-        let g1_vy_leg3 = t115 * t109;
-        let rate_1_leg3 = g1_vx_leg3 * t119 + g1_vy_leg3 * t122;
-        let t136 = t107 * t29 - t115 * t26
-            - 0.0784 * (minus_rate_2_leg3 * minus_rate_2_leg3)
-            - rate_1_leg3 * rate_1_leg3 * (0.5 * (t101 - 0.1568));
-        let minus_rate_dot_1_leg3 = t109 * t136;
-        let t138 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t141 = t94 - 0.3950502153918333;
-        let t144 = t141 * t141 + t100;
-        let t146 = 0.0784 / t144 - 0.25;
-        ::overact::guard::reach(t146, "leg4")?;
-        let t147 = ::overact::math::sqrt(t146);
-        let t149 = 0.5 * t141 - t98 * t147;
-        let t150 = t141 - t149;
-        let t151 = t144 * t147;
-        ::overact::guard::leg(t151, 0.07839913810297301, "leg4")?;
-        let t152 = 1.0 / t151;
-        let minus_g1_vx_leg4 = t150 * t152;
-        let t156 = t112 + t141 * t147;
-        let t157 = t98 - t156;
-        let g2_vx_leg4 = t149 * t152;
-        let g2_vy_leg4 = t156 * t152;
-        let rate_2_leg4 = g2_vx_leg4 * t119 + g2_vy_leg4 * t122;
-        let minus_g1_vy_leg4 = t157 * t152;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t119 + minus_g1_vy_leg4 * t122;
-        let t176 = t150 * t29 - t157 * t26 - 0.0784 * (rate_2_leg4 * rate_2_leg4)
-            - minus_rate_1_leg4 * minus_rate_1_leg4 * (0.5 * (t144 - 0.1568));
-        let rate_dot_1_leg4 = t152 * t176;
-        let t178 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t180 = g1_vx_leg1 * t52 - minus_g1_vx_leg2 * t91 + g1_vx_leg3 * t138
-            - minus_g1_vx_leg4 * t178;
-        let t187 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1
+            * (bias_a_on_f1_leg1
+                - rate_1_squared_leg1 * (0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED)));
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2
+            * (bias_a_on_f1_leg2
+                - rate_1_squared_leg2 * (0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED)));
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3
+            * (bias_a_on_f1_leg3
+                - rate_1_squared_leg3 * (0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED)));
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            + minus_bias_rate_dot_1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4
+            * (bias_a_on_f1_leg4
+                - rate_1_squared_leg4 * (0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED)));
+        let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
+            - bias_rate_dot_1_leg4;
+        let t1 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t187, 25.429161076750646, "actuators")?;
-        let t188 = 1.0 / t187;
-        let t196 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t197 = t196 * t188;
-        let t206 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t196 * t197;
-        ::overact::guard::platform(t206, 25.592368899353342, "actuators")?;
-        let t207 = 1.0 / t206;
-        let t216 = g1_vy_leg1 * t52 - minus_g1_vy_leg2 * t91 + g1_vy_leg3 * t138
-            - minus_g1_vy_leg4 * t178 - t180 * t197;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t243 = g1_vx_leg3 * g1_wz_leg3
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t2 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - t1 * l_2_1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t244 = t243 * t188;
-        let t246 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t196 * t244;
-        let t247 = t246 * t207;
-        let t258 = g1_wz_leg2 * t91 - minus_g1_wz_leg1 * t52 + g1_wz_leg3 * t138
-            - minus_g1_wz_leg4 * t178 - t180 * t244 - t247 * t216;
-        let t269 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t243 * t244
-            - t246 * t247;
-        ::overact::guard::platform(t269, 0.3076928490286828, "actuators")?;
-        let t270 = t258 / t269;
-        let t272 = t207 * t216 - t247 * t270;
-        ::core::result::Result::Ok([t180 * t188 - t197 * t272 - t244 * t270, t272, t270])
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let t3 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - t1 * l_3_1
+            - l_3_2 * t2;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let t4 = t3 / pivot_3;
+        let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1445,272 +1740,376 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// r_p / l_ab
+        const R_P_PER_L_AB: ::core::primitive::f64 = 0.39285714285714285;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] + t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t5 = 0.5 * t4;
-        let t6 = pose[0] - t5;
-        let t7 = t6 - 0.3950502153918333;
-        let t8 = t7 + t7;
-        let t9 = 0.11 * c_phi;
-        let t11 = pose[1] - (t9 - 0.10970563941232059);
-        let t12 = 0.5 * t11;
-        let t13 = pose[1] - t12;
-        let t14 = t13 + t13;
-        let t16 = t14 * t14;
-        let t17 = t8 * t8 + t16;
-        let t19 = 0.0784 / t17 - 0.25;
-        ::overact::guard::reach(t19, "leg1")?;
-        let t20 = ::overact::math::sqrt(t19);
-        let t22 = t7 + t14 * t20;
-        let t23 = t8 - t22;
-        let t24 = t17 * t20;
-        ::overact::guard::leg(t24, 0.07839913810297301, "leg1")?;
-        let t25 = 1.0 / t24;
-        let g1_vx_leg1 = t23 * t25;
-        let t27 = t2 * twist[2];
-        let t30 = twist[2] * t27 - t9 * acceleration[2];
-        let t31 = acceleration[0] + t30;
-        let t34 = t13 - t8 * t20;
-        let t35 = t14 - t34;
-        let t36 = t9 * twist[2];
-        let t39 = twist[2] * t36 + t2 * acceleration[2];
-        let t40 = acceleration[1] - t39;
-        let minus_g2_vx_leg1 = t22 * t25;
-        let t44 = twist[0] - t36;
-        let minus_g2_vy_leg1 = t34 * t25;
-        let t47 = twist[1] - t27;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t44 + minus_g2_vy_leg1 * t47;
-        let t50 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t52 = t23 * t31 + t35 * t40 + 0.0784 * t50;
-        let g1_vy_leg1 = t35 * t25;
-        let rate_1_leg1 = g1_vx_leg1 * t44 + g1_vy_leg1 * t47;
-        let t57 = rate_1_leg1 * rate_1_leg1;
-        let t59 = 0.5 * (t17 - 0.1568);
-        let rate_dot_1_leg1 = t25 * (t52 + t57 * t59);
-        let t63 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t64 = g1_vy_leg1 * rate_dot_1_leg1;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t9 * g1_vx_leg1;
-        let t68 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let t79 = t22 * t31 + t34 * t40 + 0.0784 * t57;
-        let minus_rate_dot_2_leg1 = t25 * (t79 + t50 * t59);
-        let t83 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t84 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t9 * minus_g2_vx_leg1;
-        let t88 = g2_wz_leg1 * minus_rate_dot_2_leg1;
-        let t89 = 3.5714285714285716 * t31;
-        let t93 = 3.5714285714285716 * t40;
-        let t99 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t100 = 0.11 * acceleration[2];
-        let t102 = 0.39285714285714285 * (t100 - t99);
-        let t106 = 3.5714285714285716 * t79;
-        let t108 = 3.5714285714285716 * t52;
-        let t120 = rate_1_leg1 + minus_rate_2_leg1;
-        let t121 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t123 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t125 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t130 = minus_rate_2_leg1 + twist[2];
-        let t133 = 1.0 - g2_wz_leg1;
-        let t138 = t6 + t6;
-        let t140 = t138 * t138 + t16;
-        let t142 = 0.0784 / t140 - 0.25;
-        ::overact::guard::reach(t142, "leg2")?;
-        let t143 = ::overact::math::sqrt(t142);
-        let t145 = t6 - t14 * t143;
-        let t146 = t138 - t145;
-        let t147 = t140 * t143;
-        ::overact::guard::leg(t147, 0.07839913810297301, "leg2")?;
-        let t148 = 1.0 / t147;
-        let minus_g1_vx_leg2 = t146 * t148;
-        let t152 = t13 + t138 * t143;
-        let t153 = t14 - t152;
-        let g2_vx_leg2 = t145 * t148;
-        let g2_vy_leg2 = t152 * t148;
-        let rate_2_leg2 = g2_vx_leg2 * t44 + g2_vy_leg2 * t47;
-        let t161 = rate_2_leg2 * rate_2_leg2;
-        let t163 = t146 * t31 + t153 * t40 + 0.0784 * t161;
-        let minus_g1_vy_leg2 = t153 * t148;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t44 + minus_g1_vy_leg2 * t47;
-        let t168 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t170 = 0.5 * (t140 - 0.1568);
-        let minus_rate_dot_1_leg2 = t148 * (t163 + t168 * t170);
-        let t174 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t175 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t9 * minus_g1_vx_leg2;
-        let t179 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t190 = t145 * t31 + t152 * t40 + 0.0784 * t168;
-        let rate_dot_2_leg2 = t148 * (t190 + t161 * t170);
-        let t194 = g2_vx_leg2 * rate_dot_2_leg2;
-        let t195 = g2_vy_leg2 * rate_dot_2_leg2;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t9 * g2_vx_leg2;
-        let t199 = minus_g2_wz_leg2 * rate_dot_2_leg2;
-        let t209 = 3.5714285714285716 * t190;
-        let t211 = 3.5714285714285716 * t163;
-        let t223 = minus_rate_1_leg2 + rate_2_leg2;
-        let t224 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t226 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t228 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t233 = twist[2] - rate_2_leg2;
-        let t236 = minus_g2_wz_leg2 + 1.0;
-        let t241 = t3 + 0.3950502153918333;
-        let t244 = t11 * t11;
-        let t245 = t241 * t241 + t244;
-        let t247 = 0.0784 / t245 - 0.25;
-        ::overact::guard::reach(t247, "leg3")?;
-        let t248 = ::overact::math::sqrt(t247);
-        let t250 = 0.5 * t241 + t11 * t248;
-        let t251 = t241 - t250;
-        let t252 = t245 * t248;
-        ::overact::guard::leg(t252, 0.07839913810297301, "leg3")?;
-        let g1_vx_leg3 = t251 / t252;
-        let t254 = acceleration[0] - t30;
-        let t257 = t12 - t241 * t248;
-        let t259 = acceleration[1] + t39;
-        let minus_g2_vx_leg3 = t250 / t252;
-        let t263 = twist[0] + t36;
-        let minus_g2_vy_leg3 = t257 / t252;
-        let t266 = twist[1] + t27;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t263 + minus_g2_vy_leg3 * t266;
-        let t269 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t271 = t251 * t254 + (t11 - t257) * t259 + 0.0784 * t269;
-        let t273 = t11 / t252;
-        let g1_vy_leg3 = t273 - minus_g2_vy_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * t263 + g1_vy_leg3 * t266;
-        let t277 = rate_1_leg3 * rate_1_leg3;
-        let t279 = 0.5 * (t245 - 0.1568);
-        let rate_dot_1_leg3 = (t271 + t277 * t279) / t252;
-        let t283 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t284 = g1_vy_leg3 * rate_dot_1_leg3;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t9 * g1_vx_leg3;
-        let t288 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t299 = t250 * t254 + t257 * t259 + 0.0784 * t277;
-        let minus_rate_dot_2_leg3 = (t299 + t269 * t279) / t252;
-        let t303 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t304 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t9 * minus_g2_vx_leg3;
-        let t308 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t309 = 3.5714285714285716 * t254;
-        let t313 = 3.5714285714285716 * t259;
-        let t318 = 0.39285714285714285 * (t99 + t100);
-        let t322 = 3.5714285714285716 * t299;
-        let t324 = 3.5714285714285716 * t271;
-        let t336 = rate_1_leg3 + minus_rate_2_leg3;
-        let t337 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t340 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t345 = minus_rate_2_leg3 + twist[2];
-        let t348 = minus_g2_wz_leg3 + 1.0;
-        let t354 = t4 * t4 + t244;
-        let t356 = 0.0784 / t354 - 0.25;
-        ::overact::guard::reach(t356, "leg4")?;
-        let t357 = ::overact::math::sqrt(t356);
-        let t359 = t5 - t11 * t357;
-        let t360 = t4 - t359;
-        let t361 = t354 * t357;
-        ::overact::guard::leg(t361, 0.07839913810297301, "leg4")?;
-        let t362 = 1.0 / t361;
-        let minus_g1_vx_leg4 = t360 * t362;
-        let t366 = t12 + t4 * t357;
-        let t367 = t11 - t366;
-        let g2_vx_leg4 = t359 * t362;
-        let g2_vy_leg4 = t366 * t362;
-        let rate_2_leg4 = g2_vx_leg4 * t263 + g2_vy_leg4 * t266;
-        let t375 = rate_2_leg4 * rate_2_leg4;
-        let t377 = t360 * t254 + t367 * t259 + 0.0784 * t375;
-        let minus_g1_vy_leg4 = t367 * t362;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t263 + minus_g1_vy_leg4 * t266;
-        let t382 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t384 = 0.5 * (t354 - 0.1568);
-        let minus_rate_dot_1_leg4 = t362 * (t377 + t382 * t384);
-        let t388 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let t389 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t9 * minus_g1_vx_leg4;
-        let t393 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let t404 = t359 * t254 + t366 * t259 + 0.0784 * t382;
-        let rate_dot_2_leg4 = t362 * (t404 + t375 * t384);
-        let t408 = g2_vx_leg4 * rate_dot_2_leg4;
-        let t409 = g2_vy_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t9 * g2_vx_leg4;
-        let t413 = g2_wz_leg4 * rate_dot_2_leg4;
-        let t423 = 3.5714285714285716 * t404;
-        let t425 = 3.5714285714285716 * t377;
-        let t437 = minus_rate_1_leg4 + rate_2_leg4;
-        let t438 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t440 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t442 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t447 = twist[2] - rate_2_leg4;
-        let t450 = 1.0 - g2_wz_leg4;
-        let t455 = 9.090909090909092 * t39;
-        let t456 = 9.090909090909092 * t30;
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let half_d_x_leg4 = 0.5 * d_x_leg4;
+        let x_minus_half_d_x_leg4 = pose[0] - half_d_x_leg4;
+        let t1_leg1 = x_minus_half_d_x_leg4 - 0.3950502153918333;
+        let d_x_leg1 = t1_leg1 + t1_leg1;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg3 = pose[1] - (p_y_leg1 - 0.10970563941232059);
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
+        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = t1_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+        let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
+        let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        // --- platform
+        let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
+        let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let r_p_dwz = R_P * acceleration[2];
+        let a3_x_leg1 = r_p_dwz - a_x_platform;
+        let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
+        // --- leg1
+        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_half_d_x_leg4 + x_minus_half_d_x_leg4;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = x_minus_half_d_x_leg4 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+        let zz_1_leg2_on_vx = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
+        let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+        // --- leg3
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let g1_vx_leg3 = l2_x_leg3 / det_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 / det_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
+        let g1_vy_leg3 = minus_gq2_vy_leg3 - minus_g2_vy_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3)
+            / det_leg3;
+        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+        let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3)
+            / det_leg3;
+        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+        let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+        let a3_x_leg3 = a_x_platform + r_p_dwz;
+        let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
+        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        // --- leg4
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
+        let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         ::core::result::Result::Ok([
             [
-                t63, t63, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t83,
-                t89 - 0.28 * (t63 + t83), g1_vx_leg1 * t106 + minus_g2_vx_leg1 * t108, 0.0784 * t63,
-                t120 * t121, ::overact::math::signed(t121, t120), -t121, minus_g2_vx_leg1 * t130,
-                ::overact::math::signed(minus_g2_vx_leg1, t130), minus_g2_vx_leg1, t174, t174,
+                zz_1_leg1_on_vx, zz_1_leg1_on_vx, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, zz_2_leg1_on_vx,
+                inv_l_ab_a_end_x_leg1 - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
+                g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1,
+                L_AB_SQUARED * zz_1_leg1_on_vx, minus_qd_2_leg1 * minus_gq2_vx_leg1,
+                ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1), -minus_gq2_vx_leg1,
+                minus_g2_vx_leg1 * qd_3_leg1, ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1),
+                minus_g2_vx_leg1, zz_1_leg2_on_vx, zz_1_leg2_on_vx,
                 minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t194, t89 - 0.28 * (t174 + t194), -(minus_g1_vx_leg2 * t209 + g2_vx_leg2 * t211),
-                0.0784 * t174, t223 * t224, ::overact::math::signed(t224, t223), t224,
-                -(g2_vx_leg2 * t233), -::overact::math::signed(g2_vx_leg2, t233), -g2_vx_leg2, t283,
-                t283, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t303, t309 - 0.28 * (t283 + t303),
-                g1_vx_leg3 * t322 + minus_g2_vx_leg3 * t324, 0.0784 * t283, t336 * t337,
-                ::overact::math::signed(t337, t336), -t337, minus_g2_vx_leg3 * t345,
-                ::overact::math::signed(minus_g2_vx_leg3, t345), minus_g2_vx_leg3, t388, t388,
+                zz_2_leg2_on_vx, inv_l_ab_a_end_x_leg1 - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx),
+                -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vx_leg2 * a2_x_leg2),
+                L_AB_SQUARED * zz_1_leg2_on_vx, qd_2_leg2 * gq2_vx_leg2,
+                ::overact::math::signed(gq2_vx_leg2, qd_2_leg2), gq2_vx_leg2,
+                -(g2_vx_leg2 * qd_3_leg2), -::overact::math::signed(g2_vx_leg2, qd_3_leg2),
+                -g2_vx_leg2, zz_1_leg3_on_vx, zz_1_leg3_on_vx, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, zz_2_leg3_on_vx,
+                inv_l_ab_a_end_x_leg3 - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
+                g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vx_leg3 * a2_x_leg3,
+                L_AB_SQUARED * zz_1_leg3_on_vx, minus_qd_2_leg3 * minus_gq2_vx_leg3,
+                ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3), -minus_gq2_vx_leg3,
+                minus_g2_vx_leg3 * qd_3_leg3, ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3),
+                minus_g2_vx_leg3, zz_1_leg4_on_vx, zz_1_leg4_on_vx,
                 minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
-                t408, t309 - 0.28 * (t388 + t408), -(minus_g1_vx_leg4 * t423 + g2_vx_leg4 * t425),
-                0.0784 * t388, t437 * t438, ::overact::math::signed(t438, t437), t438,
-                -(g2_vx_leg4 * t447), -::overact::math::signed(g2_vx_leg4, t447), -g2_vx_leg4, 0.0,
-                -t455, t456, acceleration[0],
+                zz_2_leg4_on_vx, inv_l_ab_a_end_x_leg3 - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx),
+                -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vx_leg4 * a2_x_leg4),
+                L_AB_SQUARED * zz_1_leg4_on_vx, qd_2_leg4 * gq2_vx_leg4,
+                ::overact::math::signed(gq2_vx_leg4, qd_2_leg4), gq2_vx_leg4,
+                -(g2_vx_leg4 * qd_3_leg4), -::overact::math::signed(g2_vx_leg4, qd_3_leg4),
+                -g2_vx_leg4, 0.0, -minus_mx_platform_on_vx, my_platform_on_vx, acceleration[0],
             ],
             [
-                t64, t64, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t84,
-                t93 - 0.28 * (t64 + t84), g1_vy_leg1 * t106 + minus_g2_vy_leg1 * t108, 0.0784 * t64,
-                t120 * t123, ::overact::math::signed(t123, t120), -t123, minus_g2_vy_leg1 * t130,
-                ::overact::math::signed(minus_g2_vy_leg1, t130), minus_g2_vy_leg1, t175, t175,
+                zz_1_leg1_on_vy, zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
+                inv_l_ab_a_end_y_leg1 - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy),
+                g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1,
+                L_AB_SQUARED * zz_1_leg1_on_vy, minus_qd_2_leg1 * minus_gq2_vy_leg1,
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1), -minus_gq2_vy_leg1,
+                minus_g2_vy_leg1 * qd_3_leg1, ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1),
+                minus_g2_vy_leg1, zz_1_leg2_on_vy, zz_1_leg2_on_vy,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                t195, t93 - 0.28 * (t175 + t195), -(minus_g1_vy_leg2 * t209 + g2_vy_leg2 * t211),
-                0.0784 * t175, t223 * t226, ::overact::math::signed(t226, t223), t226,
-                -(g2_vy_leg2 * t233), -::overact::math::signed(g2_vy_leg2, t233), -g2_vy_leg2, t284,
-                t284, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t304, t313 - 0.28 * (t284 + t304),
-                g1_vy_leg3 * t322 + minus_g2_vy_leg3 * t324, 0.0784 * t284, t336 * t273,
-                ::overact::math::signed(t273, t336), -t273, minus_g2_vy_leg3 * t345,
-                ::overact::math::signed(minus_g2_vy_leg3, t345), minus_g2_vy_leg3, t389, t389,
+                zz_2_leg2_on_vy, inv_l_ab_a_end_y_leg1 - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
+                -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vy_leg2 * a2_x_leg2),
+                L_AB_SQUARED * zz_1_leg2_on_vy, qd_2_leg2 * gq2_vy_leg2,
+                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2), gq2_vy_leg2,
+                -(g2_vy_leg2 * qd_3_leg2), -::overact::math::signed(g2_vy_leg2, qd_3_leg2),
+                -g2_vy_leg2, zz_1_leg3_on_vy, zz_1_leg3_on_vy, g1_vy_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vy_leg3, rate_1_leg3), g1_vy_leg3, zz_2_leg3_on_vy,
+                inv_l_ab_a_end_y_leg3 - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy),
+                g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vy_leg3 * a2_x_leg3,
+                L_AB_SQUARED * zz_1_leg3_on_vy, minus_qd_2_leg3 * minus_gq2_vy_leg3,
+                ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3), -minus_gq2_vy_leg3,
+                minus_g2_vy_leg3 * qd_3_leg3, ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3),
+                minus_g2_vy_leg3, zz_1_leg4_on_vy, zz_1_leg4_on_vy,
                 minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
-                t409, t313 - 0.28 * (t389 + t409), -(minus_g1_vy_leg4 * t423 + g2_vy_leg4 * t425),
-                0.0784 * t389, t437 * t440, ::overact::math::signed(t440, t437), t440,
-                -(g2_vy_leg4 * t447), -::overact::math::signed(g2_vy_leg4, t447), -g2_vy_leg4, 0.0,
-                -t456, -t455, acceleration[1],
+                zz_2_leg4_on_vy, inv_l_ab_a_end_y_leg3 - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy),
+                -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vy_leg4 * a2_x_leg4),
+                L_AB_SQUARED * zz_1_leg4_on_vy, qd_2_leg4 * gq2_vy_leg4,
+                ::overact::math::signed(gq2_vy_leg4, qd_2_leg4), gq2_vy_leg4,
+                -(g2_vy_leg4 * qd_3_leg4), -::overact::math::signed(g2_vy_leg4, qd_3_leg4),
+                -g2_vy_leg4, 0.0, -my_platform_on_vx, -minus_mx_platform_on_vx, acceleration[1],
             ],
             [
-                -t68, -t68, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t88,
-                t102 + 0.28 * (t68 + t88), -(minus_g1_wz_leg1 * t106 + g2_wz_leg1 * t108),
-                -(0.0784 * t68), -(t120 * t125), -::overact::math::signed(t125, t120), t125,
-                t130 * t133, ::overact::math::signed(t133, t130), t133, -t179, -t179,
+                -minus_zz_1_leg1_on_wz, -minus_zz_1_leg1_on_wz, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
+                -minus_zz_2_leg1_on_wz,
+                r_p_per_l_ab_a3_x_leg1
+                    + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz),
+                -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 + g2_wz_leg1 * a2_x_leg1),
+                -(L_AB_SQUARED * minus_zz_1_leg1_on_wz),
+                -(minus_qd_2_leg1 * gq2_wz_leg1),
+                -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1),
+                gq2_wz_leg1,
+                qd_3_leg1 * gq3_wz_leg1,
+                ::overact::math::signed(gq3_wz_leg1, qd_3_leg1),
+                gq3_wz_leg1,
+                -minus_zz_1_leg2_on_wz,
+                -minus_zz_1_leg2_on_wz,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t199,
-                t102 + 0.28 * (t179 + t199), g1_wz_leg2 * t209 + minus_g2_wz_leg2 * t211,
-                -(0.0784 * t179), -(t223 * t228), -::overact::math::signed(t228, t223), -t228,
-                t233 * t236, ::overact::math::signed(t236, t233), t236, t288, t288,
-                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t308, t318 - 0.28 * (t288 + t308),
-                g1_wz_leg3 * t322 + minus_g2_wz_leg3 * t324, 0.0784 * t288, t336 * t340,
-                ::overact::math::signed(t340, t336), -t340, t345 * t348,
-                ::overact::math::signed(t348, t345), t348, t393, t393,
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2),
+                g1_wz_leg2,
+                -minus_zz_2_leg2_on_wz,
+                r_p_per_l_ab_a3_x_leg1
+                    + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz),
+                g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 + minus_g2_wz_leg2 * a2_x_leg2,
+                -(L_AB_SQUARED * minus_zz_1_leg2_on_wz),
+                -(qd_2_leg2 * minus_gq2_wz_leg2),
+                -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2),
+                -minus_gq2_wz_leg2,
+                qd_3_leg2 * gq3_wz_leg2,
+                ::overact::math::signed(gq3_wz_leg2, qd_3_leg2),
+                gq3_wz_leg2,
+                zz_1_leg3_on_wz,
+                zz_1_leg3_on_wz,
+                g1_wz_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
+                g1_wz_leg3,
+                zz_2_leg3_on_wz,
+                r_p_per_l_ab_a3_x_leg3 - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz),
+                g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_wz_leg3 * a2_x_leg3,
+                L_AB_SQUARED * zz_1_leg3_on_wz,
+                minus_qd_2_leg3 * minus_gq2_wz_leg3,
+                ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3),
+                -minus_gq2_wz_leg3,
+                qd_3_leg3 * gq3_wz_leg3,
+                ::overact::math::signed(gq3_wz_leg3, qd_3_leg3),
+                gq3_wz_leg3,
+                zz_1_leg4_on_wz,
+                zz_1_leg4_on_wz,
                 minus_g1_wz_leg4 * minus_rate_1_leg4,
-                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
-                t413, t318 - 0.28 * (t393 + t413), -(minus_g1_wz_leg4 * t423 + g2_wz_leg4 * t425),
-                0.0784 * t393, t437 * t442, ::overact::math::signed(t442, t437), t442, t447 * t450,
-                ::overact::math::signed(t450, t447), t450, acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0], -t99, 0.0,
+                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4),
+                -minus_g1_wz_leg4,
+                zz_2_leg4_on_wz,
+                r_p_per_l_ab_a3_x_leg3 - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz),
+                -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 + g2_wz_leg4 * a2_x_leg4),
+                L_AB_SQUARED * zz_1_leg4_on_wz,
+                qd_2_leg4 * gq2_wz_leg4,
+                ::overact::math::signed(gq2_wz_leg4, qd_2_leg4),
+                gq2_wz_leg4,
+                qd_3_leg4 * gq3_wz_leg4,
+                ::overact::math::signed(gq3_wz_leg4, qd_3_leg4),
+                gq3_wz_leg4,
+                acceleration[2],
+                a_y_platform,
+                -a_x_platform,
+                0.0,
             ],
         ])
     }
@@ -1735,6 +2134,19 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// r_p² / l_ab
+        const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+        // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -1745,215 +2157,279 @@ impl DualV {
         ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+        // --- leg1
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t10 = 3.5714285714285716 / s2_leg1;
-        let g1_vx_leg1 = c12_leg1 * t10;
-        let t14 = 0.11 * s_phi;
-        let t15 = t14 * twist[2];
-        let t17 = 0.11 * c_phi;
-        let t19 = twist[2] * t15 - t17 * acceleration[2];
-        let t20 = acceleration[0] + t19;
-        let t22 = t17 * twist[2];
-        let t25 = twist[2] * t22 + t14 * acceleration[2];
-        let t26 = acceleration[1] - t25;
-        let minus_g2_vx_leg1 = c1_leg1 * t10;
-        let t30 = twist[0] - t22;
-        let minus_g2_vy_leg1 = s1_leg1 * t10;
-        let t33 = twist[1] - t15;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t30 + minus_g2_vy_leg1 * t33;
-        let t37 = 0.28 * (minus_rate_2_leg1 * minus_rate_2_leg1);
-        let t38 = c12_leg1 * t20 + s12_leg1 * t26 + t37;
-        let g1_vy_leg1 = s12_leg1 * t10;
-        let rate_1_leg1 = g1_vx_leg1 * t30 + g1_vy_leg1 * t33;
-        let t44 = 0.28 * (rate_1_leg1 * rate_1_leg1);
-        let rate_dot_1_leg1 = t10 * (t38 + c2_leg1 * t44);
-        let t48 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t49 = g1_vy_leg1 * rate_dot_1_leg1;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t14 + g1_vx_leg1 * t17;
-        let t53 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let t63 = c1_leg1 * t20 + s1_leg1 * t26 + t44;
-        let minus_rate_dot_2_leg1 = t10 * (t63 + t37 * c2_leg1);
-        let t67 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t68 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t14 + minus_g2_vx_leg1 * t17;
-        let t72 = g2_wz_leg1 * minus_rate_dot_2_leg1;
-        let t73 = 3.5714285714285716 * t20;
-        let t77 = 3.5714285714285716 * t26;
-        let t83 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t84 = 9.090909090909092 * t83;
-        let t86 = 0.04321428571428571 * (acceleration[2] - t84);
-        let t102 = rate_1_leg1 + minus_rate_2_leg1;
-        let t103 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t105 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t107 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t112 = minus_rate_2_leg1 + twist[2];
-        let t115 = 1.0 - g2_wz_leg1;
+        let k1_leg1 = INV_L_AB / s2_leg1;
+        let g1_vx_leg1 = c12_leg1 * k1_leg1;
+        let p_x_leg3 = R_P * s_phi;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let p_y_leg1 = R_P * c_phi;
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_rate_2_squared_leg1 = L_AB * rate_2_squared_leg1;
+        let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1 + s12_leg1 * a_end_y_leg1
+            + l_ab_rate_2_squared_leg1;
+        let g1_vy_leg1 = s12_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
+        let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
+        let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+        let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+            + l_ab_rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
+        let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
+        let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        // --- platform
+        let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
+        let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let inv_r_p_a_x_platform = INV_R_P * a_x_platform;
+        let t1_platform = R_P_SQUARED_PER_L_AB
+            * (acceleration[2] - inv_r_p_a_x_platform);
+        // --- leg1
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t130 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t130;
-        let minus_g2_vx_leg2 = c1_leg2 * t130;
-        let minus_g2_vy_leg2 = s1_leg2 * t130;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t30 + minus_g2_vy_leg2 * t33;
-        let t141 = 0.28 * (minus_rate_2_leg2 * minus_rate_2_leg2);
-        let t142 = c12_leg2 * t20 + s12_leg2 * t26 + t141;
-        let g1_vy_leg2 = s12_leg2 * t130;
-        let rate_1_leg2 = g1_vx_leg2 * t30 + g1_vy_leg2 * t33;
-        let t148 = 0.28 * (rate_1_leg2 * rate_1_leg2);
-        let rate_dot_1_leg2 = t130 * (t142 + c2_leg2 * t148);
-        let t152 = g1_vx_leg2 * rate_dot_1_leg2;
-        let t153 = g1_vy_leg2 * rate_dot_1_leg2;
-        let minus_g1_wz_leg2 = t14 * g1_vy_leg2 + t17 * g1_vx_leg2;
-        let t157 = minus_g1_wz_leg2 * rate_dot_1_leg2;
-        let t167 = c1_leg2 * t20 + s1_leg2 * t26 + t148;
-        let minus_rate_dot_2_leg2 = t130 * (t167 + t141 * c2_leg2);
-        let t171 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t172 = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = t14 * minus_g2_vy_leg2 + t17 * minus_g2_vx_leg2;
-        let t176 = g2_wz_leg2 * minus_rate_dot_2_leg2;
-        let t198 = rate_1_leg2 + minus_rate_2_leg2;
-        let t199 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t201 = g1_vy_leg2 + minus_g2_vy_leg2;
-        let t203 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t208 = minus_rate_2_leg2 + twist[2];
-        let t211 = 1.0 - g2_wz_leg2;
+        let k1_leg2 = INV_L_AB / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * k1_leg2;
+        let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+        let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+            + minus_g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let l_ab_rate_2_squared_leg2 = L_AB * rate_2_squared_leg2;
+        let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1 + s12_leg2 * a_end_y_leg1
+            + l_ab_rate_2_squared_leg2;
+        let g1_vy_leg2 = s12_leg2 * k1_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
+        let rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
+        let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
+        let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
+        let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+        let minus_zz_1_leg2_on_wz = minus_g1_wz_leg2 * rate_dot_1_leg2;
+        let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+            + l_ab_rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k1_leg2
+            * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
+        let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
+        let minus_zz_2_leg2_on_wz = g2_wz_leg2 * minus_rate_dot_2_leg2;
+        let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
+        let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+        let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
+        // --- leg3
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t226 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t226;
-        let t228 = acceleration[0] - t19;
-        let t230 = acceleration[1] + t25;
-        let minus_g2_vx_leg3 = c1_leg3 * t226;
-        let t234 = twist[0] + t22;
-        let minus_g2_vy_leg3 = s1_leg3 * t226;
-        let t237 = twist[1] + t15;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t234 + minus_g2_vy_leg3 * t237;
-        let t240 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t242 = c12_leg3 * t228 + s12_leg3 * t230 + 0.28 * t240;
-        let g1_vy_leg3 = s12_leg3 * t226;
-        let rate_1_leg3 = g1_vx_leg3 * t234 + g1_vy_leg3 * t237;
-        let t247 = rate_1_leg3 * rate_1_leg3;
-        let t248 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t226 * (t242 + t247 * t248);
-        let t252 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t253 = g1_vy_leg3 * rate_dot_1_leg3;
-        let g1_wz_leg3 = t14 * g1_vy_leg3 + t17 * g1_vx_leg3;
-        let t257 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t268 = c1_leg3 * t228 + s1_leg3 * t230 + 0.28 * t247;
-        let minus_rate_dot_2_leg3 = t226 * (t268 + t240 * t248);
-        let t272 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t273 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_g2_wz_leg3 = t14 * minus_g2_vy_leg3 + t17 * minus_g2_vx_leg3;
-        let t277 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t278 = 3.5714285714285716 * t228;
-        let t282 = 3.5714285714285716 * t230;
-        let t287 = 0.04321428571428571 * (acceleration[2] + t84);
-        let t303 = rate_1_leg3 + minus_rate_2_leg3;
-        let t304 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t306 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t308 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t313 = minus_rate_2_leg3 + twist[2];
-        let t316 = minus_g2_wz_leg3 + 1.0;
+        let k1_leg3 = INV_L_AB / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * k1_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3 + s12_leg3 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg3;
+        let g1_vy_leg3 = s12_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = L_AB * c2_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+        let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+        let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+            + L_AB * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+        let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+        let t2_platform = R_P_SQUARED_PER_L_AB
+            * (acceleration[2] + inv_r_p_a_x_platform);
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        // --- leg4
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t331 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t331;
-        let minus_g2_vx_leg4 = c1_leg4 * t331;
-        let minus_g2_vy_leg4 = s1_leg4 * t331;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t234 + minus_g2_vy_leg4 * t237;
-        let t342 = 0.28 * (minus_rate_2_leg4 * minus_rate_2_leg4);
-        let t343 = c12_leg4 * t228 + s12_leg4 * t230 + t342;
-        let g1_vy_leg4 = s12_leg4 * t331;
-        let rate_1_leg4 = g1_vx_leg4 * t234 + g1_vy_leg4 * t237;
-        let t349 = 0.28 * (rate_1_leg4 * rate_1_leg4);
-        let rate_dot_1_leg4 = t331 * (t343 + c2_leg4 * t349);
-        let t353 = g1_vx_leg4 * rate_dot_1_leg4;
-        let t354 = g1_vy_leg4 * rate_dot_1_leg4;
-        let g1_wz_leg4 = t14 * g1_vy_leg4 + t17 * g1_vx_leg4;
-        let t358 = g1_wz_leg4 * rate_dot_1_leg4;
-        let t368 = c1_leg4 * t228 + s1_leg4 * t230 + t349;
-        let minus_rate_dot_2_leg4 = t331 * (t368 + t342 * c2_leg4);
-        let t372 = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let t373 = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
-        let minus_g2_wz_leg4 = t14 * minus_g2_vy_leg4 + t17 * minus_g2_vx_leg4;
-        let t377 = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
-        let t399 = rate_1_leg4 + minus_rate_2_leg4;
-        let t400 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t402 = g1_vy_leg4 + minus_g2_vy_leg4;
-        let t404 = g1_wz_leg4 + minus_g2_wz_leg4;
-        let t409 = minus_rate_2_leg4 + twist[2];
-        let t412 = minus_g2_wz_leg4 + 1.0;
-        let t417 = 9.090909090909092 * t25;
-        let t418 = 9.090909090909092 * t19;
+        let k1_leg4 = INV_L_AB / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * k1_leg4;
+        let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
+        let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
+            + minus_g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let l_ab_rate_2_squared_leg4 = L_AB * rate_2_squared_leg4;
+        let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3 + s12_leg4 * a_end_y_leg3
+            + l_ab_rate_2_squared_leg4;
+        let g1_vy_leg4 = s12_leg4 * k1_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
+        let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
+        let rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
+        let zz_1_leg4_on_vx = g1_vx_leg4 * rate_dot_1_leg4;
+        let zz_1_leg4_on_vy = g1_vy_leg4 * rate_dot_1_leg4;
+        let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
+        let zz_1_leg4_on_wz = g1_wz_leg4 * rate_dot_1_leg4;
+        let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
+            + l_ab_rate_1_squared_leg4;
+        let minus_rate_dot_2_leg4 = k1_leg4
+            * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
+        let zz_2_leg4_on_vx = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let zz_2_leg4_on_vy = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
+        let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4 + p_y_leg1 * minus_g2_vx_leg4;
+        let zz_2_leg4_on_wz = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
+        let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
+        let minus_gq2_vx_leg4 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let minus_gq2_vy_leg4 = g1_vy_leg4 + minus_g2_vy_leg4;
+        let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
+        let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
+        let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
+        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         ::core::result::Result::Ok([
             [
-                t48, t48, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t67,
-                t73 - 0.28 * (t48 + t67), g1_vx_leg1 * t63 + minus_g2_vx_leg1 * t38, 0.0784 * t48,
-                t102 * t103, ::overact::math::signed(t103, t102), -t103, minus_g2_vx_leg1 * t112,
-                ::overact::math::signed(minus_g2_vx_leg1, t112), minus_g2_vx_leg1, t152, t152,
-                g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2, t171, t73 - 0.28 * (t152 + t171),
-                g1_vx_leg2 * t167 + minus_g2_vx_leg2 * t142, 0.0784 * t152, t198 * t199,
-                ::overact::math::signed(t199, t198), -t199, minus_g2_vx_leg2 * t208,
-                ::overact::math::signed(minus_g2_vx_leg2, t208), minus_g2_vx_leg2, t252, t252,
-                g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t272, t278 - 0.28 * (t252 + t272),
-                g1_vx_leg3 * t268 + minus_g2_vx_leg3 * t242, 0.0784 * t252, t303 * t304,
-                ::overact::math::signed(t304, t303), -t304, minus_g2_vx_leg3 * t313,
-                ::overact::math::signed(minus_g2_vx_leg3, t313), minus_g2_vx_leg3, t353, t353,
-                g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, t372, t278 - 0.28 * (t353 + t372),
-                g1_vx_leg4 * t368 + minus_g2_vx_leg4 * t343, 0.0784 * t353, t399 * t400,
-                ::overact::math::signed(t400, t399), -t400, minus_g2_vx_leg4 * t409,
-                ::overact::math::signed(minus_g2_vx_leg4, t409), minus_g2_vx_leg4, 0.0, -t417, t418,
-                acceleration[0],
+                zz_1_leg1_on_vx, zz_1_leg1_on_vx, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, zz_2_leg1_on_vx,
+                inv_l_ab_a_end_x_leg1 - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
+                g1_vx_leg1 * a_on_f2_leg1 + minus_g2_vx_leg1 * minus_a_on_f1_leg1,
+                L_AB_SQUARED * zz_1_leg1_on_vx, minus_qd_2_leg1 * minus_gq2_vx_leg1,
+                ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1), -minus_gq2_vx_leg1,
+                minus_g2_vx_leg1 * qd_3_leg1, ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1),
+                minus_g2_vx_leg1, zz_1_leg2_on_vx, zz_1_leg2_on_vx, g1_vx_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, zz_2_leg2_on_vx,
+                inv_l_ab_a_end_x_leg1 - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx),
+                g1_vx_leg2 * a_on_f2_leg2 + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
+                L_AB_SQUARED * zz_1_leg2_on_vx, minus_qd_2_leg2 * minus_gq2_vx_leg2,
+                ::overact::math::signed(minus_gq2_vx_leg2, minus_qd_2_leg2), -minus_gq2_vx_leg2,
+                minus_g2_vx_leg2 * qd_3_leg2, ::overact::math::signed(minus_g2_vx_leg2, qd_3_leg2),
+                minus_g2_vx_leg2, zz_1_leg3_on_vx, zz_1_leg3_on_vx, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, zz_2_leg3_on_vx,
+                inv_l_ab_a_end_x_leg3 - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
+                g1_vx_leg3 * a_on_f2_leg3 + minus_g2_vx_leg3 * minus_a_on_f1_leg3,
+                L_AB_SQUARED * zz_1_leg3_on_vx, minus_qd_2_leg3 * minus_gq2_vx_leg3,
+                ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3), -minus_gq2_vx_leg3,
+                minus_g2_vx_leg3 * qd_3_leg3, ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3),
+                minus_g2_vx_leg3, zz_1_leg4_on_vx, zz_1_leg4_on_vx, g1_vx_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg4, zz_2_leg4_on_vx,
+                inv_l_ab_a_end_x_leg3 - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx),
+                g1_vx_leg4 * a_on_f2_leg4 + minus_g2_vx_leg4 * minus_a_on_f1_leg4,
+                L_AB_SQUARED * zz_1_leg4_on_vx, minus_qd_2_leg4 * minus_gq2_vx_leg4,
+                ::overact::math::signed(minus_gq2_vx_leg4, minus_qd_2_leg4), -minus_gq2_vx_leg4,
+                minus_g2_vx_leg4 * qd_3_leg4, ::overact::math::signed(minus_g2_vx_leg4, qd_3_leg4),
+                minus_g2_vx_leg4, 0.0, -minus_mx_platform_on_vx, my_platform_on_vx, acceleration[0],
             ],
             [
-                t49, t49, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t68,
-                t77 - 0.28 * (t49 + t68), g1_vy_leg1 * t63 + minus_g2_vy_leg1 * t38, 0.0784 * t49,
-                t102 * t105, ::overact::math::signed(t105, t102), -t105, minus_g2_vy_leg1 * t112,
-                ::overact::math::signed(minus_g2_vy_leg1, t112), minus_g2_vy_leg1, t153, t153,
-                g1_vy_leg2 * rate_1_leg2, ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
-                g1_vy_leg2, t172, t77 - 0.28 * (t153 + t172),
-                g1_vy_leg2 * t167 + minus_g2_vy_leg2 * t142, 0.0784 * t153, t198 * t201,
-                ::overact::math::signed(t201, t198), -t201, minus_g2_vy_leg2 * t208,
-                ::overact::math::signed(minus_g2_vy_leg2, t208), minus_g2_vy_leg2, t253, t253,
-                g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t273, t282 - 0.28 * (t253 + t273),
-                g1_vy_leg3 * t268 + minus_g2_vy_leg3 * t242, 0.0784 * t253, t303 * t306,
-                ::overact::math::signed(t306, t303), -t306, minus_g2_vy_leg3 * t313,
-                ::overact::math::signed(minus_g2_vy_leg3, t313), minus_g2_vy_leg3, t354, t354,
-                g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg4, rate_1_leg4),
-                g1_vy_leg4, t373, t282 - 0.28 * (t354 + t373),
-                g1_vy_leg4 * t368 + minus_g2_vy_leg4 * t343, 0.0784 * t354, t399 * t402,
-                ::overact::math::signed(t402, t399), -t402, minus_g2_vy_leg4 * t409,
-                ::overact::math::signed(minus_g2_vy_leg4, t409), minus_g2_vy_leg4, 0.0, -t418,
-                -t417, acceleration[1],
+                zz_1_leg1_on_vy, zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
+                inv_l_ab_a_end_y_leg1 - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy),
+                g1_vy_leg1 * a_on_f2_leg1 + minus_g2_vy_leg1 * minus_a_on_f1_leg1,
+                L_AB_SQUARED * zz_1_leg1_on_vy, minus_qd_2_leg1 * minus_gq2_vy_leg1,
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1), -minus_gq2_vy_leg1,
+                minus_g2_vy_leg1 * qd_3_leg1, ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1),
+                minus_g2_vy_leg1, zz_1_leg2_on_vy, zz_1_leg2_on_vy, g1_vy_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vy_leg2, rate_1_leg2), g1_vy_leg2, zz_2_leg2_on_vy,
+                inv_l_ab_a_end_y_leg1 - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
+                g1_vy_leg2 * a_on_f2_leg2 + minus_g2_vy_leg2 * minus_a_on_f1_leg2,
+                L_AB_SQUARED * zz_1_leg2_on_vy, minus_qd_2_leg2 * minus_gq2_vy_leg2,
+                ::overact::math::signed(minus_gq2_vy_leg2, minus_qd_2_leg2), -minus_gq2_vy_leg2,
+                minus_g2_vy_leg2 * qd_3_leg2, ::overact::math::signed(minus_g2_vy_leg2, qd_3_leg2),
+                minus_g2_vy_leg2, zz_1_leg3_on_vy, zz_1_leg3_on_vy, g1_vy_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vy_leg3, rate_1_leg3), g1_vy_leg3, zz_2_leg3_on_vy,
+                inv_l_ab_a_end_y_leg3 - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy),
+                g1_vy_leg3 * a_on_f2_leg3 + minus_g2_vy_leg3 * minus_a_on_f1_leg3,
+                L_AB_SQUARED * zz_1_leg3_on_vy, minus_qd_2_leg3 * minus_gq2_vy_leg3,
+                ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3), -minus_gq2_vy_leg3,
+                minus_g2_vy_leg3 * qd_3_leg3, ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3),
+                minus_g2_vy_leg3, zz_1_leg4_on_vy, zz_1_leg4_on_vy, g1_vy_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, zz_2_leg4_on_vy,
+                inv_l_ab_a_end_y_leg3 - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy),
+                g1_vy_leg4 * a_on_f2_leg4 + minus_g2_vy_leg4 * minus_a_on_f1_leg4,
+                L_AB_SQUARED * zz_1_leg4_on_vy, minus_qd_2_leg4 * minus_gq2_vy_leg4,
+                ::overact::math::signed(minus_gq2_vy_leg4, minus_qd_2_leg4), -minus_gq2_vy_leg4,
+                minus_g2_vy_leg4 * qd_3_leg4, ::overact::math::signed(minus_g2_vy_leg4, qd_3_leg4),
+                minus_g2_vy_leg4, 0.0, -my_platform_on_vx, -minus_mx_platform_on_vx,
+                acceleration[1],
             ],
             [
-                -t53, -t53, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t72,
-                t86 + 0.28 * (t53 + t72), -(minus_g1_wz_leg1 * t63 + g2_wz_leg1 * t38),
-                -(0.0784 * t53), -(t102 * t107), -::overact::math::signed(t107, t102), t107,
-                t112 * t115, ::overact::math::signed(t115, t112), t115, -t157, -t157,
+                -minus_zz_1_leg1_on_wz, -minus_zz_1_leg1_on_wz, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
+                -minus_zz_2_leg1_on_wz,
+                t1_platform + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz),
+                -(minus_g1_wz_leg1 * a_on_f2_leg1 + g2_wz_leg1 * minus_a_on_f1_leg1),
+                -(L_AB_SQUARED * minus_zz_1_leg1_on_wz), -(minus_qd_2_leg1 * gq2_wz_leg1),
+                -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1), gq2_wz_leg1,
+                qd_3_leg1 * gq3_wz_leg1, ::overact::math::signed(gq3_wz_leg1, qd_3_leg1),
+                gq3_wz_leg1, -minus_zz_1_leg2_on_wz, -minus_zz_1_leg2_on_wz,
                 -(minus_g1_wz_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2, -t176,
-                t86 + 0.28 * (t157 + t176), -(minus_g1_wz_leg2 * t167 + g2_wz_leg2 * t142),
-                -(0.0784 * t157), -(t198 * t203), -::overact::math::signed(t203, t198), t203,
-                t208 * t211, ::overact::math::signed(t211, t208), t211, t257, t257,
-                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t277, t287 - 0.28 * (t257 + t277),
-                g1_wz_leg3 * t268 + minus_g2_wz_leg3 * t242, 0.0784 * t257, t303 * t308,
-                ::overact::math::signed(t308, t303), -t308, t313 * t316,
-                ::overact::math::signed(t316, t313), t316, t358, t358, g1_wz_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t377,
-                t287 - 0.28 * (t358 + t377), g1_wz_leg4 * t368 + minus_g2_wz_leg4 * t343,
-                0.0784 * t358, t399 * t404, ::overact::math::signed(t404, t399), -t404, t409 * t412,
-                ::overact::math::signed(t412, t409), t412, acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0], -t83, 0.0,
+                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2,
+                -minus_zz_2_leg2_on_wz,
+                t1_platform + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz),
+                -(minus_g1_wz_leg2 * a_on_f2_leg2 + g2_wz_leg2 * minus_a_on_f1_leg2),
+                -(L_AB_SQUARED * minus_zz_1_leg2_on_wz), -(minus_qd_2_leg2 * gq2_wz_leg2),
+                -::overact::math::signed(gq2_wz_leg2, minus_qd_2_leg2), gq2_wz_leg2,
+                qd_3_leg2 * gq3_wz_leg2, ::overact::math::signed(gq3_wz_leg2, qd_3_leg2),
+                gq3_wz_leg2, zz_1_leg3_on_wz, zz_1_leg3_on_wz, g1_wz_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3, zz_2_leg3_on_wz,
+                t2_platform - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz),
+                g1_wz_leg3 * a_on_f2_leg3 + minus_g2_wz_leg3 * minus_a_on_f1_leg3,
+                L_AB_SQUARED * zz_1_leg3_on_wz, minus_qd_2_leg3 * minus_gq2_wz_leg3,
+                ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3), -minus_gq2_wz_leg3,
+                qd_3_leg3 * gq3_wz_leg3, ::overact::math::signed(gq3_wz_leg3, qd_3_leg3),
+                gq3_wz_leg3, zz_1_leg4_on_wz, zz_1_leg4_on_wz, g1_wz_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, zz_2_leg4_on_wz,
+                t2_platform - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz),
+                g1_wz_leg4 * a_on_f2_leg4 + minus_g2_wz_leg4 * minus_a_on_f1_leg4,
+                L_AB_SQUARED * zz_1_leg4_on_wz, minus_qd_2_leg4 * minus_gq2_wz_leg4,
+                ::overact::math::signed(minus_gq2_wz_leg4, minus_qd_2_leg4), -minus_gq2_wz_leg4,
+                qd_3_leg4 * gq3_wz_leg4, ::overact::math::signed(gq3_wz_leg4, qd_3_leg4),
+                gq3_wz_leg4, acceleration[2], a_y_platform, -a_x_platform, 0.0,
             ],
         ])
     }
@@ -1979,353 +2455,477 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// r_p / l_ab
+        const R_P_PER_L_AB: ::core::primitive::f64 = 0.39285714285714285;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] + t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t5 = 0.5 * t4;
-        let t6 = t5 - t2;
-        let t7 = t6 + t6;
-        let t8 = 0.11 * c_phi;
-        let t10 = pose[1] - t8 + 0.10970563941232059;
-        let t11 = 0.5 * t10;
-        let t12 = pose[1] - t11;
-        let t13 = t12 + t12;
-        let t15 = t13 * t13;
-        let t16 = t7 * t7 + t15;
-        let t18 = 0.0784 / t16 - 0.25;
-        ::overact::guard::reach(t18, "leg1")?;
-        let t19 = ::overact::math::sqrt(t18);
-        let t21 = t6 + t13 * t19;
-        let t22 = t7 - t21;
-        let t23 = t16 * t19;
-        ::overact::guard::leg(t23, 0.07839913810297301, "leg1")?;
-        let t24 = 1.0 / t23;
-        let g1_vx_leg1 = t22 * t24;
-        let t27 = t12 - t7 * t19;
-        let t28 = t13 - t27;
-        let t29 = t3 + 0.3950502153918333;
-        let t30 = 0.5 * t29;
-        let t31 = t30 - t2;
-        let t32 = t31 + t31;
-        let t34 = t32 * t32 + t15;
-        let t36 = 0.0784 / t34 - 0.25;
-        ::overact::guard::reach(t36, "leg2")?;
-        let t37 = ::overact::math::sqrt(t36);
-        let t39 = t12 + t32 * t37;
-        let t40 = t13 - t39;
-        let t41 = t34 * t37;
-        ::overact::guard::leg(t41, 0.07839913810297301, "leg2")?;
-        let t42 = 1.0 / t41;
-        let minus_g1_vy_leg2 = t40 * t42;
-        let t46 = t31 - t13 * t37;
-        let t47 = t32 - t46;
-        let minus_g1_vx_leg2 = t47 * t42;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t8 * minus_g1_vx_leg2;
-        let g1_vy_leg1 = t28 * t24;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t8 * g1_vx_leg1;
-        let t59 = t10 * t10;
-        let t60 = t29 * t29 + t59;
-        let t62 = 0.0784 / t60 - 0.25;
-        ::overact::guard::reach(t62, "leg3")?;
-        let t63 = ::overact::math::sqrt(t62);
-        let t65 = t11 - t29 * t63;
-        let t66 = t10 - t65;
-        let t67 = t60 * t63;
-        ::overact::guard::leg(t67, 0.07839913810297301, "leg3")?;
-        let t68 = 1.0 / t67;
-        let g1_vy_leg3 = t66 * t68;
-        let t72 = t30 + t10 * t63;
-        let t73 = t29 - t72;
-        let g1_vx_leg3 = t73 * t68;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t8 * g1_vx_leg3;
-        let t80 = t4 * t4 + t59;
-        let t82 = 0.0784 / t80 - 0.25;
-        ::overact::guard::reach(t82, "leg4")?;
-        let t83 = ::overact::math::sqrt(t82);
-        let t85 = t11 + t4 * t83;
-        let t86 = t10 - t85;
-        let t87 = t80 * t83;
-        ::overact::guard::leg(t87, 0.07839913810297301, "leg4")?;
-        let t88 = 1.0 / t87;
-        let minus_g1_vy_leg4 = t86 * t88;
-        let t92 = t5 - t10 * t83;
-        let t93 = t4 - t92;
-        let minus_g1_vx_leg4 = t93 * t88;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t8 * minus_g1_vx_leg4;
-        let t105 = g1_vx_leg1 * actuator_velocities[0]
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let half_d_x_leg4 = 0.5 * d_x_leg4;
+        let half_d_x_leg4_minus_p_x_leg3 = half_d_x_leg4 - p_x_leg3;
+        let d_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + half_d_x_leg4_minus_p_x_leg3;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
+        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let half_d_x_leg3 = 0.5 * d_x_leg3;
+        // --- leg2
+        let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
+        let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        // --- leg3
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t112 = g1_vx_leg3 * g1_wz_leg3
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t119 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t119, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t119, 25.429161076750646, "actuators")?;
-        let t120 = t112 / t119;
-        let t136 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t138 = g1_vy_leg3 * g1_wz_leg3
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let l_3_1 = s_1_3 / s_1_1;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t136 * t120;
-        let t146 = t136 / t119;
-        let t148 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t136 * t146;
-        ::overact::guard::platform(t148, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t148, 25.592368899353342, "actuators")?;
-        let t149 = t138 / t148;
-        let t158 = g1_vy_leg1 * actuator_velocities[0]
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let l_2_1 = s_1_2 / s_1_1;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let l_3_2 = schur_2_3 / pivot_2;
+        let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t105 * t146;
-        let t160 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+        let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t105 * t120 - t149 * t158;
-        let t171 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t112 * t120
-            - t138 * t149;
-        ::overact::guard::platform(t171, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t171, 0.3076928490286828, "actuators")?;
-        let rate_3_leg1 = t160 / t171;
-        let t173 = t8 * rate_3_leg1;
-        let t174 = rate_3_leg1 * t173;
-        let t176 = t2 * rate_3_leg1;
-        let t177 = rate_3_leg1 * t176;
-        let minus_g2_vx_leg1 = t21 * t24;
-        let t184 = t158 / t148 - t149 * rate_3_leg1;
-        let t188 = t105 / t119 - t146 * t184 - t120 * rate_3_leg1;
-        let t189 = t188 - t173;
-        let minus_g2_vy_leg1 = t27 * t24;
-        let t192 = t184 - t176;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t189 + minus_g2_vy_leg1 * t192;
-        let t195 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t196 = 0.0784 * t195;
-        let rate_1_leg1 = g1_vx_leg1 * t189 + g1_vy_leg1 * t192;
-        let t201 = rate_1_leg1 * rate_1_leg1;
-        let t203 = 0.5 * (t16 - 0.1568);
-        let t204 = t201 * t203;
-        let minus_rate_dot_1_leg1 = t24 * (t28 * t174 - t22 * t177 - t196 - t204);
-        let t207 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let g2_vx_leg2 = t46 * t42;
-        let g2_vy_leg2 = t39 * t42;
-        let rate_2_leg2 = g2_vx_leg2 * t189 + g2_vy_leg2 * t192;
-        let t217 = rate_2_leg2 * rate_2_leg2;
-        let t218 = 0.0784 * t217;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t189 + minus_g1_vy_leg2 * t192;
-        let t223 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t225 = 0.5 * (t34 - 0.1568);
-        let t226 = t223 * t225;
-        let rate_dot_1_leg2 = t42 * (t40 * t174 - t47 * t177 - t218 - t226);
-        let t229 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = t72 * t68;
-        let t236 = t188 + t173;
-        let minus_g2_vy_leg3 = t65 * t68;
-        let t239 = t184 + t176;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t236 + minus_g2_vy_leg3 * t239;
-        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t243 = 0.0784 * t242;
-        let rate_1_leg3 = g1_vx_leg3 * t236 + g1_vy_leg3 * t239;
-        let t248 = rate_1_leg3 * rate_1_leg3;
-        let t249 = t60 - 0.1568;
-        let t250 = 0.5 * t249;
-        let t251 = t248 * t250;
-        let minus_rate_dot_1_leg3 = t68 * (t73 * t177 - t66 * t174 - t243 - t251);
-        let t254 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t92 * t88;
-        let g2_vy_leg4 = t85 * t88;
-        let rate_2_leg4 = g2_vx_leg4 * t236 + g2_vy_leg4 * t239;
-        let t265 = rate_2_leg4 * rate_2_leg4;
-        let t266 = 0.0784 * t265;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t236 + minus_g1_vy_leg4 * t239;
-        let t271 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t273 = 0.5 * (t80 - 0.1568);
-        let t274 = t271 * t273;
-        let rate_dot_1_leg4 = t88 * (t93 * t177 - t86 * t174 - t266 - t274);
-        let t277 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t279 = g1_vx_leg1 * t207 - minus_g1_vx_leg2 * t229 + g1_vx_leg3 * t254
-            - minus_g1_vx_leg4 * t277;
-        let t289 = g1_vy_leg1 * t207 - minus_g1_vy_leg2 * t229 + g1_vy_leg3 * t254
-            - minus_g1_vy_leg4 * t277 - t146 * t279;
-        let t301 = g1_wz_leg2 * t229 - minus_g1_wz_leg1 * t207 + g1_wz_leg3 * t254
-            - minus_g1_wz_leg4 * t277 - t120 * t279 - t149 * t289;
-        let rate_dot_3_leg1 = t301 / t171;
-        let t304 = t289 / t148 - t149 * rate_dot_3_leg1;
-        let t308 = t279 / t119 - t146 * t304 - t120 * rate_dot_3_leg1;
-        let t310 = t177 - t8 * rate_dot_3_leg1;
-        let t311 = t308 + t310;
-        let t314 = t174 + t2 * rate_dot_3_leg1;
-        let t315 = t304 - t314;
-        let t318 = t22 * t311 + t28 * t315 + t196;
-        let rate_dot_1_leg1 = t24 * (t318 + t204);
-        let t321 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t322 = g1_vy_leg1 * rate_dot_1_leg1;
-        let t323 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let t334 = t21 * t311 + t27 * t315 + 0.0784 * t201;
-        let minus_rate_dot_2_leg1 = t24 * (t334 + t195 * t203);
-        let t338 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t339 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t8 * minus_g2_vx_leg1;
-        let t343 = g2_wz_leg1 * minus_rate_dot_2_leg1;
-        let t344 = 3.5714285714285716 * t311;
-        let t348 = 3.5714285714285716 * t315;
-        let c12_leg3 = 3.5714285714285716 * t73;
-        let s12_leg3 = 3.5714285714285716 * t66;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let wz = t3 / pivot_3;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * wz;
+        let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * wz;
+        let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let vy = t2 / pivot_2 - l_3_2 * wz;
+        let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
+        let v_end_x_leg1 = vx - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = vy - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_leg1;
+        // --- leg2
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED * rate_2_squared_leg2;
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg3
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = vx + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = vy + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let t3_leg3 = rate_1_squared_leg3 * t2_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t3_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            + minus_bias_rate_dot_1_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED * rate_2_squared_leg4;
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
+        let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
+            - bias_rate_dot_1_leg4;
+        let t4 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
+        let t5 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t4;
+        let t6 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
+            - l_3_2 * t5;
+        let dwz = t6 / pivot_3;
+        let dvy = t5 / pivot_2 - l_3_2 * dwz;
+        let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
+        // --- leg1
+        let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
+        let a_end_x_leg1 = dvx + a_arm_x_leg1;
+        let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
+        let a_end_y_leg1 = dvy - a_arm_y_leg3;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg1;
+        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+        let zz_1_leg1_on_vx = g1_vx_leg1 * rate_dot_1_leg1;
+        let zz_1_leg1_on_vy = g1_vy_leg1 * rate_dot_1_leg1;
+        let minus_zz_1_leg1_on_wz = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_zz_2_leg1_on_wz = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        let inv_l_ab_a_end_x_leg1 = INV_L_AB * a_end_x_leg1;
+        let inv_l_ab_a_end_y_leg1 = INV_L_AB * a_end_y_leg1;
+        // --- leg3
+        let c12_leg3 = INV_L_AB * l2_x_leg3;
+        let s12_leg3 = INV_L_AB * l2_y_leg3;
         let c3_leg3 = c_phi * c12_leg3 + s_phi * s12_leg3;
-        let t357 = t308 - t310;
-        let t359 = t304 + t314;
-        let t361 = t73 * t357 + t66 * t359;
+        let a_end_x_leg3 = dvx - a_arm_x_leg1;
+        let a_end_y_leg3 = dvy + a_arm_y_leg3;
+        let t4_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3;
         let s3_leg3 = s_phi * c12_leg3 - c_phi * s12_leg3;
-        let t369 = t361 + t243;
-        let rate_dot_1_leg3 = t68 * (t369 + t251);
-        let t379 = t72 * t357 + t65 * t359 + 0.0784 * t248;
-        let minus_rate_dot_2_leg3 = t68 * (t379 + t242 * t250);
-        let t386 = c3_leg3 * (3.5714285714285716 * t361)
-            + s3_leg3
-                * (3.5714285714285716 * (t67 * t248)
-                    + 1.7857142857142858 * (t249 * rate_dot_1_leg3)
-                    - 0.28 * minus_rate_dot_2_leg3);
-        let t387 = 0.11 * rate_dot_3_leg1;
-        let t388 = t386 - t387;
-        let t390 = 0.39285714285714285 * (t387 - t388);
-        let t394 = 3.5714285714285716 * t334;
-        let t396 = 3.5714285714285716 * t318;
-        let t408 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t409 = rate_1_leg1 + minus_rate_2_leg1;
-        let t411 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t413 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t418 = minus_rate_2_leg1 + rate_3_leg1;
-        let t421 = 1.0 - g2_wz_leg1;
-        let t429 = t47 * t311 + t40 * t315 + t218;
-        let minus_rate_dot_1_leg2 = t42 * (t429 + t226);
-        let t432 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t433 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t434 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t445 = t46 * t311 + t39 * t315 + 0.0784 * t223;
-        let rate_dot_2_leg2 = t42 * (t445 + t217 * t225);
-        let t449 = g2_vx_leg2 * rate_dot_2_leg2;
-        let t450 = g2_vy_leg2 * rate_dot_2_leg2;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t8 * g2_vx_leg2;
-        let t454 = minus_g2_wz_leg2 * rate_dot_2_leg2;
-        let t464 = 3.5714285714285716 * t445;
-        let t466 = 3.5714285714285716 * t429;
-        let t478 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t479 = minus_rate_1_leg2 + rate_2_leg2;
-        let t481 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t483 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t488 = rate_3_leg1 - rate_2_leg2;
-        let t491 = minus_g2_wz_leg2 + 1.0;
-        let t496 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t497 = g1_vy_leg3 * rate_dot_1_leg3;
-        let t498 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t505 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t506 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t8 * minus_g2_vx_leg3;
-        let t510 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t511 = 3.5714285714285716 * t357;
-        let t515 = 3.5714285714285716 * t359;
-        let t519 = 0.39285714285714285 * t386;
-        let t523 = 3.5714285714285716 * t379;
-        let t525 = 3.5714285714285716 * t369;
-        let t537 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t538 = rate_1_leg3 + minus_rate_2_leg3;
-        let t540 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t542 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t547 = minus_rate_2_leg3 + rate_3_leg1;
-        let t550 = minus_g2_wz_leg3 + 1.0;
-        let t558 = t93 * t357 + t86 * t359 + t266;
-        let minus_rate_dot_1_leg4 = t88 * (t558 + t274);
-        let t561 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let t562 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let t563 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let t574 = t92 * t357 + t85 * t359 + 0.0784 * t271;
-        let rate_dot_2_leg4 = t88 * (t574 + t265 * t273);
-        let t578 = g2_vx_leg4 * rate_dot_2_leg4;
-        let t579 = g2_vy_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t8 * g2_vx_leg4;
-        let t583 = g2_wz_leg4 * rate_dot_2_leg4;
-        let t593 = 3.5714285714285716 * t574;
-        let t595 = 3.5714285714285716 * t558;
-        let t607 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t608 = minus_rate_1_leg4 + rate_2_leg4;
-        let t610 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t612 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t617 = rate_3_leg1 - rate_2_leg4;
-        let t620 = 1.0 - g2_wz_leg4;
-        let t625 = 9.090909090909092 * t314;
-        let t626 = 9.090909090909092 * t310;
+        let minus_a_on_f1_leg3 = t4_leg3 + l_ab_squared_rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t3_leg3);
+        let a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
+            + 1.7857142857142858 * (t1_leg3 * rate_dot_1_leg3);
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let a3_x_leg3 = c3_leg3 * (INV_L_AB * t4_leg3)
+            + s3_leg3 * (a2_y_leg3 - L_AB * minus_rate_dot_2_leg3);
+        let r_p_dwz = R_P * dwz;
+        let a_x_platform = a3_x_leg3 - r_p_dwz;
+        let a3_x_leg1 = r_p_dwz - a_x_platform;
+        let r_p_per_l_ab_a3_x_leg1 = R_P_PER_L_AB * a3_x_leg1;
+        // --- leg1
+        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + wz;
+        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        // --- leg2
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+        let zz_1_leg2_on_vx = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let minus_zz_1_leg2_on_wz = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let zz_2_leg2_on_vx = g2_vx_leg2 * rate_dot_2_leg2;
+        let zz_2_leg2_on_vy = g2_vy_leg2 * rate_dot_2_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_zz_2_leg2_on_wz = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let qd_3_leg2 = wz - rate_2_leg2;
+        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+        // --- leg3
+        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+        let zz_1_leg3_on_vy = g1_vy_leg3 * rate_dot_1_leg3;
+        let zz_1_leg3_on_wz = g1_wz_leg3 * rate_dot_1_leg3;
+        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let zz_2_leg3_on_wz = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let inv_l_ab_a_end_x_leg3 = INV_L_AB * a_end_x_leg3;
+        let inv_l_ab_a_end_y_leg3 = INV_L_AB * a_end_y_leg3;
+        let r_p_per_l_ab_a3_x_leg3 = R_P_PER_L_AB * a3_x_leg3;
+        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + wz;
+        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        // --- leg4
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+        let zz_1_leg4_on_vx = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let zz_1_leg4_on_vy = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let zz_1_leg4_on_wz = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let zz_2_leg4_on_vx = g2_vx_leg4 * rate_dot_2_leg4;
+        let zz_2_leg4_on_vy = g2_vy_leg4 * rate_dot_2_leg4;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let zz_2_leg4_on_wz = g2_wz_leg4 * rate_dot_2_leg4;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let qd_3_leg4 = wz - rate_2_leg4;
+        let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
+        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+        let a_y_platform = c_phi * dvy - s_phi * dvx;
         ::core::result::Result::Ok([
             [
-                t321, t321, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t338,
-                t344 - 0.28 * (t321 + t338), g1_vx_leg1 * t394 + minus_g2_vx_leg1 * t396,
-                0.0784 * t321, t408 * t409, ::overact::math::signed(t408, t409), -t408,
-                minus_g2_vx_leg1 * t418, ::overact::math::signed(minus_g2_vx_leg1, t418),
-                minus_g2_vx_leg1, t432, t432, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                zz_1_leg1_on_vx, zz_1_leg1_on_vx, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, zz_2_leg1_on_vx,
+                inv_l_ab_a_end_x_leg1 - L_AB * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
+                g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1,
+                L_AB_SQUARED * zz_1_leg1_on_vx, minus_gq2_vx_leg1 * minus_qd_2_leg1,
+                ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1), -minus_gq2_vx_leg1,
+                minus_g2_vx_leg1 * qd_3_leg1, ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1),
+                minus_g2_vx_leg1, zz_1_leg2_on_vx, zz_1_leg2_on_vx,
+                minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t449, t344 - 0.28 * (t432 + t449), -(minus_g1_vx_leg2 * t464 + g2_vx_leg2 * t466),
-                0.0784 * t432, t478 * t479, ::overact::math::signed(t478, t479), t478,
-                -(g2_vx_leg2 * t488), -::overact::math::signed(g2_vx_leg2, t488), -g2_vx_leg2, t496,
-                t496, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t505, t511 - 0.28 * (t496 + t505),
-                g1_vx_leg3 * t523 + minus_g2_vx_leg3 * t525, 0.0784 * t496, t537 * t538,
-                ::overact::math::signed(t537, t538), -t537, minus_g2_vx_leg3 * t547,
-                ::overact::math::signed(minus_g2_vx_leg3, t547), minus_g2_vx_leg3, t561, t561,
+                zz_2_leg2_on_vx, inv_l_ab_a_end_x_leg1 - L_AB * (zz_1_leg2_on_vx + zz_2_leg2_on_vx),
+                -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vx_leg2 * a2_x_leg2),
+                L_AB_SQUARED * zz_1_leg2_on_vx, gq2_vx_leg2 * qd_2_leg2,
+                ::overact::math::signed(gq2_vx_leg2, qd_2_leg2), gq2_vx_leg2,
+                -(g2_vx_leg2 * qd_3_leg2), -::overact::math::signed(g2_vx_leg2, qd_3_leg2),
+                -g2_vx_leg2, zz_1_leg3_on_vx, zz_1_leg3_on_vx, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, zz_2_leg3_on_vx,
+                inv_l_ab_a_end_x_leg3 - L_AB * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
+                g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vx_leg3 * a2_x_leg3,
+                L_AB_SQUARED * zz_1_leg3_on_vx, minus_gq2_vx_leg3 * minus_qd_2_leg3,
+                ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3), -minus_gq2_vx_leg3,
+                minus_g2_vx_leg3 * qd_3_leg3, ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3),
+                minus_g2_vx_leg3, zz_1_leg4_on_vx, zz_1_leg4_on_vx,
                 minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
-                t578, t511 - 0.28 * (t561 + t578), -(minus_g1_vx_leg4 * t593 + g2_vx_leg4 * t595),
-                0.0784 * t561, t607 * t608, ::overact::math::signed(t607, t608), t607,
-                -(g2_vx_leg4 * t617), -::overact::math::signed(g2_vx_leg4, t617), -g2_vx_leg4, 0.0,
-                -t625, t626, t308,
+                zz_2_leg4_on_vx, inv_l_ab_a_end_x_leg3 - L_AB * (zz_1_leg4_on_vx + zz_2_leg4_on_vx),
+                -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vx_leg4 * a2_x_leg4),
+                L_AB_SQUARED * zz_1_leg4_on_vx, gq2_vx_leg4 * qd_2_leg4,
+                ::overact::math::signed(gq2_vx_leg4, qd_2_leg4), gq2_vx_leg4,
+                -(g2_vx_leg4 * qd_3_leg4), -::overact::math::signed(g2_vx_leg4, qd_3_leg4),
+                -g2_vx_leg4, 0.0, -minus_mx_platform_on_vx, my_platform_on_vx, dvx,
             ],
             [
-                t322, t322, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t339,
-                t348 - 0.28 * (t322 + t339), g1_vy_leg1 * t394 + minus_g2_vy_leg1 * t396,
-                0.0784 * t322, t411 * t409, ::overact::math::signed(t411, t409), -t411,
-                minus_g2_vy_leg1 * t418, ::overact::math::signed(minus_g2_vy_leg1, t418),
-                minus_g2_vy_leg1, t433, t433, minus_g1_vy_leg2 * minus_rate_1_leg2,
+                zz_1_leg1_on_vy, zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
+                inv_l_ab_a_end_y_leg1 - L_AB * (zz_1_leg1_on_vy + zz_2_leg1_on_vy),
+                g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1,
+                L_AB_SQUARED * zz_1_leg1_on_vy, minus_gq2_vy_leg1 * minus_qd_2_leg1,
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1), -minus_gq2_vy_leg1,
+                minus_g2_vy_leg1 * qd_3_leg1, ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1),
+                minus_g2_vy_leg1, zz_1_leg2_on_vy, zz_1_leg2_on_vy,
+                minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                t450, t348 - 0.28 * (t433 + t450), -(minus_g1_vy_leg2 * t464 + g2_vy_leg2 * t466),
-                0.0784 * t433, t481 * t479, ::overact::math::signed(t481, t479), t481,
-                -(g2_vy_leg2 * t488), -::overact::math::signed(g2_vy_leg2, t488), -g2_vy_leg2, t497,
-                t497, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t506, t515 - 0.28 * (t497 + t506),
-                g1_vy_leg3 * t523 + minus_g2_vy_leg3 * t525, 0.0784 * t497, t540 * t538,
-                ::overact::math::signed(t540, t538), -t540, minus_g2_vy_leg3 * t547,
-                ::overact::math::signed(minus_g2_vy_leg3, t547), minus_g2_vy_leg3, t562, t562,
+                zz_2_leg2_on_vy, inv_l_ab_a_end_y_leg1 - L_AB * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
+                -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vy_leg2 * a2_x_leg2),
+                L_AB_SQUARED * zz_1_leg2_on_vy, gq2_vy_leg2 * qd_2_leg2,
+                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2), gq2_vy_leg2,
+                -(g2_vy_leg2 * qd_3_leg2), -::overact::math::signed(g2_vy_leg2, qd_3_leg2),
+                -g2_vy_leg2, zz_1_leg3_on_vy, zz_1_leg3_on_vy, g1_vy_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vy_leg3, rate_1_leg3), g1_vy_leg3, zz_2_leg3_on_vy,
+                inv_l_ab_a_end_y_leg3 - L_AB * (zz_1_leg3_on_vy + zz_2_leg3_on_vy),
+                g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vy_leg3 * a2_x_leg3,
+                L_AB_SQUARED * zz_1_leg3_on_vy, minus_gq2_vy_leg3 * minus_qd_2_leg3,
+                ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3), -minus_gq2_vy_leg3,
+                minus_g2_vy_leg3 * qd_3_leg3, ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3),
+                minus_g2_vy_leg3, zz_1_leg4_on_vy, zz_1_leg4_on_vy,
                 minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
-                t579, t515 - 0.28 * (t562 + t579), -(minus_g1_vy_leg4 * t593 + g2_vy_leg4 * t595),
-                0.0784 * t562, t610 * t608, ::overact::math::signed(t610, t608), t610,
-                -(g2_vy_leg4 * t617), -::overact::math::signed(g2_vy_leg4, t617), -g2_vy_leg4, 0.0,
-                -t626, -t625, t304,
+                zz_2_leg4_on_vy, inv_l_ab_a_end_y_leg3 - L_AB * (zz_1_leg4_on_vy + zz_2_leg4_on_vy),
+                -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vy_leg4 * a2_x_leg4),
+                L_AB_SQUARED * zz_1_leg4_on_vy, gq2_vy_leg4 * qd_2_leg4,
+                ::overact::math::signed(gq2_vy_leg4, qd_2_leg4), gq2_vy_leg4,
+                -(g2_vy_leg4 * qd_3_leg4), -::overact::math::signed(g2_vy_leg4, qd_3_leg4),
+                -g2_vy_leg4, 0.0, -my_platform_on_vx, -minus_mx_platform_on_vx, dvy,
             ],
             [
-                -t323, -t323, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t343,
-                t390 + 0.28 * (t323 + t343), -(minus_g1_wz_leg1 * t394 + g2_wz_leg1 * t396),
-                -(0.0784 * t323), -(t413 * t409), -::overact::math::signed(t413, t409), t413,
-                t421 * t418, ::overact::math::signed(t421, t418), t421, -t434, -t434,
+                -minus_zz_1_leg1_on_wz, -minus_zz_1_leg1_on_wz, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
+                -minus_zz_2_leg1_on_wz,
+                r_p_per_l_ab_a3_x_leg1
+                    + L_AB * (minus_zz_1_leg1_on_wz + minus_zz_2_leg1_on_wz),
+                -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 + g2_wz_leg1 * a2_x_leg1),
+                -(L_AB_SQUARED * minus_zz_1_leg1_on_wz),
+                -(gq2_wz_leg1 * minus_qd_2_leg1),
+                -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1),
+                gq2_wz_leg1,
+                gq3_wz_leg1 * qd_3_leg1,
+                ::overact::math::signed(gq3_wz_leg1, qd_3_leg1),
+                gq3_wz_leg1,
+                -minus_zz_1_leg2_on_wz,
+                -minus_zz_1_leg2_on_wz,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t454,
-                t390 + 0.28 * (t434 + t454), g1_wz_leg2 * t464 + minus_g2_wz_leg2 * t466,
-                -(0.0784 * t434), -(t483 * t479), -::overact::math::signed(t483, t479), -t483,
-                t491 * t488, ::overact::math::signed(t491, t488), t491, t498, t498,
-                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t510, t519 - 0.28 * (t498 + t510),
-                g1_wz_leg3 * t523 + minus_g2_wz_leg3 * t525, 0.0784 * t498, t542 * t538,
-                ::overact::math::signed(t542, t538), -t542, t550 * t547,
-                ::overact::math::signed(t550, t547), t550, t563, t563,
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2),
+                g1_wz_leg2,
+                -minus_zz_2_leg2_on_wz,
+                r_p_per_l_ab_a3_x_leg1
+                    + L_AB * (minus_zz_1_leg2_on_wz + minus_zz_2_leg2_on_wz),
+                g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 + minus_g2_wz_leg2 * a2_x_leg2,
+                -(L_AB_SQUARED * minus_zz_1_leg2_on_wz),
+                -(minus_gq2_wz_leg2 * qd_2_leg2),
+                -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2),
+                -minus_gq2_wz_leg2,
+                gq3_wz_leg2 * qd_3_leg2,
+                ::overact::math::signed(gq3_wz_leg2, qd_3_leg2),
+                gq3_wz_leg2,
+                zz_1_leg3_on_wz,
+                zz_1_leg3_on_wz,
+                g1_wz_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
+                g1_wz_leg3,
+                zz_2_leg3_on_wz,
+                r_p_per_l_ab_a3_x_leg3 - L_AB * (zz_1_leg3_on_wz + zz_2_leg3_on_wz),
+                g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_wz_leg3 * a2_x_leg3,
+                L_AB_SQUARED * zz_1_leg3_on_wz,
+                minus_gq2_wz_leg3 * minus_qd_2_leg3,
+                ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3),
+                -minus_gq2_wz_leg3,
+                gq3_wz_leg3 * qd_3_leg3,
+                ::overact::math::signed(gq3_wz_leg3, qd_3_leg3),
+                gq3_wz_leg3,
+                zz_1_leg4_on_wz,
+                zz_1_leg4_on_wz,
                 minus_g1_wz_leg4 * minus_rate_1_leg4,
-                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
-                t583, t519 - 0.28 * (t563 + t583), -(minus_g1_wz_leg4 * t593 + g2_wz_leg4 * t595),
-                0.0784 * t563, t612 * t608, ::overact::math::signed(t612, t608), t612, t620 * t617,
-                ::overact::math::signed(t620, t617), t620, rate_dot_3_leg1,
-                c_phi * t304 - s_phi * t308, -t388, 0.0,
+                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4),
+                -minus_g1_wz_leg4,
+                zz_2_leg4_on_wz,
+                r_p_per_l_ab_a3_x_leg3 - L_AB * (zz_1_leg4_on_wz + zz_2_leg4_on_wz),
+                -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 + g2_wz_leg4 * a2_x_leg4),
+                L_AB_SQUARED * zz_1_leg4_on_wz,
+                gq2_wz_leg4 * qd_2_leg4,
+                ::overact::math::signed(gq2_wz_leg4, qd_2_leg4),
+                gq2_wz_leg4,
+                gq3_wz_leg4 * qd_3_leg4,
+                ::overact::math::signed(gq3_wz_leg4, qd_3_leg4),
+                gq3_wz_leg4,
+                dwz,
+                a_y_platform,
+                -a_x_platform,
+                0.0,
             ],
         ])
     }
@@ -2348,286 +2948,410 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// 1 / r_p²
+        const INV_R_P_SQUARED: ::core::primitive::f64 = 82.64462809917356;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// r_p² / l_ab
+        const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t9 = t8 * t8;
-        let t10 = t4 * t4 + t9;
-        let t12 = 0.0784 / t10 - 0.25;
-        ::overact::guard::reach(t12, "leg1")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t14 = t10 * t13;
-        ::overact::guard::leg(t14, 0.07839913810297301, "leg1")?;
-        let t15 = 1.0 / t14;
-        let t18 = 0.5 * t4 + t8 * t13;
-        let t19 = t4 - t18;
-        let t20 = t2 * twist[2];
-        let t23 = twist[2] * t20 - t6 * acceleration[2];
-        let t24 = acceleration[0] + t23;
-        let t26 = 0.5 * t8;
-        let t28 = t26 - t4 * t13;
-        let t29 = t8 - t28;
-        let t30 = t6 * twist[2];
-        let t33 = twist[2] * t30 + t2 * acceleration[2];
-        let t34 = acceleration[1] - t33;
-        let minus_g2_vx_leg1 = t18 * t15;
-        let t38 = twist[0] - t30;
-        let minus_g2_vy_leg1 = t28 * t15;
-        let t41 = twist[1] - t20;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t38 + minus_g2_vy_leg1 * t41;
-        let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t46 = t19 * t24 + t29 * t34 + 0.0784 * t44;
-        let g1_vx_leg1 = t19 * t15;
-        let g1_vy_leg1 = t29 * t15;
-        let rate_1_leg1 = g1_vx_leg1 * t38 + g1_vy_leg1 * t41;
-        let t52 = rate_1_leg1 * rate_1_leg1;
-        let t54 = 0.5 * (t10 - 0.1568);
-        let rate_dot_1_leg1 = t15 * (t46 + t52 * t54);
-        let t59 = t3 + 0.3950502153918333;
-        let t61 = t59 * t59 + t9;
-        let t63 = 0.0784 / t61 - 0.25;
-        ::overact::guard::reach(t63, "leg2")?;
-        let t64 = ::overact::math::sqrt(t63);
-        let t66 = t26 + t59 * t64;
-        let t67 = t8 - t66;
-        let t68 = t61 * t64;
-        ::overact::guard::leg(t68, 0.07839913810297301, "leg2")?;
-        let t69 = 1.0 / t68;
-        let minus_g1_vy_leg2 = t67 * t69;
-        let t74 = 0.5 * t59 - t8 * t64;
-        let t75 = t59 - t74;
-        let minus_g1_vx_leg2 = t75 * t69;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t79 = pose[0] + t2;
-        let t80 = t79 + 0.3950502153918333;
-        let t83 = pose[1] - t6 + 0.10970563941232059;
-        let t85 = t83 * t83;
-        let t86 = t80 * t80 + t85;
-        let t88 = 0.0784 / t86 - 0.25;
-        ::overact::guard::reach(t88, "leg3")?;
-        let t89 = ::overact::math::sqrt(t88);
-        let t91 = 0.5 * t80 + t83 * t89;
-        let t92 = t80 - t91;
-        let t93 = t86 * t89;
-        ::overact::guard::leg(t93, 0.07839913810297301, "leg3")?;
-        let t94 = 1.0 / t93;
-        let g1_vx_leg3 = t92 * t94;
-        let t97 = 0.5 * t83;
-        let t99 = t97 - t80 * t89;
-        let t100 = t83 - t99;
-        let g1_vy_leg3 = t100 * t94;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t109 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-        let t110 = g1_wz_leg3 * t109;
-        ::overact::guard::platform(t110, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t110, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t110, 3.5376915986291904, "kept actuators")?;
-        let t111 = 0.5 / t110;
-        let t112 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t111;
-        let t117 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t111;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t126 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t111;
-        let t128 = minus_g2_vy_leg1 * t112 - minus_g2_vx_leg1 * t117 + g2_wz_leg1 * t126;
-        let t133 = t18 * t24 + t28 * t34 + 0.0784 * t52;
-        let minus_rate_dot_2_leg1 = t15 * (t133 + t44 * t54);
-        let t137 = t128 * minus_rate_dot_2_leg1;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t144 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t111;
-        let t149 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t111;
-        let t155 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t111;
-        let t157 = minus_g2_vy_leg1 * t144 - minus_g2_vx_leg1 * t149 - g2_wz_leg1 * t155;
-        let t158 = t157 * minus_rate_dot_2_leg1;
-        let t159 = t126 * acceleration[2];
-        let t160 = 9.090909090909092 * t23;
-        let t162 = 9.090909090909092 * t33;
-        let t167 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t169 = t117 * t160 + t112 * t162 - t126 * t167;
-        let t170 = 9.090909090909092 * t169;
-        let t174 = t117 * acceleration[0] - t112 * acceleration[1];
-        let t175 = 82.64462809917356 * t174;
-        let t177 = 0.04321428571428571 * (t159 + t170 + t175);
-        let t185 = t149 * t160 + t144 * t162 + t155 * t167;
-        let t186 = 9.090909090909092 * t185;
-        let t187 = t155 * acceleration[2];
-        let t191 = t149 * acceleration[0] - t144 * acceleration[1];
-        let t192 = 82.64462809917356 * t191;
-        let t194 = 0.04321428571428571 * (t186 - t187 + t192);
-        let t198 = 3.5714285714285716 * t46;
-        let t203 = rate_1_leg1 + minus_rate_2_leg1;
-        let t204 = t128 - 1.0;
-        let t209 = minus_rate_2_leg1 + twist[2];
-        let t210 = t126 - t128;
-        let t212 = t157 + t155;
-        let t214 = t109 * t111;
-        let g2_vx_leg2 = t74 * t69;
-        let g2_vy_leg2 = t66 * t69;
-        let rate_2_leg2 = g2_vx_leg2 * t38 + g2_vy_leg2 * t41;
-        let t227 = rate_2_leg2 * rate_2_leg2;
-        let t229 = t75 * t24 + t67 * t34 + 0.0784 * t227;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t38 + minus_g1_vy_leg2 * t41;
-        let t233 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t235 = 0.5 * (t61 - 0.1568);
-        let minus_rate_dot_1_leg2 = t69 * (t229 + t233 * t235);
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t247 = g2_vx_leg2 * t117 - g2_vy_leg2 * t112 - minus_g2_wz_leg2 * t126;
-        let t252 = t74 * t24 + t66 * t34 + 0.0784 * t233;
-        let rate_dot_2_leg2 = t69 * (t252 + t227 * t235);
-        let t256 = t247 * rate_dot_2_leg2;
-        let t261 = g2_vx_leg2 * t149 - g2_vy_leg2 * t144 + minus_g2_wz_leg2 * t155;
-        let t262 = t261 * rate_dot_2_leg2;
-        let t268 = 3.5714285714285716 * t229;
-        let t274 = minus_rate_1_leg2 + rate_2_leg2;
-        let t276 = t261 - 1.0;
-        let t280 = twist[2] - rate_2_leg2;
-        let t281 = t126 - t247;
-        let t283 = t261 + t155;
-        let t289 = acceleration[0] - t23;
-        let t291 = acceleration[1] + t33;
-        let minus_g2_vx_leg3 = t91 * t94;
-        let t295 = twist[0] + t30;
-        let minus_g2_vy_leg3 = t99 * t94;
-        let t298 = twist[1] + t20;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t295 + minus_g2_vy_leg3 * t298;
-        let t301 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t303 = t92 * t289 + t100 * t291 + 0.0784 * t301;
-        let rate_1_leg3 = g1_vx_leg3 * t295 + g1_vy_leg3 * t298;
-        let t307 = rate_1_leg3 * rate_1_leg3;
-        let t309 = 0.5 * (t86 - 0.1568);
-        let rate_dot_1_leg3 = t94 * (t303 + t307 * t309);
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t321 = minus_g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t117
-            - minus_g2_wz_leg3 * t126;
-        let t326 = t91 * t289 + t99 * t291 + 0.0784 * t307;
-        let minus_rate_dot_2_leg3 = t94 * (t326 + t301 * t309);
-        let t330 = t321 * minus_rate_dot_2_leg3;
-        let t335 = minus_g2_vy_leg3 * t144 - minus_g2_vx_leg3 * t149
-            + minus_g2_wz_leg3 * t155;
-        let t336 = t335 * minus_rate_dot_2_leg3;
-        let t338 = 2.0 * (minus_g2_wz_leg3 * t214);
-        let t339 = t338 * minus_rate_dot_2_leg3;
-        let t342 = 0.04321428571428571 * (t159 - t170 + t175);
-        let t347 = 0.04321428571428571 * (t192 - (t187 + t186));
-        let t350 = t214 * acceleration[2];
-        let t352 = t214 * t167;
-        let t353 = 0.11 * t350 + t352;
-        let t354 = 0.7857142857142857 * t353;
-        let t358 = 3.5714285714285716 * t303;
-        let t365 = rate_1_leg3 + minus_rate_2_leg3;
-        let t368 = t338 + 1.0;
-        let t373 = minus_rate_2_leg3 + twist[2];
-        let t374 = t126 - t321;
-        let t376 = t335 + t155;
-        let t378 = t214 + t338;
-        let t383 = t79 - 0.3950502153918333;
-        let t385 = t383 * t383 + t85;
-        let t387 = 0.0784 / t385 - 0.25;
-        ::overact::guard::reach(t387, "leg4")?;
-        let t388 = ::overact::math::sqrt(t387);
-        let t390 = t97 + t383 * t388;
-        let t391 = t83 - t390;
-        let t392 = t385 * t388;
-        ::overact::guard::leg(t392, 0.07839913810297301, "leg4")?;
-        let t393 = 1.0 / t392;
-        let minus_g1_vy_leg4 = t391 * t393;
-        let t398 = 0.5 * t383 - t83 * t388;
-        let t399 = t383 - t398;
-        let minus_g1_vx_leg4 = t399 * t393;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t407 = minus_g1_vy_leg4 * t112 - minus_g1_vx_leg4 * t117
-            - minus_g1_wz_leg4 * t126;
-        let g2_vx_leg4 = t398 * t393;
-        let g2_vy_leg4 = t390 * t393;
-        let rate_2_leg4 = g2_vx_leg4 * t295 + g2_vy_leg4 * t298;
-        let t416 = rate_2_leg4 * rate_2_leg4;
-        let t418 = t399 * t289 + t391 * t291 + 0.0784 * t416;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t295 + minus_g1_vy_leg4 * t298;
-        let t422 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t424 = 0.5 * (t385 - 0.1568);
-        let minus_rate_dot_1_leg4 = t393 * (t418 + t422 * t424);
-        let t428 = t407 * minus_rate_dot_1_leg4;
-        let t433 = minus_g1_vy_leg4 * t144 - minus_g1_vx_leg4 * t149
-            + minus_g1_wz_leg4 * t155;
-        let t434 = t433 * minus_rate_dot_1_leg4;
-        let t435 = minus_g1_wz_leg4 * t214;
-        let t436 = 2.0 * t435;
-        let t437 = t436 * minus_rate_dot_1_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t451 = g2_vx_leg4 * t117 - g2_vy_leg4 * t112 + g2_wz_leg4 * t126;
-        let t456 = t398 * t289 + t390 * t291 + 0.0784 * t422;
-        let rate_dot_2_leg4 = t393 * (t456 + t416 * t424);
-        let t460 = t451 * rate_dot_2_leg4;
-        let t465 = g2_vx_leg4 * t149 - g2_vy_leg4 * t144 - g2_wz_leg4 * t155;
-        let t466 = t465 * rate_dot_2_leg4;
-        let t467 = g2_wz_leg4 * t214;
-        let t468 = 2.0 * t467;
-        let t469 = t468 * rate_dot_2_leg4;
-        let t479 = 3.5714285714285716 * t456;
-        let t481 = 3.5714285714285716 * t418;
-        let t494 = minus_rate_1_leg4 + rate_2_leg4;
-        let t495 = t451 - t407;
-        let t497 = t465 - t433;
-        let t499 = t436 + t468;
-        let t504 = twist[2] - rate_2_leg4;
-        let t505 = t126 - t451;
-        let t507 = t465 + t155;
-        let t509 = t214 - t468;
-        let t519 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let det_ja = g1_wz_leg3 * t1;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        let half_per_det_ja = 0.5 / det_ja;
+        let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * half_per_det_ja;
+        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - minus_g2_vx_leg1 * vx_by_a1
+            + g2_wz_leg1 * wz_by_a1;
+        // --- leg1
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+            * half_per_det_ja;
+        let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2 - minus_g2_vx_leg1 * vx_by_a2
+            - g2_wz_leg1 * minus_wz_by_a2;
+        let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+        let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        // --- platform
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+            + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+        let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+        let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
+            - minus_vy_by_a1 * acceleration[1];
+        let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
+        let t2_platform = R_P_SQUARED_PER_L_AB
+            * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1 + t1_platform);
+        let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
+            + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3 + minus_wz_by_a2 * a_x_platform;
+        let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
+        let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * acceleration[2];
+        let m_platform_on_q1_leg2 = vx_by_a2 * acceleration[0]
+            - minus_vy_by_a2 * acceleration[1];
+        let t3_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
+        let t4_platform = R_P_SQUARED_PER_L_AB
+            * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
+                + t3_platform);
+        // --- leg1
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+        let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
+        let wz_by_a3 = t1 * half_per_det_ja;
+        // --- leg2
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+            - minus_g2_wz_leg2 * wz_by_a1;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
+        let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
+            + minus_g2_wz_leg2 * minus_wz_by_a2;
+        let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
+        let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
+        // --- leg3
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1 - minus_g2_vx_leg3 * vx_by_a1
+            - minus_g2_wz_leg3 * wz_by_a1;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+        let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+        let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2 - minus_g2_vx_leg3 * vx_by_a2
+            + minus_g2_wz_leg3 * minus_wz_by_a2;
+        let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+        let minus_g2_a3_leg3 = 2.0 * (minus_g2_wz_leg3 * wz_by_a3);
+        let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+        // --- platform
+        let t5_platform = R_P_SQUARED_PER_L_AB
+            * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1 + t1_platform);
+        let t6_platform = R_P_SQUARED_PER_L_AB
+            * (t3_platform
+                - (minus_zz_platform_on_q1_leg2 + inv_r_p_my_platform_on_q1_leg2));
+        let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
+        let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+        let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
+            + wz_by_a3_a_x_platform;
+        let t7_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
+        // --- leg3
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
+        let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
+        let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1 - minus_g1_vx_leg4 * vx_by_a1
+            - minus_g1_wz_leg4 * wz_by_a1;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
+        let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2 - minus_g1_vx_leg4 * vx_by_a2
+            + minus_g1_wz_leg4 * minus_wz_by_a2;
+        let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
+        let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
+        let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
+        let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
+            + g2_wz_leg4 * wz_by_a1;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
+        let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+            - g2_wz_leg4 * minus_wz_by_a2;
+        let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
+        let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
+        let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
+        let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+        let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+        let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
+        let minus_off_3_leg4_on_q1_leg2 = g2_a2_leg4 + minus_wz_by_a2;
+        let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let vy_by_a3 = p_x_leg3 * wz_by_a3;
+        let vx_by_a3 = p_y_leg1 * wz_by_a3;
         ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, -t137, t177 - 0.28 * (rate_dot_1_leg1 - t137),
-                3.5714285714285716 * t133 - t128 * t198, 0.0784 * rate_dot_1_leg1, -(t203 * t204),
-                -::overact::math::signed(t204, t203), t204, t209 * t210,
-                ::overact::math::signed(t210, t209), t210, 0.0, 0.0, 0.0, 0.0, 0.0, t256,
-                t177 - 0.28 * t256, -(t247 * t268), 0.0, t247 * t274,
-                ::overact::math::signed(t247, t274), t247, t280 * t281,
-                ::overact::math::signed(t281, t280), t281, 0.0, 0.0, 0.0, 0.0, 0.0, -t330,
-                t342 + 0.28 * t330, -(t321 * t358), 0.0, -(t321 * t365),
-                -::overact::math::signed(t321, t365), t321, t373 * t374,
-                ::overact::math::signed(t374, t373), t374, -t428, -t428,
-                -(t407 * minus_rate_1_leg4), -::overact::math::signed(t407, minus_rate_1_leg4),
-                t407, t460, t342 - 0.28 * (t460 - t428), t407 * t479 - t451 * t481,
-                -(0.0784 * t428), t494 * t495, ::overact::math::signed(t495, t494), t495,
-                t504 * t505, ::overact::math::signed(t505, t504), t505, t159,
-                t112 * t160 - t117 * t162 + t126 * t519, t169, t174,
+                1.0, -minus_zz_2_leg1_on_q1_leg1,
+                t2_platform - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1),
+                INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1, L_AB_SQUARED * rate_dot_1_leg1,
+                -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
+                -::overact::math::signed(off_2_leg1_on_q1_leg1, minus_qd_2_leg1),
+                off_2_leg1_on_q1_leg1, qd_3_leg1 * off_3_leg1_on_q1_leg1,
+                ::overact::math::signed(off_3_leg1_on_q1_leg1, qd_3_leg1), off_3_leg1_on_q1_leg1,
+                0.0, 0.0, 0.0, 0.0, 0.0, zz_2_leg2_on_q1_leg1,
+                t2_platform - L_AB * zz_2_leg2_on_q1_leg1, -(g2_a1_leg2 * a2_x_leg2), 0.0,
+                g2_a1_leg2 * qd_2_leg2, ::overact::math::signed(g2_a1_leg2, qd_2_leg2), g2_a1_leg2,
+                qd_3_leg2 * off_3_leg2_on_q1_leg1,
+                ::overact::math::signed(off_3_leg2_on_q1_leg1, qd_3_leg2), off_3_leg2_on_q1_leg1,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg3_on_q1_leg1,
+                t5_platform + L_AB * minus_zz_2_leg3_on_q1_leg1, -(g2_a1_leg3 * a2_x_leg3), 0.0,
+                -(g2_a1_leg3 * minus_qd_2_leg3),
+                -::overact::math::signed(g2_a1_leg3, minus_qd_2_leg3), g2_a1_leg3,
+                qd_3_leg3 * off_3_leg3_on_q1_leg1,
+                ::overact::math::signed(off_3_leg3_on_q1_leg1, qd_3_leg3), off_3_leg3_on_q1_leg1,
+                -minus_zz_1_leg4_on_q1_leg1, -minus_zz_1_leg4_on_q1_leg1,
+                -(g1_a1_leg4 * minus_rate_1_leg4),
+                -::overact::math::signed(g1_a1_leg4, minus_rate_1_leg4), g1_a1_leg4,
+                zz_2_leg4_on_q1_leg1,
+                t5_platform - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1),
+                g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a1_leg4 * a2_x_leg4,
+                -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1), qd_2_leg4 * off_2_leg4_on_q1_leg1,
+                ::overact::math::signed(off_2_leg4_on_q1_leg1, qd_2_leg4), off_2_leg4_on_q1_leg1,
+                qd_3_leg4 * off_3_leg4_on_q1_leg1,
+                ::overact::math::signed(off_3_leg4_on_q1_leg1, qd_3_leg4), off_3_leg4_on_q1_leg1,
+                zz_platform_on_q1_leg1,
+                minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 - vx_by_a1 * inv_r_p_a_arm_y_leg3
+                    + wz_by_a1 * a_y_platform,
+                my_platform_on_q1_leg1,
+                m_platform_on_q1_leg1,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t158, t194 + 0.28 * t158, -(t157 * t198), 0.0,
-                -(t157 * t203), -::overact::math::signed(t157, t203), t157, -(t209 * t212),
-                -::overact::math::signed(t212, t209), -t212, -minus_rate_dot_1_leg2,
-                -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
-                -::overact::math::sign(minus_rate_1_leg2), 1.0, t262,
-                t194 - 0.28 * (t262 - minus_rate_dot_1_leg2),
-                3.5714285714285716 * t252 - t261 * t268, -(0.0784 * minus_rate_dot_1_leg2),
-                t274 * t276, ::overact::math::signed(t276, t274), t276, -(t280 * t283),
-                -::overact::math::signed(t283, t280), -t283, 0.0, 0.0, 0.0, 0.0, 0.0, -t336,
-                t347 + 0.28 * t336, -(t335 * t358), 0.0, -(t335 * t365),
-                -::overact::math::signed(t335, t365), t335, -(t373 * t376),
-                -::overact::math::signed(t376, t373), -t376, -t434, -t434,
-                -(t433 * minus_rate_1_leg4), -::overact::math::signed(t433, minus_rate_1_leg4),
-                t433, t466, t347 - 0.28 * (t466 - t434), t433 * t479 - t465 * t481,
-                -(0.0784 * t434), t494 * t497, ::overact::math::signed(t497, t494), t497,
-                -(t504 * t507), -::overact::math::signed(t507, t504), -t507, -t187,
-                t144 * t160 - t149 * t162 - t155 * t519, t185, t191,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
+                t4_platform + L_AB * minus_zz_2_leg1_on_q1_leg2, -(g2_a2_leg1 * a2_x_leg1), 0.0,
+                -(g2_a2_leg1 * minus_qd_2_leg1),
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1), g2_a2_leg1,
+                -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2),
+                -::overact::math::signed(minus_off_3_leg1_on_q1_leg2, qd_3_leg1),
+                -minus_off_3_leg1_on_q1_leg2, -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2,
+                -minus_rate_1_leg2, -::overact::math::sign(minus_rate_1_leg2), 1.0,
+                zz_2_leg2_on_q1_leg2,
+                t4_platform - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2),
+                INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2,
+                -(L_AB_SQUARED * minus_rate_dot_1_leg2), qd_2_leg2 * off_2_leg2_on_q1_leg2,
+                ::overact::math::signed(off_2_leg2_on_q1_leg2, qd_2_leg2), off_2_leg2_on_q1_leg2,
+                -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2),
+                -::overact::math::signed(minus_off_3_leg2_on_q1_leg2, qd_3_leg2),
+                -minus_off_3_leg2_on_q1_leg2, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg3_on_q1_leg2,
+                t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg2, -(g2_a2_leg3 * a2_x_leg3), 0.0,
+                -(g2_a2_leg3 * minus_qd_2_leg3),
+                -::overact::math::signed(g2_a2_leg3, minus_qd_2_leg3), g2_a2_leg3,
+                -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2),
+                -::overact::math::signed(minus_off_3_leg3_on_q1_leg2, qd_3_leg3),
+                -minus_off_3_leg3_on_q1_leg2, -minus_zz_1_leg4_on_q1_leg2,
+                -minus_zz_1_leg4_on_q1_leg2, -(g1_a2_leg4 * minus_rate_1_leg4),
+                -::overact::math::signed(g1_a2_leg4, minus_rate_1_leg4), g1_a2_leg4,
+                zz_2_leg4_on_q1_leg2,
+                t6_platform - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2),
+                g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a2_leg4 * a2_x_leg4,
+                -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2), qd_2_leg4 * off_2_leg4_on_q1_leg2,
+                ::overact::math::signed(off_2_leg4_on_q1_leg2, qd_2_leg4), off_2_leg4_on_q1_leg2,
+                -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2),
+                -::overact::math::signed(minus_off_3_leg4_on_q1_leg2, qd_3_leg4),
+                -minus_off_3_leg4_on_q1_leg2, -minus_zz_platform_on_q1_leg2,
+                minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 - vx_by_a2 * inv_r_p_a_arm_y_leg3
+                    - minus_wz_by_a2 * a_y_platform,
+                my_platform_on_q1_leg2,
+                m_platform_on_q1_leg2,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t214 * t209,
-                ::overact::math::signed(t214, t209), t214, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t214 * t280, ::overact::math::signed(t214, t280), t214,
-                rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, t339, t354 - 0.28 * (rate_dot_1_leg3 + t339),
-                3.5714285714285716 * t326 + t358 * t338, 0.0784 * rate_dot_1_leg3, t365 * t368,
-                ::overact::math::signed(t368, t365), -t368, t373 * t378,
-                ::overact::math::signed(t378, t373), t378, t437, t437, t436 * minus_rate_1_leg4,
-                ::overact::math::signed(t436, minus_rate_1_leg4), -t436, t469,
-                t354 - 0.28 * (t469 + t437), -(7.142857142857143 * (t435 * t456 + t467 * t418)),
-                0.0784 * t437, t494 * t499, ::overact::math::signed(t499, t494), t499, t504 * t509,
-                ::overact::math::signed(t509, t504), t509, t350,
-                t214 * t519 - (t2 * t214 * t160 + t6 * t214 * t162), -t353, 0.11 * t352,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, wz_by_a3 * qd_3_leg1,
+                ::overact::math::signed(wz_by_a3, qd_3_leg1), wz_by_a3, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, wz_by_a3 * qd_3_leg2,
+                ::overact::math::signed(wz_by_a3, qd_3_leg2), wz_by_a3, rate_dot_1_leg3,
+                rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0,
+                zz_2_leg3_on_q1_leg3, t7_platform - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3),
+                INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3,
+                L_AB_SQUARED * rate_dot_1_leg3, minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3,
+                ::overact::math::signed(minus_off_2_leg3_on_q1_leg3, minus_qd_2_leg3),
+                -minus_off_2_leg3_on_q1_leg3, qd_3_leg3 * off_3_leg3_on_q1_leg3,
+                ::overact::math::signed(off_3_leg3_on_q1_leg3, qd_3_leg3), off_3_leg3_on_q1_leg3,
+                zz_1_leg4_on_q1_leg3, zz_1_leg4_on_q1_leg3, minus_g1_a3_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(minus_g1_a3_leg4, minus_rate_1_leg4), -minus_g1_a3_leg4,
+                zz_2_leg4_on_q1_leg3,
+                t7_platform - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3),
+                -(7.142857142857143
+                    * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
+                        + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)),
+                L_AB_SQUARED * zz_1_leg4_on_q1_leg3,
+                qd_2_leg4 * off_2_leg4_on_q1_leg3,
+                ::overact::math::signed(off_2_leg4_on_q1_leg3, qd_2_leg4),
+                off_2_leg4_on_q1_leg3,
+                qd_3_leg4 * off_3_leg4_on_q1_leg3,
+                ::overact::math::signed(off_3_leg4_on_q1_leg3, qd_3_leg4),
+                off_3_leg4_on_q1_leg3,
+                zz_platform_on_q1_leg3,
+                wz_by_a3 * a_y_platform
+                    - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                        + vx_by_a3 * inv_r_p_a_arm_y_leg3),
+                -minus_my_platform_on_q1_leg3,
+                R_P * wz_by_a3_a_x_platform,
             ],
         ])
     }
@@ -2652,6 +3376,21 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// 1 / r_p²
+        const INV_R_P_SQUARED: ::core::primitive::f64 = 82.64462809917356;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// r_p² / l_ab
+        const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+        // --- sines and cosines
         let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -2662,231 +3401,339 @@ impl DualV {
         ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
-        let t2 = 3.5714285714285716 / s2_leg1;
+        // --- leg1
+        let k1_leg1 = INV_L_AB / s2_leg1;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t13 = 0.11 * s_phi;
-        let t14 = t13 * twist[2];
-        let t16 = 0.11 * c_phi;
-        let t18 = twist[2] * t14 - t16 * acceleration[2];
-        let t19 = acceleration[0] + t18;
-        let t21 = t16 * twist[2];
-        let t24 = twist[2] * t21 + t13 * acceleration[2];
-        let t25 = acceleration[1] - t24;
-        let minus_g2_vx_leg1 = c1_leg1 * t2;
-        let t29 = twist[0] - t21;
-        let minus_g2_vy_leg1 = s1_leg1 * t2;
-        let t32 = twist[1] - t14;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t29 + minus_g2_vy_leg1 * t32;
-        let t35 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t37 = c12_leg1 * t19 + s12_leg1 * t25 + 0.28 * t35;
-        let g1_vx_leg1 = c12_leg1 * t2;
-        let g1_vy_leg1 = s12_leg1 * t2;
-        let rate_1_leg1 = g1_vx_leg1 * t29 + g1_vy_leg1 * t32;
-        let t43 = rate_1_leg1 * rate_1_leg1;
-        let t44 = 0.28 * c2_leg1;
-        let rate_dot_1_leg1 = t2 * (t37 + t43 * t44);
+        let p_x_leg3 = R_P * s_phi;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let p_y_leg1 = R_P * c_phi;
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1 + s12_leg1 * a_end_y_leg1
+            + L_AB * rate_2_squared_leg1;
+        let g1_vx_leg1 = c12_leg1 * k1_leg1;
+        let g1_vy_leg1 = s12_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let v2_by_1_y_leg1 = L_AB * c2_leg1;
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
+        // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t59 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t59;
+        let k1_leg2 = INV_L_AB / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * k1_leg2;
+        // --- leg3
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t71 = 3.5714285714285716 / s2_leg3;
-        let g1_vy_leg3 = s12_leg3 * t71;
-        let g1_vx_leg3 = c12_leg3 * t71;
-        let g1_wz_leg3 = t13 * g1_vy_leg3 + t16 * g1_vx_leg3;
-        let g1_vy_leg2 = s12_leg2 * t59;
-        let minus_g1_wz_leg2 = t13 * g1_vy_leg2 + t16 * g1_vx_leg2;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t13 + g1_vx_leg1 * t16;
-        let t89 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
-        let t93 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t98 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
-        let t100 = g1_vy_leg2 * t89 - g1_vx_leg2 * t93 - minus_g1_wz_leg2 * t98;
-        ::overact::guard::platform(t100, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(t100, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(t100, 7.075383197161306, "kept actuators")?;
-        let t101 = 1.0 / t100;
-        let t102 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3) * t101;
-        let t107 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3) * t101;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t13 + minus_g2_vx_leg1 * t16;
-        let t116 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3) * t101;
-        let t118 = minus_g2_vy_leg1 * t102 - minus_g2_vx_leg1 * t107 + g2_wz_leg1 * t116;
-        let t123 = c1_leg1 * t19 + s1_leg1 * t25 + 0.28 * t43;
-        let minus_rate_dot_2_leg1 = t2 * (t123 + t35 * t44);
-        let t127 = t118 * minus_rate_dot_2_leg1;
-        let t128 = t93 * t101;
-        let t130 = t89 * t101;
-        let t133 = t98 * t101;
-        let t135 = minus_g2_vx_leg1 * t128 - minus_g2_vy_leg1 * t130 + g2_wz_leg1 * t133;
-        let t136 = t135 * minus_rate_dot_2_leg1;
-        let t137 = t116 * acceleration[2];
-        let t138 = 9.090909090909092 * t18;
-        let t140 = 9.090909090909092 * t24;
-        let t145 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t147 = t107 * t138 + t102 * t140 - t116 * t145;
-        let t148 = 9.090909090909092 * t147;
-        let t152 = t107 * acceleration[0] - t102 * acceleration[1];
-        let t153 = 82.64462809917356 * t152;
-        let t155 = 0.04321428571428571 * (t137 + t148 + t153);
-        let t159 = t133 * acceleration[2];
-        let t164 = t128 * t138 + t130 * t140 + t133 * t145;
-        let t165 = 9.090909090909092 * t164;
-        let t169 = t130 * acceleration[1] - t128 * acceleration[0];
-        let t170 = 82.64462809917356 * t169;
-        let t172 = 0.04321428571428571 * (t159 - t165 + t170);
-        let t179 = rate_1_leg1 + minus_rate_2_leg1;
-        let t180 = t118 - 1.0;
-        let t185 = minus_rate_2_leg1 + twist[2];
-        let t186 = t116 - t118;
-        let t188 = t133 - t135;
-        let t193 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2) * t101;
-        let minus_g2_vx_leg2 = c1_leg2 * t59;
-        let minus_g2_vy_leg2 = s1_leg2 * t59;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t29 + minus_g2_vy_leg2 * t32;
-        let t206 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t208 = c12_leg2 * t19 + s12_leg2 * t25 + 0.28 * t206;
-        let rate_1_leg2 = g1_vx_leg2 * t29 + g1_vy_leg2 * t32;
-        let t212 = rate_1_leg2 * rate_1_leg2;
-        let t213 = 0.28 * c2_leg2;
-        let rate_dot_1_leg2 = t59 * (t208 + t212 * t213);
-        let g2_wz_leg2 = t13 * minus_g2_vy_leg2 + t16 * minus_g2_vx_leg2;
-        let t225 = minus_g2_vy_leg2 * t102 - minus_g2_vx_leg2 * t107 + g2_wz_leg2 * t116;
-        let t230 = c1_leg2 * t19 + s1_leg2 * t25 + 0.28 * t212;
-        let minus_rate_dot_2_leg2 = t59 * (t230 + t206 * t213);
-        let t234 = t225 * minus_rate_dot_2_leg2;
-        let t239 = minus_g2_vx_leg2 * t128 - minus_g2_vy_leg2 * t130 + g2_wz_leg2 * t133;
-        let t240 = t239 * minus_rate_dot_2_leg2;
-        let t250 = rate_1_leg2 + minus_rate_2_leg2;
-        let t252 = t239 - 1.0;
-        let t256 = minus_rate_2_leg2 + twist[2];
-        let t257 = t116 - t225;
-        let t259 = t133 - t239;
-        let t265 = acceleration[0] - t18;
-        let t267 = acceleration[1] + t24;
-        let minus_g2_vx_leg3 = c1_leg3 * t71;
-        let t271 = twist[0] + t21;
-        let minus_g2_vy_leg3 = s1_leg3 * t71;
-        let t274 = twist[1] + t14;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t271 + minus_g2_vy_leg3 * t274;
-        let t277 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t279 = c12_leg3 * t265 + s12_leg3 * t267 + 0.28 * t277;
-        let rate_1_leg3 = g1_vx_leg3 * t271 + g1_vy_leg3 * t274;
-        let t283 = rate_1_leg3 * rate_1_leg3;
-        let t284 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t71 * (t279 + t283 * t284);
-        let minus_g2_wz_leg3 = t13 * minus_g2_vy_leg3 + t16 * minus_g2_vx_leg3;
-        let t296 = minus_g2_vy_leg3 * t102 - minus_g2_vx_leg3 * t107
-            - minus_g2_wz_leg3 * t116;
-        let t301 = c1_leg3 * t265 + s1_leg3 * t267 + 0.28 * t283;
-        let minus_rate_dot_2_leg3 = t71 * (t301 + t277 * t284);
-        let t305 = t296 * minus_rate_dot_2_leg3;
-        let t310 = minus_g2_vx_leg3 * t128 - minus_g2_vy_leg3 * t130
-            - minus_g2_wz_leg3 * t133;
-        let t311 = t310 * minus_rate_dot_2_leg3;
-        let t313 = 2.0 * (minus_g2_wz_leg3 * t193);
-        let t314 = t313 * minus_rate_dot_2_leg3;
-        let t317 = 0.04321428571428571 * (t137 - t148 + t153);
-        let t322 = 0.04321428571428571 * (t159 + t165 + t170);
-        let t325 = t193 * acceleration[2];
-        let t327 = t193 * t145;
-        let t328 = 0.11 * t325 + t327;
-        let t329 = 0.7857142857142857 * t328;
-        let t338 = rate_1_leg3 + minus_rate_2_leg3;
-        let t341 = t313 - 1.0;
-        let t346 = minus_rate_2_leg3 + twist[2];
-        let t347 = t116 - t296;
-        let t349 = t133 - t310;
-        let t351 = t313 + t193;
+        let k1_leg3 = INV_L_AB / s2_leg3;
+        let g1_vy_leg3 = s12_leg3 * k1_leg3;
+        let g1_vx_leg3 = c12_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let g1_vy_leg2 = s12_leg2 * k1_leg2;
+        let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+        let t1 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
+        let t2 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
+        let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
+        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let minus_vy_by_a1 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3)
+            * inv_det_ja;
+        let vx_by_a1 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3)
+            * inv_det_ja;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
+        let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3) * inv_det_ja;
+        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - minus_g2_vx_leg1 * vx_by_a1
+            + g2_wz_leg1 * wz_by_a1;
+        let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+            + L_AB * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+        let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+        let minus_vx_by_a2 = t2 * inv_det_ja;
+        let vy_by_a2 = t1 * inv_det_ja;
+        let wz_by_a2 = t3 * inv_det_ja;
+        let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2 - minus_g2_vy_leg1 * vy_by_a2
+            + g2_wz_leg1 * wz_by_a2;
+        let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+        let zz_platform_on_q1_leg1 = wz_by_a1 * acceleration[2];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        // --- platform
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+            + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+        let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+        let m_platform_on_q1_leg1 = vx_by_a1 * acceleration[0]
+            - minus_vy_by_a1 * acceleration[1];
+        let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
+        let t2_platform = R_P_SQUARED_PER_L_AB
+            * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1 + t1_platform);
+        let zz_platform_on_q1_leg2 = wz_by_a2 * acceleration[2];
+        let minus_my_platform_on_q1_leg2 = minus_vx_by_a2 * inv_r_p_a_arm_x_leg1
+            + vy_by_a2 * inv_r_p_a_arm_y_leg3 + wz_by_a2 * a_x_platform;
+        let t3_platform = INV_R_P * minus_my_platform_on_q1_leg2;
+        let m_platform_on_q1_leg2 = vy_by_a2 * acceleration[1]
+            - minus_vx_by_a2 * acceleration[0];
+        let t4_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
+        let t5_platform = R_P_SQUARED_PER_L_AB
+            * (zz_platform_on_q1_leg2 - t3_platform + t4_platform);
+        // --- leg1
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+        let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
+        let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
+            * inv_det_ja;
+        // --- leg2
+        let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+        let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+            + minus_g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1 + s12_leg2 * a_end_y_leg1
+            + L_AB * rate_2_squared_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = L_AB * c2_leg2;
+        let rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
+        let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1 - minus_g2_vx_leg2 * vx_by_a1
+            + g2_wz_leg2 * wz_by_a1;
+        let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+            + L_AB * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k1_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
+        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - minus_g2_vy_leg2 * vy_by_a2
+            + g2_wz_leg2 * wz_by_a2;
+        let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+        let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+        let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+        let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+        let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
+        let off_3_leg2_on_q1_leg2 = wz_by_a2 - g2_a2_leg2;
+        // --- leg3
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3 + s12_leg3 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = L_AB * c2_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1 - minus_g2_vx_leg3 * vx_by_a1
+            - minus_g2_wz_leg3 * wz_by_a1;
+        let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+            + L_AB * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - minus_g2_vy_leg3 * vy_by_a2
+            - minus_g2_wz_leg3 * wz_by_a2;
+        let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+        let g2_a3_leg3 = 2.0 * (minus_g2_wz_leg3 * minus_wz_by_a3);
+        let minus_zz_2_leg3_on_q1_leg3 = g2_a3_leg3 * minus_rate_dot_2_leg3;
+        // --- platform
+        let t6_platform = R_P_SQUARED_PER_L_AB
+            * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1 + t1_platform);
+        let t7_platform = R_P_SQUARED_PER_L_AB
+            * (zz_platform_on_q1_leg2 + t3_platform + t4_platform);
+        let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
+        let minus_wz_by_a3_a_x_platform = minus_wz_by_a3 * a_x_platform;
+        let my_platform_on_q1_leg3 = R_P * minus_zz_platform_on_q1_leg3
+            + minus_wz_by_a3_a_x_platform;
+        let t8_platform = 0.7857142857142857 * my_platform_on_q1_leg3;
+        // --- leg3
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
+        let off_3_leg3_on_q1_leg2 = wz_by_a2 - g2_a2_leg3;
+        let minus_off_3_leg3_on_q1_leg3 = g2_a3_leg3 + minus_wz_by_a3;
+        // --- leg4
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t366 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t366;
-        let g1_vy_leg4 = s12_leg4 * t366;
-        let g1_wz_leg4 = t13 * g1_vy_leg4 + t16 * g1_vx_leg4;
-        let t376 = g1_vx_leg4 * t107 - g1_vy_leg4 * t102 + g1_wz_leg4 * t116;
-        let minus_g2_vx_leg4 = c1_leg4 * t366;
-        let minus_g2_vy_leg4 = s1_leg4 * t366;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t271 + minus_g2_vy_leg4 * t274;
-        let t385 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t387 = c12_leg4 * t265 + s12_leg4 * t267 + 0.28 * t385;
-        let rate_1_leg4 = g1_vx_leg4 * t271 + g1_vy_leg4 * t274;
-        let t391 = rate_1_leg4 * rate_1_leg4;
-        let t392 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t366 * (t387 + t391 * t392);
-        let t396 = t376 * rate_dot_1_leg4;
-        let t401 = g1_vy_leg4 * t130 - g1_vx_leg4 * t128 + g1_wz_leg4 * t133;
-        let t402 = t401 * rate_dot_1_leg4;
-        let t404 = 2.0 * (g1_wz_leg4 * t193);
-        let t405 = t404 * rate_dot_1_leg4;
-        let minus_g2_wz_leg4 = t13 * minus_g2_vy_leg4 + t16 * minus_g2_vx_leg4;
-        let t419 = minus_g2_vy_leg4 * t102 - minus_g2_vx_leg4 * t107
-            - minus_g2_wz_leg4 * t116;
-        let t424 = c1_leg4 * t265 + s1_leg4 * t267 + 0.28 * t391;
-        let minus_rate_dot_2_leg4 = t366 * (t424 + t385 * t392);
-        let t428 = t419 * minus_rate_dot_2_leg4;
-        let t433 = minus_g2_vx_leg4 * t128 - minus_g2_vy_leg4 * t130
-            - minus_g2_wz_leg4 * t133;
-        let t434 = t433 * minus_rate_dot_2_leg4;
-        let t436 = 2.0 * (minus_g2_wz_leg4 * t193);
-        let t437 = t436 * minus_rate_dot_2_leg4;
-        let t459 = rate_1_leg4 + minus_rate_2_leg4;
-        let t460 = t419 - t376;
-        let t462 = t433 - t401;
-        let t464 = t404 + t436;
-        let t469 = minus_rate_2_leg4 + twist[2];
-        let t470 = t116 - t419;
-        let t472 = t133 - t433;
-        let t474 = t436 + t193;
-        let t484 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let k1_leg4 = INV_L_AB / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * k1_leg4;
+        let g1_vy_leg4 = s12_leg4 * k1_leg4;
+        let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
+        let g1_a1_leg4 = g1_vx_leg4 * vx_by_a1 - g1_vy_leg4 * minus_vy_by_a1
+            + g1_wz_leg4 * wz_by_a1;
+        let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
+        let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
+            + minus_g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3 + s12_leg4 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
+        let v2_by_1_y_leg4 = L_AB * c2_leg4;
+        let rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
+        let zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * rate_dot_1_leg4;
+        let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
+            + g1_wz_leg4 * wz_by_a2;
+        let zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * rate_dot_1_leg4;
+        let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
+        let minus_zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * rate_dot_1_leg4;
+        let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4 + p_y_leg1 * minus_g2_vx_leg4;
+        let g2_a1_leg4 = minus_g2_vy_leg4 * minus_vy_by_a1 - minus_g2_vx_leg4 * vx_by_a1
+            - minus_g2_wz_leg4 * wz_by_a1;
+        let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
+            + L_AB * rate_1_squared_leg4;
+        let minus_rate_dot_2_leg4 = k1_leg4
+            * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
+        let minus_zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * minus_rate_dot_2_leg4;
+        let g2_a2_leg4 = minus_g2_vx_leg4 * minus_vx_by_a2 - minus_g2_vy_leg4 * vy_by_a2
+            - minus_g2_wz_leg4 * wz_by_a2;
+        let minus_zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * minus_rate_dot_2_leg4;
+        let g2_a3_leg4 = 2.0 * (minus_g2_wz_leg4 * minus_wz_by_a3);
+        let minus_zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * minus_rate_dot_2_leg4;
+        let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
+        let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+        let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+        let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+        let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
+        let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
+        let off_3_leg4_on_q1_leg2 = wz_by_a2 - g2_a2_leg4;
+        let minus_off_3_leg4_on_q1_leg3 = g2_a3_leg4 + minus_wz_by_a3;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
+        let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
         ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, -t127, t155 - 0.28 * (rate_dot_1_leg1 - t127), t123 - t118 * t37,
-                0.0784 * rate_dot_1_leg1, -(t179 * t180), -::overact::math::signed(t180, t179),
-                t180, t185 * t186, ::overact::math::signed(t186, t185), t186, 0.0, 0.0, 0.0, 0.0,
-                0.0, -t234, t155 + 0.28 * t234, -(t225 * t208), 0.0, -(t225 * t250),
-                -::overact::math::signed(t225, t250), t225, t256 * t257,
-                ::overact::math::signed(t257, t256), t257, 0.0, 0.0, 0.0, 0.0, 0.0, -t305,
-                t317 + 0.28 * t305, -(t296 * t279), 0.0, -(t296 * t338),
-                -::overact::math::signed(t296, t338), t296, t346 * t347,
-                ::overact::math::signed(t347, t346), t347, t396, t396, t376 * rate_1_leg4,
-                ::overact::math::signed(t376, rate_1_leg4), t376, -t428,
-                t317 - 0.28 * (t396 - t428), t376 * t424 - t419 * t387, 0.0784 * t396,
-                -(t459 * t460), -::overact::math::signed(t460, t459), t460, t469 * t470,
-                ::overact::math::signed(t470, t469), t470, t137,
-                t102 * t138 - t107 * t140 + t116 * t484, t147, t152,
+                1.0, -minus_zz_2_leg1_on_q1_leg1,
+                t2_platform - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1),
+                a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1, L_AB_SQUARED * rate_dot_1_leg1,
+                -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
+                -::overact::math::signed(off_2_leg1_on_q1_leg1, minus_qd_2_leg1),
+                off_2_leg1_on_q1_leg1, qd_3_leg1 * off_3_leg1_on_q1_leg1,
+                ::overact::math::signed(off_3_leg1_on_q1_leg1, qd_3_leg1), off_3_leg1_on_q1_leg1,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg2_on_q1_leg1,
+                t2_platform + L_AB * minus_zz_2_leg2_on_q1_leg1, -(g2_a1_leg2 * minus_a_on_f1_leg2),
+                0.0, -(g2_a1_leg2 * minus_qd_2_leg2),
+                -::overact::math::signed(g2_a1_leg2, minus_qd_2_leg2), g2_a1_leg2,
+                qd_3_leg2 * off_3_leg2_on_q1_leg1,
+                ::overact::math::signed(off_3_leg2_on_q1_leg1, qd_3_leg2), off_3_leg2_on_q1_leg1,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg3_on_q1_leg1,
+                t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg1, -(g2_a1_leg3 * minus_a_on_f1_leg3),
+                0.0, -(g2_a1_leg3 * minus_qd_2_leg3),
+                -::overact::math::signed(g2_a1_leg3, minus_qd_2_leg3), g2_a1_leg3,
+                qd_3_leg3 * off_3_leg3_on_q1_leg1,
+                ::overact::math::signed(off_3_leg3_on_q1_leg1, qd_3_leg3), off_3_leg3_on_q1_leg1,
+                zz_1_leg4_on_q1_leg1, zz_1_leg4_on_q1_leg1, g1_a1_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_a1_leg4, rate_1_leg4), g1_a1_leg4,
+                -minus_zz_2_leg4_on_q1_leg1,
+                t6_platform - L_AB * (zz_1_leg4_on_q1_leg1 - minus_zz_2_leg4_on_q1_leg1),
+                g1_a1_leg4 * a_on_f2_leg4 - g2_a1_leg4 * minus_a_on_f1_leg4,
+                L_AB_SQUARED * zz_1_leg4_on_q1_leg1, -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1),
+                -::overact::math::signed(off_2_leg4_on_q1_leg1, minus_qd_2_leg4),
+                off_2_leg4_on_q1_leg1, qd_3_leg4 * off_3_leg4_on_q1_leg1,
+                ::overact::math::signed(off_3_leg4_on_q1_leg1, qd_3_leg4), off_3_leg4_on_q1_leg1,
+                zz_platform_on_q1_leg1,
+                minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 - vx_by_a1 * inv_r_p_a_arm_y_leg3
+                    + wz_by_a1 * a_y_platform,
+                my_platform_on_q1_leg1,
+                m_platform_on_q1_leg1,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t136, t172 + 0.28 * t136, -(t135 * t37), 0.0,
-                -(t135 * t179), -::overact::math::signed(t135, t179), t135, t185 * t188,
-                ::overact::math::signed(t188, t185), t188, rate_dot_1_leg2, rate_dot_1_leg2,
-                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t240,
-                t172 - 0.28 * (rate_dot_1_leg2 - t240), t230 - t239 * t208,
-                0.0784 * rate_dot_1_leg2, -(t250 * t252), -::overact::math::signed(t252, t250),
-                t252, t256 * t259, ::overact::math::signed(t259, t256), t259, 0.0, 0.0, 0.0, 0.0,
-                0.0, -t311, t322 + 0.28 * t311, -(t310 * t279), 0.0, -(t310 * t338),
-                -::overact::math::signed(t310, t338), t310, t346 * t349,
-                ::overact::math::signed(t349, t346), t349, t402, t402, t401 * rate_1_leg4,
-                ::overact::math::signed(t401, rate_1_leg4), t401, -t434,
-                t322 - 0.28 * (t402 - t434), t401 * t424 - t433 * t387, 0.0784 * t402,
-                -(t459 * t462), -::overact::math::signed(t462, t459), t462, t469 * t472,
-                ::overact::math::signed(t472, t469), t472, t159,
-                t128 * t140 - t130 * t138 + t133 * t484, -t164, t169,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
+                t5_platform + L_AB * minus_zz_2_leg1_on_q1_leg2, -(g2_a2_leg1 * minus_a_on_f1_leg1),
+                0.0, -(g2_a2_leg1 * minus_qd_2_leg1),
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1), g2_a2_leg1,
+                qd_3_leg1 * off_3_leg1_on_q1_leg2,
+                ::overact::math::signed(off_3_leg1_on_q1_leg2, qd_3_leg1), off_3_leg1_on_q1_leg2,
+                rate_dot_1_leg2, rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2),
+                1.0, -minus_zz_2_leg2_on_q1_leg2,
+                t5_platform - L_AB * (rate_dot_1_leg2 - minus_zz_2_leg2_on_q1_leg2),
+                a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2, L_AB_SQUARED * rate_dot_1_leg2,
+                -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2),
+                -::overact::math::signed(off_2_leg2_on_q1_leg2, minus_qd_2_leg2),
+                off_2_leg2_on_q1_leg2, qd_3_leg2 * off_3_leg2_on_q1_leg2,
+                ::overact::math::signed(off_3_leg2_on_q1_leg2, qd_3_leg2), off_3_leg2_on_q1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg3_on_q1_leg2,
+                t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2, -(g2_a2_leg3 * minus_a_on_f1_leg3),
+                0.0, -(g2_a2_leg3 * minus_qd_2_leg3),
+                -::overact::math::signed(g2_a2_leg3, minus_qd_2_leg3), g2_a2_leg3,
+                qd_3_leg3 * off_3_leg3_on_q1_leg2,
+                ::overact::math::signed(off_3_leg3_on_q1_leg2, qd_3_leg3), off_3_leg3_on_q1_leg2,
+                zz_1_leg4_on_q1_leg2, zz_1_leg4_on_q1_leg2, g1_a2_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_a2_leg4, rate_1_leg4), g1_a2_leg4,
+                -minus_zz_2_leg4_on_q1_leg2,
+                t7_platform - L_AB * (zz_1_leg4_on_q1_leg2 - minus_zz_2_leg4_on_q1_leg2),
+                g1_a2_leg4 * a_on_f2_leg4 - g2_a2_leg4 * minus_a_on_f1_leg4,
+                L_AB_SQUARED * zz_1_leg4_on_q1_leg2, -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2),
+                -::overact::math::signed(off_2_leg4_on_q1_leg2, minus_qd_2_leg4),
+                off_2_leg4_on_q1_leg2, qd_3_leg4 * off_3_leg4_on_q1_leg2,
+                ::overact::math::signed(off_3_leg4_on_q1_leg2, qd_3_leg4), off_3_leg4_on_q1_leg2,
+                zz_platform_on_q1_leg2,
+                minus_vx_by_a2 * inv_r_p_a_arm_y_leg3 - vy_by_a2 * inv_r_p_a_arm_x_leg1
+                    + wz_by_a2 * a_y_platform,
+                -minus_my_platform_on_q1_leg2,
+                m_platform_on_q1_leg2,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t193 * t185),
-                -::overact::math::signed(t193, t185), -t193, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, -(t193 * t256), -::overact::math::signed(t193, t256), -t193,
-                rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, -t314, -(t329 + 0.28 * (rate_dot_1_leg3 - t314)), t301 - t313 * t279,
-                0.0784 * rate_dot_1_leg3, -(t338 * t341), -::overact::math::signed(t341, t338),
-                t341, -(t346 * t351), -::overact::math::signed(t351, t346), -t351, -t405, -t405,
-                -(t404 * rate_1_leg4), -::overact::math::signed(t404, rate_1_leg4), -t404, -t437,
-                -(t329 - 0.28 * (t405 + t437)), -(t404 * t424 + t436 * t387), -(0.0784 * t405),
-                -(t459 * t464), -::overact::math::signed(t464, t459), t464, -(t469 * t474),
-                -::overact::math::signed(t474, t469), -t474, -t325,
-                t16 * t193 * t140 + t13 * t193 * t138 - t193 * t484, t328, -(0.11 * t327),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(minus_wz_by_a3 * qd_3_leg1), -::overact::math::signed(minus_wz_by_a3, qd_3_leg1),
+                -minus_wz_by_a3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(minus_wz_by_a3 * qd_3_leg2), -::overact::math::signed(minus_wz_by_a3, qd_3_leg2),
+                -minus_wz_by_a3, rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3,
+                ::overact::math::sign(rate_1_leg3), 1.0, -minus_zz_2_leg3_on_q1_leg3,
+                -(t8_platform + L_AB * (rate_dot_1_leg3 - minus_zz_2_leg3_on_q1_leg3)),
+                a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3, L_AB_SQUARED * rate_dot_1_leg3,
+                -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3),
+                -::overact::math::signed(off_2_leg3_on_q1_leg3, minus_qd_2_leg3),
+                off_2_leg3_on_q1_leg3, -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg3),
+                -::overact::math::signed(minus_off_3_leg3_on_q1_leg3, qd_3_leg3),
+                -minus_off_3_leg3_on_q1_leg3, -minus_zz_1_leg4_on_q1_leg3,
+                -minus_zz_1_leg4_on_q1_leg3, -(minus_g1_a3_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_a3_leg4, rate_1_leg4), -minus_g1_a3_leg4,
+                -minus_zz_2_leg4_on_q1_leg3,
+                -(t8_platform
+                    - L_AB * (minus_zz_1_leg4_on_q1_leg3 + minus_zz_2_leg4_on_q1_leg3)),
+                -(minus_g1_a3_leg4 * a_on_f2_leg4 + g2_a3_leg4 * minus_a_on_f1_leg4),
+                -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg3),
+                -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3),
+                -::overact::math::signed(off_2_leg4_on_q1_leg3, minus_qd_2_leg4),
+                off_2_leg4_on_q1_leg3,
+                -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg3),
+                -::overact::math::signed(minus_off_3_leg4_on_q1_leg3, qd_3_leg4),
+                -minus_off_3_leg4_on_q1_leg3,
+                -minus_zz_platform_on_q1_leg3,
+                minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
+                    + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    - minus_wz_by_a3 * a_y_platform,
+                my_platform_on_q1_leg3,
+                -(R_P * minus_wz_by_a3_a_x_platform),
             ],
         ])
     }
@@ -2912,358 +3759,504 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// 1 / r_p²
+        const INV_R_P_SQUARED: ::core::primitive::f64 = 82.64462809917356;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// r_p² / l_ab
+        const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t9 = t8 * t8;
-        let t10 = t4 * t4 + t9;
-        let t12 = 0.0784 / t10 - 0.25;
-        ::overact::guard::reach(t12, "leg1")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t14 = t10 * t13;
-        ::overact::guard::leg(t14, 0.07839913810297301, "leg1")?;
-        let t15 = 1.0 / t14;
-        let t18 = 0.5 * t4 + t8 * t13;
-        let t19 = t4 - t18;
-        let g1_vx_leg1 = t19 * t15;
-        let t22 = t3 + 0.3950502153918333;
-        let t25 = t22 * t22 + t9;
-        let t27 = 0.0784 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t30 = 0.5 * t22 - t8 * t28;
-        let t31 = t22 - t30;
-        let t32 = t25 * t28;
-        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
-        let t33 = 1.0 / t32;
-        let minus_g1_vx_leg2 = t31 * t33;
-        let t37 = pose[0] + t2;
-        let t38 = t37 + 0.3950502153918333;
-        let t41 = pose[1] - t6 + 0.10970563941232059;
-        let t43 = t41 * t41;
-        let t44 = t38 * t38 + t43;
-        let t46 = 0.0784 / t44 - 0.25;
-        ::overact::guard::reach(t46, "leg3")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t49 = 0.5 * t38 + t41 * t47;
-        let t50 = t38 - t49;
-        let t51 = t44 * t47;
-        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
-        let t52 = 1.0 / t51;
-        let g1_vx_leg3 = t50 * t52;
-        let t56 = t37 - 0.3950502153918333;
-        let t59 = t56 * t56 + t43;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg4")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.5 * t56 - t41 * t62;
-        let t65 = t56 - t64;
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
-        let t67 = 1.0 / t66;
-        let minus_g1_vx_leg4 = t65 * t67;
-        let t70 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
-        let t71 = 1.0 / t70;
-        let t72 = 0.5 * t8;
-        let t74 = t72 - t4 * t13;
-        let t75 = t8 - t74;
-        let g1_vy_leg1 = t75 * t15;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t82 = t72 + t22 * t28;
-        let t83 = t8 - t82;
-        let minus_g1_vy_leg2 = t83 * t33;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t90 = 0.5 * t41;
-        let t92 = t90 - t38 * t47;
-        let t93 = t41 - t92;
-        let g1_vy_leg3 = t93 * t52;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t101 = t90 + t56 * t62;
-        let t102 = t41 - t101;
-        let minus_g1_vy_leg4 = t102 * t67;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t115 = g1_vx_leg3 * g1_wz_leg3
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        // --- leg1
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        // --- leg2
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        // --- leg3
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t116 = t115 * t71;
-        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t134 = g1_vy_leg3 * g1_wz_leg3
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
-        let t142 = t132 * t71;
-        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t132 * t142;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        let t145 = 1.0 / t144;
-        let t146 = t134 * t145;
-        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t115 * t116
-            - t134 * t146;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        let t149 = 1.0 / t148;
-        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let inv_pivot_3 = 1.0 / pivot_3;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t174 = g1_vy_leg1 * actuator_velocities[0]
+        let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
-        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+        let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
-        let rate_3_leg1 = t149 * t176;
-        let t178 = t6 * rate_3_leg1;
-        let t179 = rate_3_leg1 * t178;
-        let t181 = t2 * rate_3_leg1;
-        let t182 = rate_3_leg1 * t181;
-        let minus_g2_vx_leg1 = t18 * t15;
-        let t189 = t145 * t174 - t146 * rate_3_leg1;
-        let t193 = t163 * t71 - t142 * t189 - t116 * rate_3_leg1;
-        let t194 = t193 - t178;
-        let minus_g2_vy_leg1 = t74 * t15;
-        let t197 = t189 - t181;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
-        let t200 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t201 = 0.0784 * t200;
-        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
-        let t206 = rate_1_leg1 * rate_1_leg1;
-        let t208 = 0.5 * (t10 - 0.1568);
-        let t209 = t206 * t208;
-        let minus_rate_dot_1_leg1 = t15 * (t75 * t179 - t19 * t182 - t201 - t209);
-        let t212 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let g2_vx_leg2 = t30 * t33;
-        let g2_vy_leg2 = t82 * t33;
-        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
-        let t222 = rate_2_leg2 * rate_2_leg2;
-        let t223 = 0.0784 * t222;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
-        let t228 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t230 = 0.5 * (t25 - 0.1568);
-        let t231 = t228 * t230;
-        let rate_dot_1_leg2 = t33 * (t83 * t179 - t31 * t182 - t223 - t231);
-        let t234 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = t49 * t52;
-        let t241 = t193 + t178;
-        let minus_g2_vy_leg3 = t92 * t52;
-        let t244 = t189 + t181;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
-        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t248 = 0.0784 * t247;
-        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
-        let t253 = rate_1_leg3 * rate_1_leg3;
-        let t255 = 0.5 * (t44 - 0.1568);
-        let t256 = t253 * t255;
-        let minus_rate_dot_1_leg3 = t52 * (t50 * t182 - t93 * t179 - t248 - t256);
-        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t64 * t67;
-        let g2_vy_leg4 = t101 * t67;
-        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
-        let t270 = rate_2_leg4 * rate_2_leg4;
-        let t271 = 0.0784 * t270;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
-        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t278 = 0.5 * (t59 - 0.1568);
-        let t279 = t276 * t278;
-        let rate_dot_1_leg4 = t67 * (t65 * t182 - t102 * t179 - t271 - t279);
-        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t284 = g1_vx_leg1 * t212 - minus_g1_vx_leg2 * t234 + g1_vx_leg3 * t259
-            - minus_g1_vx_leg4 * t282;
-        let t294 = g1_vy_leg1 * t212 - minus_g1_vy_leg2 * t234 + g1_vy_leg3 * t259
-            - minus_g1_vy_leg4 * t282 - t142 * t284;
-        let t306 = g1_wz_leg2 * t234 - minus_g1_wz_leg1 * t212 + g1_wz_leg3 * t259
-            - minus_g1_wz_leg4 * t282 - t116 * t284 - t146 * t294;
-        let rate_dot_3_leg1 = t149 * t306;
-        let t309 = t145 * t294 - t146 * rate_dot_3_leg1;
-        let t313 = t71 * t284 - t142 * t309 - t116 * rate_dot_3_leg1;
-        let t315 = t182 - t6 * rate_dot_3_leg1;
-        let t316 = t313 + t315;
-        let t319 = t179 + t2 * rate_dot_3_leg1;
-        let t320 = t309 - t319;
-        let t323 = t19 * t316 + t75 * t320 + t201;
-        let rate_dot_1_leg1 = t15 * (t323 + t209);
-        let t332 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-        let t333 = g1_wz_leg3 * t332;
-        ::overact::guard::platform(t333, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t333, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t333, 3.5376915986291904, "kept actuators")?;
-        let t334 = 0.5 / t333;
-        let t335 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t334;
-        let t340 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t334;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t349 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t334;
-        let t351 = minus_g2_vy_leg1 * t335 - minus_g2_vx_leg1 * t340 + g2_wz_leg1 * t349;
-        let t356 = t18 * t316 + t74 * t320 + 0.0784 * t206;
-        let minus_rate_dot_2_leg1 = t15 * (t356 + t200 * t208);
-        let t360 = t351 * minus_rate_dot_2_leg1;
-        let t364 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t334;
-        let t369 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t334;
-        let t375 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t334;
-        let t377 = minus_g2_vy_leg1 * t364 - minus_g2_vx_leg1 * t369 - g2_wz_leg1 * t375;
-        let t378 = t377 * minus_rate_dot_2_leg1;
-        let t379 = t349 * rate_dot_3_leg1;
-        let t380 = 9.090909090909092 * t315;
-        let t382 = 9.090909090909092 * t319;
-        let t387 = s_phi * t309 + c_phi * t313;
-        let t389 = t340 * t380 + t335 * t382 - t349 * t387;
-        let t390 = 9.090909090909092 * t389;
-        let t394 = t340 * t313 - t335 * t309;
-        let t395 = 82.64462809917356 * t394;
-        let t397 = 0.04321428571428571 * (t379 + t390 + t395);
-        let t405 = t369 * t380 + t364 * t382 + t375 * t387;
-        let t406 = 9.090909090909092 * t405;
-        let t407 = t375 * rate_dot_3_leg1;
-        let t411 = t369 * t313 - t364 * t309;
-        let t412 = 82.64462809917356 * t411;
-        let t414 = 0.04321428571428571 * (t406 - t407 + t412);
-        let t418 = 3.5714285714285716 * t323;
-        let t423 = rate_1_leg1 + minus_rate_2_leg1;
-        let t424 = t351 - 1.0;
-        let t429 = minus_rate_2_leg1 + rate_3_leg1;
-        let t430 = t349 - t351;
-        let t432 = t377 + t375;
-        let t434 = t332 * t334;
-        let t442 = t31 * t316 + t83 * t320 + t223;
-        let minus_rate_dot_1_leg2 = t33 * (t442 + t231);
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t453 = g2_vx_leg2 * t340 - g2_vy_leg2 * t335 - minus_g2_wz_leg2 * t349;
-        let t458 = t30 * t316 + t82 * t320 + 0.0784 * t228;
-        let rate_dot_2_leg2 = t33 * (t458 + t222 * t230);
-        let t462 = t453 * rate_dot_2_leg2;
-        let t467 = g2_vx_leg2 * t369 - g2_vy_leg2 * t364 + minus_g2_wz_leg2 * t375;
-        let t468 = t467 * rate_dot_2_leg2;
-        let t474 = 3.5714285714285716 * t442;
-        let t480 = minus_rate_1_leg2 + rate_2_leg2;
-        let t482 = t467 - 1.0;
-        let t486 = rate_3_leg1 - rate_2_leg2;
-        let t487 = t349 - t453;
-        let t489 = t467 + t375;
-        let t495 = t313 - t315;
-        let t497 = t309 + t319;
-        let t500 = t50 * t495 + t93 * t497 + t248;
-        let rate_dot_1_leg3 = t52 * (t500 + t256);
-        let t507 = t2 * t434;
-        let t509 = t6 * t434;
-        let t512 = 2.0 * (minus_g2_vy_leg3 * t507 + minus_g2_vx_leg3 * t509);
-        let minus_g2_wz_leg3 = g1_wz_leg3 * t512;
-        let t515 = minus_g2_vy_leg3 * t335 - minus_g2_vx_leg3 * t340
-            - minus_g2_wz_leg3 * t349;
-        let t520 = t49 * t495 + t92 * t497 + 0.0784 * t253;
-        let minus_rate_dot_2_leg3 = t52 * (t520 + t247 * t255);
-        let t524 = t515 * minus_rate_dot_2_leg3;
-        let t529 = minus_g2_vy_leg3 * t364 - minus_g2_vx_leg3 * t369
-            + minus_g2_wz_leg3 * t375;
-        let t530 = t529 * minus_rate_dot_2_leg3;
-        let t531 = t512 * minus_rate_dot_2_leg3;
-        let t534 = 0.04321428571428571 * (t379 - t390 + t395);
-        let t539 = 0.04321428571428571 * (t412 - (t407 + t406));
-        let t542 = t434 * rate_dot_3_leg1;
-        let t544 = t434 * t387;
-        let t545 = 0.11 * t542 + t544;
-        let t546 = 0.7857142857142857 * t545;
-        let t550 = 3.5714285714285716 * t500;
-        let t557 = rate_1_leg3 + minus_rate_2_leg3;
-        let t560 = t512 + 1.0;
-        let t565 = minus_rate_2_leg3 + rate_3_leg1;
-        let t566 = t349 - t515;
-        let t568 = t529 + t375;
-        let t570 = t434 + t512;
-        let t579 = minus_g1_vy_leg4 * t335 - minus_g1_vx_leg4 * t340
-            - minus_g1_wz_leg4 * t349;
-        let t583 = t65 * t495 + t102 * t497 + t271;
-        let minus_rate_dot_1_leg4 = t67 * (t583 + t279);
-        let t586 = t579 * minus_rate_dot_1_leg4;
-        let t591 = minus_g1_vy_leg4 * t364 - minus_g1_vx_leg4 * t369
-            + minus_g1_wz_leg4 * t375;
-        let t592 = t591 * minus_rate_dot_1_leg4;
-        let t593 = minus_g1_wz_leg4 * t434;
-        let t594 = 2.0 * t593;
-        let t595 = t594 * minus_rate_dot_1_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t609 = g2_vx_leg4 * t340 - g2_vy_leg4 * t335 + g2_wz_leg4 * t349;
-        let t614 = t64 * t495 + t101 * t497 + 0.0784 * t276;
-        let rate_dot_2_leg4 = t67 * (t614 + t270 * t278);
-        let t618 = t609 * rate_dot_2_leg4;
-        let t623 = g2_vx_leg4 * t369 - g2_vy_leg4 * t364 - g2_wz_leg4 * t375;
-        let t624 = t623 * rate_dot_2_leg4;
-        let t625 = g2_wz_leg4 * t434;
-        let t626 = 2.0 * t625;
-        let t627 = t626 * rate_dot_2_leg4;
-        let t637 = 3.5714285714285716 * t614;
-        let t639 = 3.5714285714285716 * t583;
-        let t652 = minus_rate_1_leg4 + rate_2_leg4;
-        let t653 = t609 - t579;
-        let t655 = t623 - t591;
-        let t657 = t594 + t626;
-        let t662 = rate_3_leg1 - rate_2_leg4;
-        let t663 = t349 - t609;
-        let t665 = t623 + t375;
-        let t667 = t434 - t626;
-        let t677 = c_phi * t309 - s_phi * t313;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+        let wz = inv_pivot_3 * t3;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * wz;
+        let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * wz;
+        let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let vy = inv_pivot_2 * t2 - l_3_2 * wz;
+        let vx = t1 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let v_end_x_leg1 = vx - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = vy - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_leg1;
+        // --- leg2
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED * rate_2_squared_leg2;
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg3
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = vx + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = vy + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t2_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            + minus_bias_rate_dot_1_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED * rate_2_squared_leg4;
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
+        let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
+            - bias_rate_dot_1_leg4;
+        let t4 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
+        let t5 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t4;
+        let t6 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
+            - l_3_2 * t5;
+        let dwz = inv_pivot_3 * t6;
+        let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
+        let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
+        // --- leg1
+        let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
+        let a_end_x_leg1 = dvx + a_arm_x_leg1;
+        let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
+        let a_end_y_leg1 = dvy - a_arm_y_leg3;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg1;
+        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+        let t7 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let det_ja = g1_wz_leg3 * t7;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        let half_per_det_ja = 0.5 / det_ja;
+        let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * half_per_det_ja;
+        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - minus_g2_vx_leg1 * vx_by_a1
+            + g2_wz_leg1 * wz_by_a1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+        let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+            * half_per_det_ja;
+        let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2 - minus_g2_vx_leg1 * vx_by_a2
+            - g2_wz_leg1 * minus_wz_by_a2;
+        let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+        let zz_platform_on_q1_leg1 = wz_by_a1 * dwz;
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        // --- platform
+        let a_x_platform = s_phi * dvy + c_phi * dvx;
+        let my_platform_on_q1_leg1 = vx_by_a1 * inv_r_p_a_arm_x_leg1
+            + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3 - wz_by_a1 * a_x_platform;
+        let inv_r_p_my_platform_on_q1_leg1 = INV_R_P * my_platform_on_q1_leg1;
+        let m_platform_on_q1_leg1 = vx_by_a1 * dvx - minus_vy_by_a1 * dvy;
+        let t1_platform = INV_R_P_SQUARED * m_platform_on_q1_leg1;
+        let t2_platform = R_P_SQUARED_PER_L_AB
+            * (zz_platform_on_q1_leg1 + inv_r_p_my_platform_on_q1_leg1 + t1_platform);
+        let my_platform_on_q1_leg2 = vx_by_a2 * inv_r_p_a_arm_x_leg1
+            + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3 + minus_wz_by_a2 * a_x_platform;
+        let inv_r_p_my_platform_on_q1_leg2 = INV_R_P * my_platform_on_q1_leg2;
+        let minus_zz_platform_on_q1_leg2 = minus_wz_by_a2 * dwz;
+        let m_platform_on_q1_leg2 = vx_by_a2 * dvx - minus_vy_by_a2 * dvy;
+        let t3_platform = INV_R_P_SQUARED * m_platform_on_q1_leg2;
+        let t4_platform = R_P_SQUARED_PER_L_AB
+            * (inv_r_p_my_platform_on_q1_leg2 - minus_zz_platform_on_q1_leg2
+                + t3_platform);
+        // --- leg1
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+        let qd_3_leg1 = minus_rate_2_leg1 + wz;
+        let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+        let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
+        let wz_by_a3 = t7 * half_per_det_ja;
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+            - minus_g2_wz_leg2 * wz_by_a1;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * rate_dot_2_leg2;
+        let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
+            + minus_g2_wz_leg2 * minus_wz_by_a2;
+        // --- leg2
+        let zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * rate_dot_2_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+        let qd_3_leg2 = wz - rate_2_leg2;
+        let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
+        let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
+        // --- leg3
+        let a_end_x_leg3 = dvx - a_arm_x_leg1;
+        let a_end_y_leg3 = dvy + a_arm_y_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+        let vy_by_a3 = p_x_leg3 * wz_by_a3;
+        let vx_by_a3 = p_y_leg1 * wz_by_a3;
+        let minus_g2_a3_leg3 = 2.0
+            * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
+        let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1 - minus_g2_vx_leg3 * vx_by_a1
+            - minus_g2_wz_leg3 * wz_by_a1;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+        let minus_zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * minus_rate_dot_2_leg3;
+        let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2 - minus_g2_vx_leg3 * vx_by_a2
+            + minus_g2_wz_leg3 * minus_wz_by_a2;
+        let minus_zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * minus_rate_dot_2_leg3;
+        let zz_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 * minus_rate_dot_2_leg3;
+        // --- platform
+        let t5_platform = R_P_SQUARED_PER_L_AB
+            * (zz_platform_on_q1_leg1 - inv_r_p_my_platform_on_q1_leg1 + t1_platform);
+        let t6_platform = R_P_SQUARED_PER_L_AB
+            * (t3_platform
+                - (minus_zz_platform_on_q1_leg2 + inv_r_p_my_platform_on_q1_leg2));
+        let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
+        let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+        let minus_my_platform_on_q1_leg3 = R_P * zz_platform_on_q1_leg3
+            + wz_by_a3_a_x_platform;
+        let t7_platform = 0.7857142857142857 * minus_my_platform_on_q1_leg3;
+        // --- leg3
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+        let qd_3_leg3 = minus_rate_2_leg3 + wz;
+        let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
+        let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
+        let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+        let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1 - minus_g1_vx_leg4 * vx_by_a1
+            - minus_g1_wz_leg4 * wz_by_a1;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+        let minus_zz_1_leg4_on_q1_leg1 = g1_a1_leg4 * minus_rate_dot_1_leg4;
+        let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2 - minus_g1_vx_leg4 * vx_by_a2
+            + minus_g1_wz_leg4 * minus_wz_by_a2;
+        let minus_zz_1_leg4_on_q1_leg2 = g1_a2_leg4 * minus_rate_dot_1_leg4;
+        let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
+        let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
+        let zz_1_leg4_on_q1_leg3 = minus_g1_a3_leg4 * minus_rate_dot_1_leg4;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
+            + g2_wz_leg4 * wz_by_a1;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let zz_2_leg4_on_q1_leg1 = g2_a1_leg4 * rate_dot_2_leg4;
+        let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+            - g2_wz_leg4 * minus_wz_by_a2;
+        let zz_2_leg4_on_q1_leg2 = g2_a2_leg4 * rate_dot_2_leg4;
+        let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
+        let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
+        // --- leg4
+        let zz_2_leg4_on_q1_leg3 = g2_a3_leg4 * rate_dot_2_leg4;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+        let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+        let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+        let qd_3_leg4 = wz - rate_2_leg4;
+        let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
+        let minus_off_3_leg4_on_q1_leg2 = g2_a2_leg4 + minus_wz_by_a2;
+        let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
+        let a_y_platform = c_phi * dvy - s_phi * dvx;
         ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, -t360, t397 - 0.28 * (rate_dot_1_leg1 - t360),
-                3.5714285714285716 * t356 - t351 * t418, 0.0784 * rate_dot_1_leg1, -(t423 * t424),
-                -::overact::math::signed(t424, t423), t424, t429 * t430,
-                ::overact::math::signed(t430, t429), t430, 0.0, 0.0, 0.0, 0.0, 0.0, t462,
-                t397 - 0.28 * t462, -(t453 * t474), 0.0, t453 * t480,
-                ::overact::math::signed(t453, t480), t453, t486 * t487,
-                ::overact::math::signed(t487, t486), t487, 0.0, 0.0, 0.0, 0.0, 0.0, -t524,
-                t534 + 0.28 * t524, -(t515 * t550), 0.0, -(t515 * t557),
-                -::overact::math::signed(t515, t557), t515, t565 * t566,
-                ::overact::math::signed(t566, t565), t566, -t586, -t586,
-                -(t579 * minus_rate_1_leg4), -::overact::math::signed(t579, minus_rate_1_leg4),
-                t579, t618, t534 - 0.28 * (t618 - t586), t579 * t637 - t609 * t639,
-                -(0.0784 * t586), t652 * t653, ::overact::math::signed(t653, t652), t653,
-                t662 * t663, ::overact::math::signed(t663, t662), t663, t379,
-                t335 * t380 - t340 * t382 + t349 * t677, t389, t394,
+                1.0, -minus_zz_2_leg1_on_q1_leg1,
+                t2_platform - L_AB * (rate_dot_1_leg1 - minus_zz_2_leg1_on_q1_leg1),
+                INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1, L_AB_SQUARED * rate_dot_1_leg1,
+                -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
+                -::overact::math::signed(off_2_leg1_on_q1_leg1, minus_qd_2_leg1),
+                off_2_leg1_on_q1_leg1, qd_3_leg1 * off_3_leg1_on_q1_leg1,
+                ::overact::math::signed(off_3_leg1_on_q1_leg1, qd_3_leg1), off_3_leg1_on_q1_leg1,
+                0.0, 0.0, 0.0, 0.0, 0.0, zz_2_leg2_on_q1_leg1,
+                t2_platform - L_AB * zz_2_leg2_on_q1_leg1, -(g2_a1_leg2 * a2_x_leg2), 0.0,
+                g2_a1_leg2 * qd_2_leg2, ::overact::math::signed(g2_a1_leg2, qd_2_leg2), g2_a1_leg2,
+                qd_3_leg2 * off_3_leg2_on_q1_leg1,
+                ::overact::math::signed(off_3_leg2_on_q1_leg1, qd_3_leg2), off_3_leg2_on_q1_leg1,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg3_on_q1_leg1,
+                t5_platform + L_AB * minus_zz_2_leg3_on_q1_leg1, -(g2_a1_leg3 * a2_x_leg3), 0.0,
+                -(g2_a1_leg3 * minus_qd_2_leg3),
+                -::overact::math::signed(g2_a1_leg3, minus_qd_2_leg3), g2_a1_leg3,
+                qd_3_leg3 * off_3_leg3_on_q1_leg1,
+                ::overact::math::signed(off_3_leg3_on_q1_leg1, qd_3_leg3), off_3_leg3_on_q1_leg1,
+                -minus_zz_1_leg4_on_q1_leg1, -minus_zz_1_leg4_on_q1_leg1,
+                -(g1_a1_leg4 * minus_rate_1_leg4),
+                -::overact::math::signed(g1_a1_leg4, minus_rate_1_leg4), g1_a1_leg4,
+                zz_2_leg4_on_q1_leg1,
+                t5_platform - L_AB * (zz_2_leg4_on_q1_leg1 - minus_zz_1_leg4_on_q1_leg1),
+                g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a1_leg4 * a2_x_leg4,
+                -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg1), qd_2_leg4 * off_2_leg4_on_q1_leg1,
+                ::overact::math::signed(off_2_leg4_on_q1_leg1, qd_2_leg4), off_2_leg4_on_q1_leg1,
+                qd_3_leg4 * off_3_leg4_on_q1_leg1,
+                ::overact::math::signed(off_3_leg4_on_q1_leg1, qd_3_leg4), off_3_leg4_on_q1_leg1,
+                zz_platform_on_q1_leg1,
+                minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 - vx_by_a1 * inv_r_p_a_arm_y_leg3
+                    + wz_by_a1 * a_y_platform,
+                my_platform_on_q1_leg1,
+                m_platform_on_q1_leg1,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t378, t414 + 0.28 * t378, -(t377 * t418), 0.0,
-                -(t377 * t423), -::overact::math::signed(t377, t423), t377, -(t429 * t432),
-                -::overact::math::signed(t432, t429), -t432, -minus_rate_dot_1_leg2,
-                -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
-                -::overact::math::sign(minus_rate_1_leg2), 1.0, t468,
-                t414 - 0.28 * (t468 - minus_rate_dot_1_leg2),
-                3.5714285714285716 * t458 - t467 * t474, -(0.0784 * minus_rate_dot_1_leg2),
-                t480 * t482, ::overact::math::signed(t482, t480), t482, -(t486 * t489),
-                -::overact::math::signed(t489, t486), -t489, 0.0, 0.0, 0.0, 0.0, 0.0, -t530,
-                t539 + 0.28 * t530, -(t529 * t550), 0.0, -(t529 * t557),
-                -::overact::math::signed(t529, t557), t529, -(t565 * t568),
-                -::overact::math::signed(t568, t565), -t568, -t592, -t592,
-                -(t591 * minus_rate_1_leg4), -::overact::math::signed(t591, minus_rate_1_leg4),
-                t591, t624, t539 - 0.28 * (t624 - t592), t591 * t637 - t623 * t639,
-                -(0.0784 * t592), t652 * t655, ::overact::math::signed(t655, t652), t655,
-                -(t662 * t665), -::overact::math::signed(t665, t662), -t665, -t407,
-                t364 * t380 - t369 * t382 - t375 * t677, t405, t411,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
+                t4_platform + L_AB * minus_zz_2_leg1_on_q1_leg2, -(g2_a2_leg1 * a2_x_leg1), 0.0,
+                -(g2_a2_leg1 * minus_qd_2_leg1),
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1), g2_a2_leg1,
+                -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2),
+                -::overact::math::signed(minus_off_3_leg1_on_q1_leg2, qd_3_leg1),
+                -minus_off_3_leg1_on_q1_leg2, -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2,
+                -minus_rate_1_leg2, -::overact::math::sign(minus_rate_1_leg2), 1.0,
+                zz_2_leg2_on_q1_leg2,
+                t4_platform - L_AB * (zz_2_leg2_on_q1_leg2 - minus_rate_dot_1_leg2),
+                INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2,
+                -(L_AB_SQUARED * minus_rate_dot_1_leg2), qd_2_leg2 * off_2_leg2_on_q1_leg2,
+                ::overact::math::signed(off_2_leg2_on_q1_leg2, qd_2_leg2), off_2_leg2_on_q1_leg2,
+                -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2),
+                -::overact::math::signed(minus_off_3_leg2_on_q1_leg2, qd_3_leg2),
+                -minus_off_3_leg2_on_q1_leg2, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg3_on_q1_leg2,
+                t6_platform + L_AB * minus_zz_2_leg3_on_q1_leg2, -(g2_a2_leg3 * a2_x_leg3), 0.0,
+                -(g2_a2_leg3 * minus_qd_2_leg3),
+                -::overact::math::signed(g2_a2_leg3, minus_qd_2_leg3), g2_a2_leg3,
+                -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2),
+                -::overact::math::signed(minus_off_3_leg3_on_q1_leg2, qd_3_leg3),
+                -minus_off_3_leg3_on_q1_leg2, -minus_zz_1_leg4_on_q1_leg2,
+                -minus_zz_1_leg4_on_q1_leg2, -(g1_a2_leg4 * minus_rate_1_leg4),
+                -::overact::math::signed(g1_a2_leg4, minus_rate_1_leg4), g1_a2_leg4,
+                zz_2_leg4_on_q1_leg2,
+                t6_platform - L_AB * (zz_2_leg4_on_q1_leg2 - minus_zz_1_leg4_on_q1_leg2),
+                g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a2_leg4 * a2_x_leg4,
+                -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2), qd_2_leg4 * off_2_leg4_on_q1_leg2,
+                ::overact::math::signed(off_2_leg4_on_q1_leg2, qd_2_leg4), off_2_leg4_on_q1_leg2,
+                -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2),
+                -::overact::math::signed(minus_off_3_leg4_on_q1_leg2, qd_3_leg4),
+                -minus_off_3_leg4_on_q1_leg2, -minus_zz_platform_on_q1_leg2,
+                minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 - vx_by_a2 * inv_r_p_a_arm_y_leg3
+                    - minus_wz_by_a2 * a_y_platform,
+                my_platform_on_q1_leg2,
+                m_platform_on_q1_leg2,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t434 * t429,
-                ::overact::math::signed(t434, t429), t434, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t434 * t486, ::overact::math::signed(t434, t486), t434,
-                rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, t531, t546 - 0.28 * (rate_dot_1_leg3 + t531),
-                3.5714285714285716 * t520 + t550 * t512, 0.0784 * rate_dot_1_leg3, t557 * t560,
-                ::overact::math::signed(t560, t557), -t560, t565 * t570,
-                ::overact::math::signed(t570, t565), t570, t595, t595, t594 * minus_rate_1_leg4,
-                ::overact::math::signed(t594, minus_rate_1_leg4), -t594, t627,
-                t546 - 0.28 * (t627 + t595), -(7.142857142857143 * (t593 * t614 + t625 * t583)),
-                0.0784 * t595, t652 * t657, ::overact::math::signed(t657, t652), t657, t662 * t667,
-                ::overact::math::signed(t667, t662), t667, t542,
-                t434 * t677 - (t507 * t380 + t509 * t382), -t545, 0.11 * t544,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, wz_by_a3 * qd_3_leg1,
+                ::overact::math::signed(wz_by_a3, qd_3_leg1), wz_by_a3, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, wz_by_a3 * qd_3_leg2,
+                ::overact::math::signed(wz_by_a3, qd_3_leg2), wz_by_a3, rate_dot_1_leg3,
+                rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0,
+                zz_2_leg3_on_q1_leg3, t7_platform - L_AB * (rate_dot_1_leg3 + zz_2_leg3_on_q1_leg3),
+                INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3,
+                L_AB_SQUARED * rate_dot_1_leg3, minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3,
+                ::overact::math::signed(minus_off_2_leg3_on_q1_leg3, minus_qd_2_leg3),
+                -minus_off_2_leg3_on_q1_leg3, qd_3_leg3 * off_3_leg3_on_q1_leg3,
+                ::overact::math::signed(off_3_leg3_on_q1_leg3, qd_3_leg3), off_3_leg3_on_q1_leg3,
+                zz_1_leg4_on_q1_leg3, zz_1_leg4_on_q1_leg3, minus_g1_a3_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(minus_g1_a3_leg4, minus_rate_1_leg4), -minus_g1_a3_leg4,
+                zz_2_leg4_on_q1_leg3,
+                t7_platform - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3),
+                -(7.142857142857143
+                    * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
+                        + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)),
+                L_AB_SQUARED * zz_1_leg4_on_q1_leg3,
+                qd_2_leg4 * off_2_leg4_on_q1_leg3,
+                ::overact::math::signed(off_2_leg4_on_q1_leg3, qd_2_leg4),
+                off_2_leg4_on_q1_leg3,
+                qd_3_leg4 * off_3_leg4_on_q1_leg3,
+                ::overact::math::signed(off_3_leg4_on_q1_leg3, qd_3_leg4),
+                off_3_leg4_on_q1_leg3,
+                zz_platform_on_q1_leg3,
+                wz_by_a3 * a_y_platform
+                    - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                        + vx_by_a3 * inv_r_p_a_arm_y_leg3),
+                -minus_my_platform_on_q1_leg3,
+                R_P * wz_by_a3_a_x_platform,
             ],
         ])
     }
@@ -3286,181 +4279,219 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t3 = t2 * twist[2];
-        let t5 = 0.11 * s_phi;
-        let t7 = twist[2] * t3 + t5 * acceleration[2];
-        let t8 = 9.090909090909092 * t7;
-        let t9 = t5 * twist[2];
-        let t12 = twist[2] * t9 - t2 * acceleration[2];
-        let t13 = 9.090909090909092 * t12;
-        let t20 = pose[0] + t5;
-        let t21 = t20 + 0.3950502153918333;
-        let t22 = 0.5 * t21;
-        let t23 = pose[0] - t22;
-        let t24 = t23 + t23;
-        let t26 = pose[1] + t2 - 0.10970563941232059;
-        let t28 = t26 * t26;
-        let t29 = t24 * t24 + t28;
-        let t31 = 0.0784 / t29 - 0.25;
-        ::overact::guard::reach(t31, "leg1")?;
-        let t32 = ::overact::math::sqrt(t31);
-        let t34 = t23 + t26 * t32;
-        let t35 = t24 - t34;
-        let t36 = t29 * t32;
-        ::overact::guard::leg(t36, 0.07839913810297301, "leg1")?;
-        let t37 = 1.0 / t36;
-        let g1_vx_leg1 = t35 * t37;
-        let t39 = t12 + acceleration[0];
-        let t41 = 0.5 * t26;
-        let t43 = t41 - t24 * t32;
-        let t44 = t26 - t43;
-        let t45 = acceleration[1] - t7;
-        let minus_g2_vx_leg1 = t34 * t37;
-        let t49 = twist[0] - t3;
-        let minus_g2_vy_leg1 = t43 * t37;
-        let t52 = twist[1] - t9;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t49 + minus_g2_vy_leg1 * t52;
-        let t55 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t57 = t35 * t39 + t44 * t45 + 0.0784 * t55;
-        let g1_vy_leg1 = t44 * t37;
-        let rate_1_leg1 = g1_vx_leg1 * t49 + g1_vy_leg1 * t52;
-        let t62 = rate_1_leg1 * rate_1_leg1;
-        let t64 = 0.5 * (t29 - 0.1568);
-        let rate_dot_1_leg1 = t37 * (t57 + t62 * t64);
-        let minus_g1_wz_leg1 = t5 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t74 = t20 - 0.3950502153918333;
-        let t75 = 0.5 * t74;
-        let t76 = pose[0] - t75;
-        let t77 = t76 + t76;
-        let t79 = t77 * t77 + t28;
-        let t81 = 0.0784 / t79 - 0.25;
-        ::overact::guard::reach(t81, "leg2")?;
-        let t82 = ::overact::math::sqrt(t81);
-        let t84 = t76 - t26 * t82;
-        let t85 = t77 - t84;
-        let t86 = t79 * t82;
-        ::overact::guard::leg(t86, 0.07839913810297301, "leg2")?;
-        let t87 = 1.0 / t86;
-        let minus_g1_vx_leg2 = t85 * t87;
-        let t91 = t41 + t77 * t82;
-        let t92 = t26 - t91;
-        let g2_vx_leg2 = t84 * t87;
-        let g2_vy_leg2 = t91 * t87;
-        let rate_2_leg2 = g2_vx_leg2 * t49 + g2_vy_leg2 * t52;
-        let t100 = rate_2_leg2 * rate_2_leg2;
-        let t102 = t85 * t39 + t92 * t45 + 0.0784 * t100;
-        let minus_g1_vy_leg2 = t92 * t87;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t49 + minus_g1_vy_leg2 * t52;
-        let t107 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t109 = 0.5 * (t79 - 0.1568);
-        let minus_rate_dot_1_leg2 = t87 * (t102 + t107 * t109);
-        let g1_wz_leg2 = t5 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
-        let t119 = pose[1] - t41;
-        let t120 = t119 + t119;
-        let t122 = t120 * t120;
-        let t123 = t21 * t21 + t122;
-        let t125 = 0.0784 / t123 - 0.25;
-        ::overact::guard::reach(t125, "leg3")?;
-        let t126 = ::overact::math::sqrt(t125);
-        let t128 = t22 + t120 * t126;
-        let t129 = t21 - t128;
-        let t130 = t123 * t126;
-        ::overact::guard::leg(t130, 0.07839913810297301, "leg3")?;
-        let t131 = 1.0 / t130;
-        let g1_vx_leg3 = t129 * t131;
-        let t133 = acceleration[0] - t12;
-        let t136 = t119 - t21 * t126;
-        let t137 = t120 - t136;
-        let t138 = t7 + acceleration[1];
-        let minus_g2_vx_leg3 = t128 * t131;
-        let t142 = twist[0] + t3;
-        let minus_g2_vy_leg3 = t136 * t131;
-        let t145 = twist[1] + t9;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t142 + minus_g2_vy_leg3 * t145;
-        let t148 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t150 = t129 * t133 + t137 * t138 + 0.0784 * t148;
-        let g1_vy_leg3 = t137 * t131;
-        let rate_1_leg3 = g1_vx_leg3 * t142 + g1_vy_leg3 * t145;
-        let t155 = rate_1_leg3 * rate_1_leg3;
-        let t157 = 0.5 * (t123 - 0.1568);
-        let rate_dot_1_leg3 = t131 * (t150 + t155 * t157);
-        let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t168 = t74 * t74 + t122;
-        let t170 = 0.0784 / t168 - 0.25;
-        ::overact::guard::reach(t170, "leg4")?;
-        let t171 = ::overact::math::sqrt(t170);
-        let t173 = t75 - t120 * t171;
-        let t174 = t74 - t173;
-        let t175 = t168 * t171;
-        ::overact::guard::leg(t175, 0.07839913810297301, "leg4")?;
-        let t176 = 1.0 / t175;
-        let minus_g1_vx_leg4 = t174 * t176;
-        let t180 = t119 + t74 * t171;
-        let t181 = t120 - t180;
-        let g2_vx_leg4 = t173 * t176;
-        let g2_vy_leg4 = t180 * t176;
-        let rate_2_leg4 = g2_vx_leg4 * t142 + g2_vy_leg4 * t145;
-        let t189 = rate_2_leg4 * rate_2_leg4;
-        let t191 = t174 * t133 + t181 * t138 + 0.0784 * t189;
-        let minus_g1_vy_leg4 = t181 * t176;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t142 + minus_g1_vy_leg4 * t145;
-        let t196 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t198 = 0.5 * (t168 - 0.1568);
-        let minus_rate_dot_1_leg4 = t176 * (t191 + t196 * t198);
-        let minus_g1_wz_leg4 = t5 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
-        let t236 = t34 * t39 + t43 * t45 + 0.0784 * t62;
-        let minus_rate_dot_2_leg1 = t37 * (t236 + t55 * t64);
-        let g2_wz_leg1 = t5 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let t250 = t84 * t39 + t91 * t45 + 0.0784 * t107;
-        let rate_dot_2_leg2 = t87 * (t250 + t100 * t109);
-        let minus_g2_wz_leg2 = t5 * g2_vy_leg2 + t2 * g2_vx_leg2;
-        let t264 = t128 * t133 + t136 * t138 + 0.0784 * t155;
-        let minus_rate_dot_2_leg3 = t131 * (t264 + t148 * t157);
-        let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t2 * minus_g2_vx_leg3;
-        let t278 = t173 * t133 + t180 * t138 + 0.0784 * t196;
-        let rate_dot_2_leg4 = t176 * (t278 + t189 * t198);
-        let g2_wz_leg4 = t5 * g2_vy_leg4 + t2 * g2_vx_leg4;
-        let t288 = 3.5714285714285716 * t236;
-        let t290 = 3.5714285714285716 * t57;
-        let t299 = 3.5714285714285716 * t250;
-        let t301 = 3.5714285714285716 * t102;
-        let t310 = 3.5714285714285716 * t264;
-        let t312 = 3.5714285714285716 * t150;
-        let t321 = 3.5714285714285716 * t278;
-        let t323 = 3.5714285714285716 * t191;
-        let t332 = rate_1_leg1 + minus_rate_2_leg1;
-        let t333 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t335 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t337 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t339 = minus_rate_1_leg2 + rate_2_leg2;
-        let t340 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t342 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t344 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t346 = rate_1_leg3 + minus_rate_2_leg3;
-        let t347 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t349 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t351 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t353 = minus_rate_1_leg4 + rate_2_leg4;
-        let t354 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t356 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t358 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t372 = minus_rate_2_leg1 + twist[2];
-        let t375 = 1.0 - g2_wz_leg1;
-        let t377 = twist[2] - rate_2_leg2;
-        let t380 = minus_g2_wz_leg2 + 1.0;
-        let t382 = minus_rate_2_leg3 + twist[2];
-        let t385 = minus_g2_wz_leg3 + 1.0;
-        let t387 = twist[2] - rate_2_leg4;
-        let t390 = 1.0 - g2_wz_leg4;
+        // --- leg1
+        let p_y_leg1 = R_P * c_phi;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let p_x_leg3 = R_P * s_phi;
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let half_d_x_leg3 = 0.5 * d_x_leg3;
+        let x_minus_half_d_x_leg3 = pose[0] - half_d_x_leg3;
+        let d_x_leg1 = x_minus_half_d_x_leg3 + x_minus_half_d_x_leg3;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = x_minus_half_d_x_leg3 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let half_d_x_leg4 = 0.5 * d_x_leg4;
+        // --- leg2
+        let x_minus_half_d_x_leg4 = pose[0] - half_d_x_leg4;
+        let d_x_leg2 = x_minus_half_d_x_leg4 + x_minus_half_d_x_leg4;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = x_minus_half_d_x_leg4 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        // --- leg3
+        let y_minus_half_d_y_leg1 = pose[1] - half_d_y_leg1;
+        let d_y_leg3 = y_minus_half_d_y_leg1 + y_minus_half_d_y_leg1;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let l1_y_leg3 = y_minus_half_d_y_leg1 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let l1_y_leg4 = y_minus_half_d_y_leg1 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        // --- leg1
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        // --- leg2
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+        // --- leg3
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        // --- leg4
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
         ::core::result::Result::Ok([
             [
-                0.0, -t8, t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
-                minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
-                minus_g1_vx_leg4 * minus_rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1,
-                minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
-                minus_g1_vx_leg4 * minus_rate_1_leg4,
+                0.0, -minus_mx_platform_on_vx, my_platform_on_vx, acceleration[0],
+                g1_vx_leg1 * rate_dot_1_leg1, minus_g1_vx_leg2 * minus_rate_dot_1_leg2,
+                g1_vx_leg3 * rate_dot_1_leg3, minus_g1_vx_leg4 * minus_rate_dot_1_leg4,
+                g1_vx_leg1 * rate_1_leg1, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                g1_vx_leg3 * rate_1_leg3, minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1),
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
@@ -3468,25 +4499,29 @@ impl DualV {
                 -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
                 minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
-                g1_vx_leg1 * t288 + minus_g2_vx_leg1 * t290,
-                -(minus_g1_vx_leg2 * t299 + g2_vx_leg2 * t301),
-                g1_vx_leg3 * t310 + minus_g2_vx_leg3 * t312,
-                -(minus_g1_vx_leg4 * t321 + g2_vx_leg4 * t323), t332 * t333, t339 * t340,
-                t346 * t347, t353 * t354, ::overact::math::signed(t333, t332),
-                ::overact::math::signed(t340, t339), ::overact::math::signed(t347, t346),
-                ::overact::math::signed(t354, t353), -t333, t340, -t347, t354,
-                minus_g2_vx_leg1 * t372, -(g2_vx_leg2 * t377), minus_g2_vx_leg3 * t382,
-                -(g2_vx_leg4 * t387), ::overact::math::signed(minus_g2_vx_leg1, t372),
-                -::overact::math::signed(g2_vx_leg2, t377),
-                ::overact::math::signed(minus_g2_vx_leg3, t382),
-                -::overact::math::signed(g2_vx_leg4, t387), minus_g2_vx_leg1,
+                g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1,
+                -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vx_leg2 * a2_x_leg2),
+                g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vx_leg3 * a2_x_leg3,
+                -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vx_leg4 * a2_x_leg4),
+                minus_qd_2_leg1 * minus_gq2_vx_leg1, qd_2_leg2 * gq2_vx_leg2,
+                minus_qd_2_leg3 * minus_gq2_vx_leg3, qd_2_leg4 * gq2_vx_leg4,
+                ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(gq2_vx_leg2, qd_2_leg2),
+                ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(gq2_vx_leg4, qd_2_leg4), -minus_gq2_vx_leg1, gq2_vx_leg2,
+                -minus_gq2_vx_leg3, gq2_vx_leg4, minus_g2_vx_leg1 * qd_3_leg1,
+                -(g2_vx_leg2 * qd_3_leg2), minus_g2_vx_leg3 * qd_3_leg3, -(g2_vx_leg4 * qd_3_leg4),
+                ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1),
+                -::overact::math::signed(g2_vx_leg2, qd_3_leg2),
+                ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3),
+                -::overact::math::signed(g2_vx_leg4, qd_3_leg4), minus_g2_vx_leg1,
             ],
             [
-                0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
-                minus_g1_vy_leg2 * minus_rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
-                minus_g1_vy_leg4 * minus_rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1,
-                minus_g1_vy_leg2 * minus_rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
-                minus_g1_vy_leg4 * minus_rate_1_leg4,
+                0.0, -my_platform_on_vx, -minus_mx_platform_on_vx, acceleration[1],
+                g1_vy_leg1 * rate_dot_1_leg1, minus_g1_vy_leg2 * minus_rate_dot_1_leg2,
+                g1_vy_leg3 * rate_dot_1_leg3, minus_g1_vy_leg4 * minus_rate_dot_1_leg4,
+                g1_vy_leg1 * rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
+                g1_vy_leg3 * rate_1_leg3, minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
@@ -3494,22 +4529,25 @@ impl DualV {
                 -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
                 minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
-                g1_vy_leg1 * t288 + minus_g2_vy_leg1 * t290,
-                -(minus_g1_vy_leg2 * t299 + g2_vy_leg2 * t301),
-                g1_vy_leg3 * t310 + minus_g2_vy_leg3 * t312,
-                -(minus_g1_vy_leg4 * t321 + g2_vy_leg4 * t323), t332 * t335, t339 * t342,
-                t346 * t349, t353 * t356, ::overact::math::signed(t335, t332),
-                ::overact::math::signed(t342, t339), ::overact::math::signed(t349, t346),
-                ::overact::math::signed(t356, t353), -t335, t342, -t349, t356,
-                minus_g2_vy_leg1 * t372, -(g2_vy_leg2 * t377), minus_g2_vy_leg3 * t382,
-                -(g2_vy_leg4 * t387), ::overact::math::signed(minus_g2_vy_leg1, t372),
-                -::overact::math::signed(g2_vy_leg2, t377),
-                ::overact::math::signed(minus_g2_vy_leg3, t382),
-                -::overact::math::signed(g2_vy_leg4, t387), minus_g2_vy_leg1,
+                g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1,
+                -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vy_leg2 * a2_x_leg2),
+                g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vy_leg3 * a2_x_leg3,
+                -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vy_leg4 * a2_x_leg4),
+                minus_qd_2_leg1 * minus_gq2_vy_leg1, qd_2_leg2 * gq2_vy_leg2,
+                minus_qd_2_leg3 * minus_gq2_vy_leg3, qd_2_leg4 * gq2_vy_leg4,
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
+                ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(gq2_vy_leg4, qd_2_leg4), -minus_gq2_vy_leg1, gq2_vy_leg2,
+                -minus_gq2_vy_leg3, gq2_vy_leg4, minus_g2_vy_leg1 * qd_3_leg1,
+                -(g2_vy_leg2 * qd_3_leg2), minus_g2_vy_leg3 * qd_3_leg3, -(g2_vy_leg4 * qd_3_leg4),
+                ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1),
+                -::overact::math::signed(g2_vy_leg2, qd_3_leg2),
+                ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3),
+                -::overact::math::signed(g2_vy_leg4, qd_3_leg4), minus_g2_vy_leg1,
             ],
             [
-                acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
+                acceleration[2], a_y_platform, -a_x_platform, 0.0,
                 -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
                 g1_wz_leg3 * rate_dot_1_leg3, minus_g1_wz_leg4 * minus_rate_dot_1_leg4,
                 -(minus_g1_wz_leg1 * rate_1_leg1), -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -3520,16 +4558,23 @@ impl DualV {
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
                 g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t288 + g2_wz_leg1 * t290),
-                g1_wz_leg2 * t299 + minus_g2_wz_leg2 * t301,
-                g1_wz_leg3 * t310 + minus_g2_wz_leg3 * t312,
-                -(minus_g1_wz_leg4 * t321 + g2_wz_leg4 * t323), -(t332 * t337), -(t339 * t344),
-                t346 * t351, t353 * t358, -::overact::math::signed(t337, t332),
-                -::overact::math::signed(t344, t339), ::overact::math::signed(t351, t346),
-                ::overact::math::signed(t358, t353), t337, -t344, -t351, t358, t372 * t375,
-                t377 * t380, t382 * t385, t387 * t390, ::overact::math::signed(t375, t372),
-                ::overact::math::signed(t380, t377), ::overact::math::signed(t385, t382),
-                ::overact::math::signed(t390, t387), t375,
+                g2_wz_leg4 * rate_dot_2_leg4,
+                -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 + g2_wz_leg1 * a2_x_leg1),
+                g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 + minus_g2_wz_leg2 * a2_x_leg2,
+                g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_wz_leg3 * a2_x_leg3,
+                -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 + g2_wz_leg4 * a2_x_leg4),
+                -(minus_qd_2_leg1 * gq2_wz_leg1), -(qd_2_leg2 * minus_gq2_wz_leg2),
+                minus_qd_2_leg3 * minus_gq2_wz_leg3, qd_2_leg4 * gq2_wz_leg4,
+                -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1),
+                -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2),
+                ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(gq2_wz_leg4, qd_2_leg4), gq2_wz_leg1, -minus_gq2_wz_leg2,
+                -minus_gq2_wz_leg3, gq2_wz_leg4, qd_3_leg1 * gq3_wz_leg1, qd_3_leg2 * gq3_wz_leg2,
+                qd_3_leg3 * gq3_wz_leg3, qd_3_leg4 * gq3_wz_leg4,
+                ::overact::math::signed(gq3_wz_leg1, qd_3_leg1),
+                ::overact::math::signed(gq3_wz_leg2, qd_3_leg2),
+                ::overact::math::signed(gq3_wz_leg3, qd_3_leg3),
+                ::overact::math::signed(gq3_wz_leg4, qd_3_leg4), gq3_wz_leg1,
             ],
         ])
     }
@@ -3554,6 +4599,15 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        // --- sines and cosines
         let [(s_phi, c_phi), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -3564,168 +4618,215 @@ impl DualV {
         ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
-        let t2 = 0.11 * c_phi;
-        let t3 = t2 * twist[2];
-        let t5 = 0.11 * s_phi;
-        let t7 = twist[2] * t3 + t5 * acceleration[2];
-        let t8 = 9.090909090909092 * t7;
-        let t9 = t5 * twist[2];
-        let t12 = twist[2] * t9 - t2 * acceleration[2];
-        let t13 = 9.090909090909092 * t12;
+        // --- leg1
+        let p_y_leg1 = R_P * c_phi;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let p_x_leg3 = R_P * s_phi;
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t30 = 3.5714285714285716 / s2_leg1;
-        let g1_vx_leg1 = c12_leg1 * t30;
-        let t32 = t12 + acceleration[0];
-        let t34 = acceleration[1] - t7;
-        let minus_g2_vx_leg1 = c1_leg1 * t30;
-        let t38 = twist[0] - t3;
-        let minus_g2_vy_leg1 = s1_leg1 * t30;
-        let t41 = twist[1] - t9;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t38 + minus_g2_vy_leg1 * t41;
-        let t45 = 0.28 * (minus_rate_2_leg1 * minus_rate_2_leg1);
-        let t46 = c12_leg1 * t32 + s12_leg1 * t34 + t45;
-        let g1_vy_leg1 = s12_leg1 * t30;
-        let rate_1_leg1 = g1_vx_leg1 * t38 + g1_vy_leg1 * t41;
-        let t52 = 0.28 * (rate_1_leg1 * rate_1_leg1);
-        let rate_dot_1_leg1 = t30 * (t46 + c2_leg1 * t52);
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t5 + g1_vx_leg1 * t2;
+        let k1_leg1 = INV_L_AB / s2_leg1;
+        let g1_vx_leg1 = c12_leg1 * k1_leg1;
+        let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_rate_2_squared_leg1 = L_AB * rate_2_squared_leg1;
+        let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1 + s12_leg1 * a_end_y_leg1
+            + l_ab_rate_2_squared_leg1;
+        let g1_vy_leg1 = s12_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
+        let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+        // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t72 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t72;
-        let minus_g2_vx_leg2 = c1_leg2 * t72;
-        let minus_g2_vy_leg2 = s1_leg2 * t72;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t38 + minus_g2_vy_leg2 * t41;
-        let t83 = 0.28 * (minus_rate_2_leg2 * minus_rate_2_leg2);
-        let t84 = c12_leg2 * t32 + s12_leg2 * t34 + t83;
-        let g1_vy_leg2 = s12_leg2 * t72;
-        let rate_1_leg2 = g1_vx_leg2 * t38 + g1_vy_leg2 * t41;
-        let t90 = 0.28 * (rate_1_leg2 * rate_1_leg2);
-        let rate_dot_1_leg2 = t72 * (t84 + c2_leg2 * t90);
-        let minus_g1_wz_leg2 = t5 * g1_vy_leg2 + t2 * g1_vx_leg2;
+        let k1_leg2 = INV_L_AB / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * k1_leg2;
+        let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+        let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+            + minus_g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let l_ab_rate_2_squared_leg2 = L_AB * rate_2_squared_leg2;
+        let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1 + s12_leg2 * a_end_y_leg1
+            + l_ab_rate_2_squared_leg2;
+        let g1_vy_leg2 = s12_leg2 * k1_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
+        let rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
+        let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+        // --- leg3
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t110 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t110;
-        let t112 = acceleration[0] - t12;
-        let t114 = t7 + acceleration[1];
-        let minus_g2_vx_leg3 = c1_leg3 * t110;
-        let t118 = twist[0] + t3;
-        let minus_g2_vy_leg3 = s1_leg3 * t110;
-        let t121 = twist[1] + t9;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t118 + minus_g2_vy_leg3 * t121;
-        let t125 = 0.28 * (minus_rate_2_leg3 * minus_rate_2_leg3);
-        let t126 = c12_leg3 * t112 + s12_leg3 * t114 + t125;
-        let g1_vy_leg3 = s12_leg3 * t110;
-        let rate_1_leg3 = g1_vx_leg3 * t118 + g1_vy_leg3 * t121;
-        let t132 = 0.28 * (rate_1_leg3 * rate_1_leg3);
-        let rate_dot_1_leg3 = t110 * (t126 + c2_leg3 * t132);
-        let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
+        let k1_leg3 = INV_L_AB / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * k1_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
+        let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let l_ab_rate_2_squared_leg3 = L_AB * rate_2_squared_leg3;
+        let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3 + s12_leg3 * a_end_y_leg3
+            + l_ab_rate_2_squared_leg3;
+        let g1_vy_leg3 = s12_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_ab_rate_1_squared_leg3 = L_AB * rate_1_squared_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + c2_leg3 * l_ab_rate_1_squared_leg3);
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t152 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t152;
-        let minus_g2_vx_leg4 = c1_leg4 * t152;
-        let minus_g2_vy_leg4 = s1_leg4 * t152;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t118 + minus_g2_vy_leg4 * t121;
-        let t163 = 0.28 * (minus_rate_2_leg4 * minus_rate_2_leg4);
-        let t164 = c12_leg4 * t112 + s12_leg4 * t114 + t163;
-        let g1_vy_leg4 = s12_leg4 * t152;
-        let rate_1_leg4 = g1_vx_leg4 * t118 + g1_vy_leg4 * t121;
-        let t170 = 0.28 * (rate_1_leg4 * rate_1_leg4);
-        let rate_dot_1_leg4 = t152 * (t164 + c2_leg4 * t170);
-        let g1_wz_leg4 = t5 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let t207 = c1_leg1 * t32 + s1_leg1 * t34 + t52;
-        let minus_rate_dot_2_leg1 = t30 * (t207 + t45 * c2_leg1);
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t5 + minus_g2_vx_leg1 * t2;
-        let t220 = c1_leg2 * t32 + s1_leg2 * t34 + t90;
-        let minus_rate_dot_2_leg2 = t72 * (t220 + t83 * c2_leg2);
-        let g2_wz_leg2 = t5 * minus_g2_vy_leg2 + t2 * minus_g2_vx_leg2;
-        let t233 = c1_leg3 * t112 + s1_leg3 * t114 + t132;
-        let minus_rate_dot_2_leg3 = t110 * (t233 + t125 * c2_leg3);
-        let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t2 * minus_g2_vx_leg3;
-        let t246 = c1_leg4 * t112 + s1_leg4 * t114 + t170;
-        let minus_rate_dot_2_leg4 = t152 * (t246 + t163 * c2_leg4);
-        let minus_g2_wz_leg4 = t5 * minus_g2_vy_leg4 + t2 * minus_g2_vx_leg4;
-        let t292 = rate_1_leg1 + minus_rate_2_leg1;
-        let t293 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t295 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t297 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t299 = rate_1_leg2 + minus_rate_2_leg2;
-        let t300 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t302 = g1_vy_leg2 + minus_g2_vy_leg2;
-        let t304 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t306 = rate_1_leg3 + minus_rate_2_leg3;
-        let t307 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t309 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t311 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t313 = rate_1_leg4 + minus_rate_2_leg4;
-        let t314 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t316 = g1_vy_leg4 + minus_g2_vy_leg4;
-        let t318 = g1_wz_leg4 + minus_g2_wz_leg4;
-        let t332 = minus_rate_2_leg1 + twist[2];
-        let t335 = 1.0 - g2_wz_leg1;
-        let t337 = minus_rate_2_leg2 + twist[2];
-        let t340 = 1.0 - g2_wz_leg2;
-        let t342 = minus_rate_2_leg3 + twist[2];
-        let t345 = minus_g2_wz_leg3 + 1.0;
-        let t347 = minus_rate_2_leg4 + twist[2];
-        let t350 = minus_g2_wz_leg4 + 1.0;
+        let k1_leg4 = INV_L_AB / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * k1_leg4;
+        let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
+        let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
+            + minus_g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let l_ab_rate_2_squared_leg4 = L_AB * rate_2_squared_leg4;
+        let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3 + s12_leg4 * a_end_y_leg3
+            + l_ab_rate_2_squared_leg4;
+        let g1_vy_leg4 = s12_leg4 * k1_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
+        let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
+        let rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
+        let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
+        let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+            + l_ab_rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
+        let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
+        let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+            + l_ab_rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k1_leg2
+            * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
+        let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
+        let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+            + l_ab_rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + l_ab_rate_2_squared_leg3 * c2_leg3);
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
+            + l_ab_rate_1_squared_leg4;
+        let minus_rate_dot_2_leg4 = k1_leg4
+            * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
+        let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4 + p_y_leg1 * minus_g2_vx_leg4;
+        // --- leg1
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        // --- leg2
+        let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let minus_gq2_vy_leg2 = g1_vy_leg2 + minus_g2_vy_leg2;
+        let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
+        // --- leg3
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        // --- leg4
+        let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
+        let minus_gq2_vx_leg4 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let minus_gq2_vy_leg4 = g1_vy_leg4 + minus_g2_vy_leg4;
+        let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+        let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
+        let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
         ::core::result::Result::Ok([
             [
-                0.0, -t8, t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
-                g1_vx_leg2 * rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
-                g1_vx_leg4 * rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1, g1_vx_leg2 * rate_1_leg2,
-                g1_vx_leg3 * rate_1_leg3, g1_vx_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1),
+                0.0, -minus_mx_platform_on_vx, my_platform_on_vx, acceleration[0],
+                g1_vx_leg1 * rate_dot_1_leg1, g1_vx_leg2 * rate_dot_1_leg2,
+                g1_vx_leg3 * rate_dot_1_leg3, g1_vx_leg4 * rate_dot_1_leg4,
+                g1_vx_leg1 * rate_1_leg1, g1_vx_leg2 * rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
+                g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg1, rate_1_leg1),
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, g1_vx_leg4, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_vx_leg4 * minus_rate_dot_2_leg4,
-                g1_vx_leg1 * t207 + minus_g2_vx_leg1 * t46,
-                g1_vx_leg2 * t220 + minus_g2_vx_leg2 * t84,
-                g1_vx_leg3 * t233 + minus_g2_vx_leg3 * t126,
-                g1_vx_leg4 * t246 + minus_g2_vx_leg4 * t164, t292 * t293, t299 * t300, t306 * t307,
-                t313 * t314, ::overact::math::signed(t293, t292),
-                ::overact::math::signed(t300, t299), ::overact::math::signed(t307, t306),
-                ::overact::math::signed(t314, t313), -t293, -t300, -t307, -t314,
-                minus_g2_vx_leg1 * t332, minus_g2_vx_leg2 * t337, minus_g2_vx_leg3 * t342,
-                minus_g2_vx_leg4 * t347, ::overact::math::signed(minus_g2_vx_leg1, t332),
-                ::overact::math::signed(minus_g2_vx_leg2, t337),
-                ::overact::math::signed(minus_g2_vx_leg3, t342),
-                ::overact::math::signed(minus_g2_vx_leg4, t347), minus_g2_vx_leg1,
+                g1_vx_leg1 * a_on_f2_leg1 + minus_g2_vx_leg1 * minus_a_on_f1_leg1,
+                g1_vx_leg2 * a_on_f2_leg2 + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
+                g1_vx_leg3 * a_on_f2_leg3 + minus_g2_vx_leg3 * minus_a_on_f1_leg3,
+                g1_vx_leg4 * a_on_f2_leg4 + minus_g2_vx_leg4 * minus_a_on_f1_leg4,
+                minus_qd_2_leg1 * minus_gq2_vx_leg1, minus_qd_2_leg2 * minus_gq2_vx_leg2,
+                minus_qd_2_leg3 * minus_gq2_vx_leg3, minus_qd_2_leg4 * minus_gq2_vx_leg4,
+                ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(minus_gq2_vx_leg2, minus_qd_2_leg2),
+                ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(minus_gq2_vx_leg4, minus_qd_2_leg4), -minus_gq2_vx_leg1,
+                -minus_gq2_vx_leg2, -minus_gq2_vx_leg3, -minus_gq2_vx_leg4,
+                minus_g2_vx_leg1 * qd_3_leg1, minus_g2_vx_leg2 * qd_3_leg2,
+                minus_g2_vx_leg3 * qd_3_leg3, minus_g2_vx_leg4 * qd_3_leg4,
+                ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1),
+                ::overact::math::signed(minus_g2_vx_leg2, qd_3_leg2),
+                ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3),
+                ::overact::math::signed(minus_g2_vx_leg4, qd_3_leg4), minus_g2_vx_leg1,
             ],
             [
-                0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
-                g1_vy_leg2 * rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
-                g1_vy_leg4 * rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1, g1_vy_leg2 * rate_1_leg2,
-                g1_vy_leg3 * rate_1_leg3, g1_vy_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
+                0.0, -my_platform_on_vx, -minus_mx_platform_on_vx, acceleration[1],
+                g1_vy_leg1 * rate_dot_1_leg1, g1_vy_leg2 * rate_dot_1_leg2,
+                g1_vy_leg3 * rate_dot_1_leg3, g1_vy_leg4 * rate_dot_1_leg4,
+                g1_vy_leg1 * rate_1_leg1, g1_vy_leg2 * rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
+                g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
                 ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, g1_vy_leg2,
                 g1_vy_leg3, g1_vy_leg4, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_vy_leg4 * minus_rate_dot_2_leg4,
-                g1_vy_leg1 * t207 + minus_g2_vy_leg1 * t46,
-                g1_vy_leg2 * t220 + minus_g2_vy_leg2 * t84,
-                g1_vy_leg3 * t233 + minus_g2_vy_leg3 * t126,
-                g1_vy_leg4 * t246 + minus_g2_vy_leg4 * t164, t292 * t295, t299 * t302, t306 * t309,
-                t313 * t316, ::overact::math::signed(t295, t292),
-                ::overact::math::signed(t302, t299), ::overact::math::signed(t309, t306),
-                ::overact::math::signed(t316, t313), -t295, -t302, -t309, -t316,
-                minus_g2_vy_leg1 * t332, minus_g2_vy_leg2 * t337, minus_g2_vy_leg3 * t342,
-                minus_g2_vy_leg4 * t347, ::overact::math::signed(minus_g2_vy_leg1, t332),
-                ::overact::math::signed(minus_g2_vy_leg2, t337),
-                ::overact::math::signed(minus_g2_vy_leg3, t342),
-                ::overact::math::signed(minus_g2_vy_leg4, t347), minus_g2_vy_leg1,
+                g1_vy_leg1 * a_on_f2_leg1 + minus_g2_vy_leg1 * minus_a_on_f1_leg1,
+                g1_vy_leg2 * a_on_f2_leg2 + minus_g2_vy_leg2 * minus_a_on_f1_leg2,
+                g1_vy_leg3 * a_on_f2_leg3 + minus_g2_vy_leg3 * minus_a_on_f1_leg3,
+                g1_vy_leg4 * a_on_f2_leg4 + minus_g2_vy_leg4 * minus_a_on_f1_leg4,
+                minus_qd_2_leg1 * minus_gq2_vy_leg1, minus_qd_2_leg2 * minus_gq2_vy_leg2,
+                minus_qd_2_leg3 * minus_gq2_vy_leg3, minus_qd_2_leg4 * minus_gq2_vy_leg4,
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(minus_gq2_vy_leg2, minus_qd_2_leg2),
+                ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(minus_gq2_vy_leg4, minus_qd_2_leg4), -minus_gq2_vy_leg1,
+                -minus_gq2_vy_leg2, -minus_gq2_vy_leg3, -minus_gq2_vy_leg4,
+                minus_g2_vy_leg1 * qd_3_leg1, minus_g2_vy_leg2 * qd_3_leg2,
+                minus_g2_vy_leg3 * qd_3_leg3, minus_g2_vy_leg4 * qd_3_leg4,
+                ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1),
+                ::overact::math::signed(minus_g2_vy_leg2, qd_3_leg2),
+                ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3),
+                ::overact::math::signed(minus_g2_vy_leg4, qd_3_leg4), minus_g2_vy_leg1,
             ],
             [
-                acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
+                acceleration[2], a_y_platform, -a_x_platform, 0.0,
                 -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(minus_g1_wz_leg2 * rate_dot_1_leg2),
                 g1_wz_leg3 * rate_dot_1_leg3, g1_wz_leg4 * rate_dot_1_leg4,
                 -(minus_g1_wz_leg1 * rate_1_leg1), -(minus_g1_wz_leg2 * rate_1_leg2),
@@ -3737,16 +4838,22 @@ impl DualV {
                 -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_wz_leg4 * minus_rate_dot_2_leg4,
-                -(minus_g1_wz_leg1 * t207 + g2_wz_leg1 * t46),
-                -(minus_g1_wz_leg2 * t220 + g2_wz_leg2 * t84),
-                g1_wz_leg3 * t233 + minus_g2_wz_leg3 * t126,
-                g1_wz_leg4 * t246 + minus_g2_wz_leg4 * t164, -(t292 * t297), -(t299 * t304),
-                t306 * t311, t313 * t318, -::overact::math::signed(t297, t292),
-                -::overact::math::signed(t304, t299), ::overact::math::signed(t311, t306),
-                ::overact::math::signed(t318, t313), t297, t304, -t311, -t318, t332 * t335,
-                t337 * t340, t342 * t345, t347 * t350, ::overact::math::signed(t335, t332),
-                ::overact::math::signed(t340, t337), ::overact::math::signed(t345, t342),
-                ::overact::math::signed(t350, t347), t335,
+                -(minus_g1_wz_leg1 * a_on_f2_leg1 + g2_wz_leg1 * minus_a_on_f1_leg1),
+                -(minus_g1_wz_leg2 * a_on_f2_leg2 + g2_wz_leg2 * minus_a_on_f1_leg2),
+                g1_wz_leg3 * a_on_f2_leg3 + minus_g2_wz_leg3 * minus_a_on_f1_leg3,
+                g1_wz_leg4 * a_on_f2_leg4 + minus_g2_wz_leg4 * minus_a_on_f1_leg4,
+                -(minus_qd_2_leg1 * gq2_wz_leg1), -(minus_qd_2_leg2 * gq2_wz_leg2),
+                minus_qd_2_leg3 * minus_gq2_wz_leg3, minus_qd_2_leg4 * minus_gq2_wz_leg4,
+                -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1),
+                -::overact::math::signed(gq2_wz_leg2, minus_qd_2_leg2),
+                ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(minus_gq2_wz_leg4, minus_qd_2_leg4), gq2_wz_leg1,
+                gq2_wz_leg2, -minus_gq2_wz_leg3, -minus_gq2_wz_leg4, qd_3_leg1 * gq3_wz_leg1,
+                qd_3_leg2 * gq3_wz_leg2, qd_3_leg3 * gq3_wz_leg3, qd_3_leg4 * gq3_wz_leg4,
+                ::overact::math::signed(gq3_wz_leg1, qd_3_leg1),
+                ::overact::math::signed(gq3_wz_leg2, qd_3_leg2),
+                ::overact::math::signed(gq3_wz_leg3, qd_3_leg3),
+                ::overact::math::signed(gq3_wz_leg4, qd_3_leg4), gq3_wz_leg1,
             ],
         ])
     }
@@ -3772,240 +4879,301 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = 0.11 * c_phi;
-        let t5 = pose[1] - (t3 - 0.10970563941232059);
-        let t6 = 0.5 * t5;
-        let t7 = pose[1] - t6;
-        let t8 = t7 + t7;
-        let t9 = pose[0] - t2;
-        let t10 = t9 + 0.3950502153918333;
-        let t12 = t8 * t8;
-        let t13 = t10 * t10 + t12;
-        let t15 = 0.0784 / t13 - 0.25;
-        ::overact::guard::reach(t15, "leg2")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let t18 = t7 + t10 * t16;
-        let t19 = t8 - t18;
-        let t20 = t13 * t16;
-        ::overact::guard::leg(t20, 0.07839913810297301, "leg2")?;
-        let t21 = 1.0 / t20;
-        let minus_g1_vy_leg2 = t19 * t21;
-        let t26 = 0.5 * t10 - t8 * t16;
-        let t27 = t10 - t26;
-        let minus_g1_vx_leg2 = t27 * t21;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t32 = t9 - 0.3950502153918333;
-        let t34 = t32 * t32 + t12;
-        let t36 = 0.0784 / t34 - 0.25;
-        ::overact::guard::reach(t36, "leg1")?;
-        let t37 = ::overact::math::sqrt(t36);
-        let t39 = t7 - t32 * t37;
-        let t40 = t8 - t39;
-        let t41 = t34 * t37;
-        ::overact::guard::leg(t41, 0.07839913810297301, "leg1")?;
-        let t42 = 1.0 / t41;
-        let g1_vy_leg1 = t40 * t42;
-        let t47 = 0.5 * t32 + t8 * t37;
-        let t48 = t32 - t47;
-        let g1_vx_leg1 = t48 * t42;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t3 * g1_vx_leg1;
-        let t54 = pose[0] + t2;
-        let t55 = t54 + 0.3950502153918333;
-        let t57 = t5 * t5;
-        let t58 = t55 * t55 + t57;
-        let t60 = 0.0784 / t58 - 0.25;
-        ::overact::guard::reach(t60, "leg3")?;
-        let t61 = ::overact::math::sqrt(t60);
-        let t63 = t6 - t55 * t61;
-        let t64 = t5 - t63;
-        let t65 = t58 * t61;
-        ::overact::guard::leg(t65, 0.07839913810297301, "leg3")?;
-        let g1_vy_leg3 = t64 / t65;
-        let t70 = 0.5 * t55 + t5 * t61;
-        let t71 = t55 - t70;
-        let g1_vx_leg3 = t71 / t65;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t3 * g1_vx_leg3;
-        let t77 = t54 - 0.3950502153918333;
-        let t79 = t77 * t77 + t57;
-        let t81 = 0.0784 / t79 - 0.25;
-        ::overact::guard::reach(t81, "leg4")?;
-        let t82 = ::overact::math::sqrt(t81);
-        let t84 = t6 + t77 * t82;
-        let t85 = t5 - t84;
-        let t86 = t79 * t82;
-        ::overact::guard::leg(t86, 0.07839913810297301, "leg4")?;
-        let t87 = 1.0 / t86;
-        let minus_g1_vy_leg4 = t85 * t87;
-        let t92 = 0.5 * t77 - t5 * t82;
-        let t93 = t77 - t92;
-        let minus_g1_vx_leg4 = t93 * t87;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t3 * minus_g1_vx_leg4;
-        let t105 = g1_vx_leg1 * actuator_velocities[0]
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg3 = pose[1] - (p_y_leg1 - 0.10970563941232059);
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
+        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        // --- leg2
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        // --- leg1
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let g1_vy_leg3 = l2_y_leg3 / det_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let g1_vx_leg3 = l2_x_leg3 / det_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t112 = g1_vx_leg3 * g1_wz_leg3
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t119 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t119, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t119, 25.429161076750646, "actuators")?;
-        let t120 = t112 / t119;
-        let t136 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t138 = g1_vy_leg3 * g1_wz_leg3
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let l_3_1 = s_1_3 / s_1_1;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t136 * t120;
-        let t146 = t136 / t119;
-        let t148 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t136 * t146;
-        ::overact::guard::platform(t148, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t148, 25.592368899353342, "actuators")?;
-        let t149 = t138 / t148;
-        let t158 = g1_vy_leg1 * actuator_velocities[0]
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let l_2_1 = s_1_2 / s_1_1;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let l_3_2 = schur_2_3 / pivot_2;
+        let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t105 * t146;
-        let t160 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+        let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t105 * t120 - t149 * t158;
-        let t171 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t112 * t120
-            - t138 * t149;
-        ::overact::guard::platform(t171, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t171, 0.3076928490286828, "actuators")?;
-        let rate_3_leg1 = t160 / t171;
-        let t173 = t3 * rate_3_leg1;
-        let t174 = rate_3_leg1 * t173;
-        let t176 = t2 * rate_3_leg1;
-        let t177 = rate_3_leg1 * t176;
-        let g2_vx_leg2 = t26 * t21;
-        let t184 = t158 / t148 - t149 * rate_3_leg1;
-        let t188 = t105 / t119 - t146 * t184 - t120 * rate_3_leg1;
-        let t189 = t188 - t173;
-        let g2_vy_leg2 = t18 * t21;
-        let t192 = t184 - t176;
-        let rate_2_leg2 = g2_vx_leg2 * t189 + g2_vy_leg2 * t192;
-        let t195 = rate_2_leg2 * rate_2_leg2;
-        let t196 = 0.0784 * t195;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t189 + minus_g1_vy_leg2 * t192;
-        let t201 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t203 = 0.5 * (t13 - 0.1568);
-        let t204 = t201 * t203;
-        let rate_dot_1_leg2 = t21 * (t19 * t174 - t27 * t177 - t196 - t204);
-        let t207 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t47 * t42;
-        let minus_g2_vy_leg1 = t39 * t42;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t189 + minus_g2_vy_leg1 * t192;
-        let t217 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t218 = 0.0784 * t217;
-        let rate_1_leg1 = g1_vx_leg1 * t189 + g1_vy_leg1 * t192;
-        let t223 = rate_1_leg1 * rate_1_leg1;
-        let t225 = 0.5 * (t34 - 0.1568);
-        let t226 = t223 * t225;
-        let minus_rate_dot_1_leg1 = t42 * (t40 * t174 - t48 * t177 - t218 - t226);
-        let t229 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let minus_g2_vx_leg3 = t70 / t65;
-        let t236 = t188 + t173;
-        let t238 = t5 / t65;
-        let minus_g2_vy_leg3 = t238 - g1_vy_leg3;
-        let t240 = t184 + t176;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t236 + minus_g2_vy_leg3 * t240;
-        let t243 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t244 = 0.0784 * t243;
-        let rate_1_leg3 = g1_vx_leg3 * t236 + g1_vy_leg3 * t240;
-        let t249 = rate_1_leg3 * rate_1_leg3;
-        let t251 = 0.5 * (t58 - 0.1568);
-        let t252 = t249 * t251;
-        let minus_rate_dot_1_leg3 = (t71 * t177 - t64 * t174 - t244 - t252) / t65;
-        let t255 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t92 * t87;
-        let g2_vy_leg4 = t84 * t87;
-        let rate_2_leg4 = g2_vx_leg4 * t236 + g2_vy_leg4 * t240;
-        let t266 = rate_2_leg4 * rate_2_leg4;
-        let t267 = 0.0784 * t266;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t236 + minus_g1_vy_leg4 * t240;
-        let t272 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t274 = 0.5 * (t79 - 0.1568);
-        let t275 = t272 * t274;
-        let rate_dot_1_leg4 = t87 * (t93 * t177 - t85 * t174 - t267 - t275);
-        let t278 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t287 = g1_vx_leg1 * t229 - minus_g1_vx_leg2 * t207 + g1_vx_leg3 * t255
-            - minus_g1_vx_leg4 * t278;
-        let t298 = g1_vy_leg1 * t229 - minus_g1_vy_leg2 * t207 + g1_vy_leg3 * t255
-            - minus_g1_vy_leg4 * t278 - t146 * t287;
-        let t300 = g1_wz_leg2 * t207 - minus_g1_wz_leg1 * t229 + g1_wz_leg3 * t255
-            - minus_g1_wz_leg4 * t278 - t120 * t287 - t149 * t298;
-        let rate_dot_3_leg1 = t300 / t171;
-        let t303 = t174 + t2 * rate_dot_3_leg1;
-        let t304 = 9.090909090909092 * t303;
-        let t306 = t177 - t3 * rate_dot_3_leg1;
-        let t307 = 9.090909090909092 * t306;
-        let t310 = t298 / t148 - t149 * rate_dot_3_leg1;
-        let t316 = t287 / t119 - t146 * t310 - t120 * rate_dot_3_leg1;
-        let t322 = t306 + t316;
-        let t324 = t310 - t303;
-        let t327 = t48 * t322 + t40 * t324 + t218;
-        let rate_dot_1_leg1 = t42 * (t327 + t226);
-        let t336 = t27 * t322 + t19 * t324 + t196;
-        let minus_rate_dot_1_leg2 = t21 * (t336 + t204);
-        let t342 = t316 - t306;
-        let t344 = t303 + t310;
-        let t347 = t71 * t342 + t64 * t344 + t244;
-        let rate_dot_1_leg3 = (t347 + t252) / t65;
-        let t356 = t93 * t342 + t85 * t344 + t267;
-        let minus_rate_dot_1_leg4 = t87 * (t356 + t275);
-        let t390 = t47 * t322 + t39 * t324 + 0.0784 * t223;
-        let minus_rate_dot_2_leg1 = t42 * (t390 + t217 * t225);
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t3 * minus_g2_vx_leg1;
-        let t404 = t26 * t322 + t18 * t324 + 0.0784 * t201;
-        let rate_dot_2_leg2 = t21 * (t404 + t195 * t203);
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t3 * g2_vx_leg2;
-        let t418 = t70 * t342 + t63 * t344 + 0.0784 * t249;
-        let minus_rate_dot_2_leg3 = (t418 + t243 * t251) / t65;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t3 * minus_g2_vx_leg3;
-        let t432 = t92 * t342 + t84 * t344 + 0.0784 * t272;
-        let rate_dot_2_leg4 = t87 * (t432 + t266 * t274);
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t3 * g2_vx_leg4;
-        let t442 = 3.5714285714285716 * t390;
-        let t444 = 3.5714285714285716 * t327;
-        let t453 = 3.5714285714285716 * t404;
-        let t455 = 3.5714285714285716 * t336;
-        let t464 = 3.5714285714285716 * t418;
-        let t466 = 3.5714285714285716 * t347;
-        let t475 = 3.5714285714285716 * t432;
-        let t477 = 3.5714285714285716 * t356;
-        let t486 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t487 = rate_1_leg1 + minus_rate_2_leg1;
-        let t489 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t491 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t493 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t494 = minus_rate_1_leg2 + rate_2_leg2;
-        let t496 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t498 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t500 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t501 = rate_1_leg3 + minus_rate_2_leg3;
-        let t504 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t506 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t507 = minus_rate_1_leg4 + rate_2_leg4;
-        let t509 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t511 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t525 = minus_rate_2_leg1 + rate_3_leg1;
-        let t528 = 1.0 - g2_wz_leg1;
-        let t530 = rate_3_leg1 - rate_2_leg2;
-        let t533 = minus_g2_wz_leg2 + 1.0;
-        let t535 = minus_rate_2_leg3 + rate_3_leg1;
-        let t538 = minus_g2_wz_leg3 + 1.0;
-        let t540 = rate_3_leg1 - rate_2_leg4;
-        let t543 = 1.0 - g2_wz_leg4;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let wz = t3 / pivot_3;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * wz;
+        let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * wz;
+        let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let vy = t2 / pivot_2 - l_3_2 * wz;
+        let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
+        let v_end_x_leg1 = vx - v_arm_x_leg3;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let v_end_y_leg1 = vy - v_arm_y_leg3;
+        // --- leg2
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED * rate_2_squared_leg2;
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_leg1;
+        // --- leg3
+        let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
+        let v_end_x_leg3 = vx + v_arm_x_leg3;
+        let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
+        let minus_g2_vy_leg3 = minus_gq2_vy_leg3 - g1_vy_leg3;
+        let v_end_y_leg3 = vy + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
+        let minus_bias_rate_dot_1_leg3 = (bias_a_on_f1_leg3 - t2_leg3) / det_leg3;
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            + minus_bias_rate_dot_1_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED * rate_2_squared_leg4;
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
+        let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
+            - bias_rate_dot_1_leg4;
+        let t4 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
+        let t5 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t4;
+        let t6 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
+            - l_3_2 * t5;
+        let dwz = t6 / pivot_3;
+        // --- leg1
+        let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
+        let minus_mx_platform_on_vx = INV_R_P * a_arm_y_leg3;
+        let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
+        let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
+        let dvy = t5 / pivot_2 - l_3_2 * dwz;
+        let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
+        let a_y_platform = c_phi * dvy - s_phi * dvx;
+        let a_x_platform = s_phi * dvy + c_phi * dvx;
+        let a_end_x_leg1 = a_arm_x_leg1 + dvx;
+        let a_end_y_leg1 = dvy - a_arm_y_leg3;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg1;
+        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+        // --- leg3
+        let a_end_x_leg3 = dvx - a_arm_x_leg1;
+        let a_end_y_leg3 = a_arm_y_leg3 + dvy;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg3;
+        let rate_dot_1_leg3 = (minus_a_on_f1_leg3 + t2_leg3) / det_leg3;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3)
+            / det_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let inv_l_ab_a_on_f2_leg1 = INV_L_AB * a_on_f2_leg1;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let inv_l_ab_a_on_f2_leg2 = INV_L_AB * a_on_f2_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let inv_l_ab_a_on_f2_leg3 = INV_L_AB * a_on_f2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        // --- leg1
+        let minus_gq2_vx_leg1 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let gq2_wz_leg1 = minus_g1_wz_leg1 + g2_wz_leg1;
+        // --- leg2
+        let gq2_vx_leg2 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let minus_gq2_wz_leg2 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
+        // --- leg4
+        let gq2_vx_leg4 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let gq2_vy_leg4 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let gq2_wz_leg4 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let qd_3_leg1 = minus_rate_2_leg1 + wz;
+        let gq3_wz_leg1 = 1.0 - g2_wz_leg1;
+        let qd_3_leg2 = wz - rate_2_leg2;
+        let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
+        let qd_3_leg3 = minus_rate_2_leg3 + wz;
+        let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
+        let qd_3_leg4 = wz - rate_2_leg4;
+        let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
         ::core::result::Result::Ok([
             [
-                0.0, -t304, t307, t316, g1_vx_leg1 * rate_dot_1_leg1,
+                0.0, -minus_mx_platform_on_vx, my_platform_on_vx, dvx, g1_vx_leg1 * rate_dot_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
                 minus_g1_vx_leg4 * minus_rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
@@ -4017,25 +5185,29 @@ impl DualV {
                 -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
                 minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
-                g1_vx_leg1 * t442 + minus_g2_vx_leg1 * t444,
-                -(minus_g1_vx_leg2 * t453 + g2_vx_leg2 * t455),
-                g1_vx_leg3 * t464 + minus_g2_vx_leg3 * t466,
-                -(minus_g1_vx_leg4 * t475 + g2_vx_leg4 * t477), t486 * t487, t493 * t494,
-                t500 * t501, t506 * t507, ::overact::math::signed(t486, t487),
-                ::overact::math::signed(t493, t494), ::overact::math::signed(t500, t501),
-                ::overact::math::signed(t506, t507), -t486, t493, -t500, t506,
-                minus_g2_vx_leg1 * t525, -(g2_vx_leg2 * t530), minus_g2_vx_leg3 * t535,
-                -(g2_vx_leg4 * t540), ::overact::math::signed(minus_g2_vx_leg1, t525),
-                -::overact::math::signed(g2_vx_leg2, t530),
-                ::overact::math::signed(minus_g2_vx_leg3, t535),
-                -::overact::math::signed(g2_vx_leg4, t540), minus_g2_vx_leg1,
+                g1_vx_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vx_leg1 * a2_x_leg1,
+                -(minus_g1_vx_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vx_leg2 * a2_x_leg2),
+                g1_vx_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vx_leg3 * a2_x_leg3,
+                -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vx_leg4 * a2_x_leg4),
+                minus_gq2_vx_leg1 * minus_qd_2_leg1, gq2_vx_leg2 * qd_2_leg2,
+                minus_gq2_vx_leg3 * minus_qd_2_leg3, gq2_vx_leg4 * qd_2_leg4,
+                ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(gq2_vx_leg2, qd_2_leg2),
+                ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(gq2_vx_leg4, qd_2_leg4), -minus_gq2_vx_leg1, gq2_vx_leg2,
+                -minus_gq2_vx_leg3, gq2_vx_leg4, minus_g2_vx_leg1 * qd_3_leg1,
+                -(g2_vx_leg2 * qd_3_leg2), minus_g2_vx_leg3 * qd_3_leg3, -(g2_vx_leg4 * qd_3_leg4),
+                ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1),
+                -::overact::math::signed(g2_vx_leg2, qd_3_leg2),
+                ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3),
+                -::overact::math::signed(g2_vx_leg4, qd_3_leg4), minus_g2_vx_leg1,
             ],
             [
-                0.0, -t307, -t304, t310, g1_vy_leg1 * rate_dot_1_leg1,
-                minus_g1_vy_leg2 * minus_rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
-                minus_g1_vy_leg4 * minus_rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1,
-                minus_g1_vy_leg2 * minus_rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
-                minus_g1_vy_leg4 * minus_rate_1_leg4,
+                0.0, -my_platform_on_vx, -minus_mx_platform_on_vx, dvy,
+                g1_vy_leg1 * rate_dot_1_leg1, minus_g1_vy_leg2 * minus_rate_dot_1_leg2,
+                g1_vy_leg3 * rate_dot_1_leg3, minus_g1_vy_leg4 * minus_rate_dot_1_leg4,
+                g1_vy_leg1 * rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
+                g1_vy_leg3 * rate_1_leg3, minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
@@ -4043,41 +5215,52 @@ impl DualV {
                 -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
                 minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
-                g1_vy_leg1 * t442 + minus_g2_vy_leg1 * t444,
-                -(minus_g1_vy_leg2 * t453 + g2_vy_leg2 * t455),
-                g1_vy_leg3 * t464 + minus_g2_vy_leg3 * t466,
-                -(minus_g1_vy_leg4 * t475 + g2_vy_leg4 * t477), t489 * t487, t496 * t494,
-                t238 * t501, t509 * t507, ::overact::math::signed(t489, t487),
-                ::overact::math::signed(t496, t494), ::overact::math::signed(t238, t501),
-                ::overact::math::signed(t509, t507), -t489, t496, -t238, t509,
-                minus_g2_vy_leg1 * t525, -(g2_vy_leg2 * t530), minus_g2_vy_leg3 * t535,
-                -(g2_vy_leg4 * t540), ::overact::math::signed(minus_g2_vy_leg1, t525),
-                -::overact::math::signed(g2_vy_leg2, t530),
-                ::overact::math::signed(minus_g2_vy_leg3, t535),
-                -::overact::math::signed(g2_vy_leg4, t540), minus_g2_vy_leg1,
+                g1_vy_leg1 * inv_l_ab_a_on_f2_leg1 + minus_g2_vy_leg1 * a2_x_leg1,
+                -(minus_g1_vy_leg2 * inv_l_ab_a_on_f2_leg2 + g2_vy_leg2 * a2_x_leg2),
+                g1_vy_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_vy_leg3 * a2_x_leg3,
+                -(minus_g1_vy_leg4 * inv_l_ab_a_on_f2_leg4 + g2_vy_leg4 * a2_x_leg4),
+                minus_gq2_vy_leg1 * minus_qd_2_leg1, gq2_vy_leg2 * qd_2_leg2,
+                minus_gq2_vy_leg3 * minus_qd_2_leg3, gq2_vy_leg4 * qd_2_leg4,
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
+                ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(gq2_vy_leg4, qd_2_leg4), -minus_gq2_vy_leg1, gq2_vy_leg2,
+                -minus_gq2_vy_leg3, gq2_vy_leg4, minus_g2_vy_leg1 * qd_3_leg1,
+                -(g2_vy_leg2 * qd_3_leg2), minus_g2_vy_leg3 * qd_3_leg3, -(g2_vy_leg4 * qd_3_leg4),
+                ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1),
+                -::overact::math::signed(g2_vy_leg2, qd_3_leg2),
+                ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3),
+                -::overact::math::signed(g2_vy_leg4, qd_3_leg4), minus_g2_vy_leg1,
             ],
             [
-                rate_dot_3_leg1, c_phi * t310 - s_phi * t316, -(s_phi * t310 + c_phi * t316), 0.0,
-                -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
-                g1_wz_leg3 * rate_dot_1_leg3, minus_g1_wz_leg4 * minus_rate_dot_1_leg4,
-                -(minus_g1_wz_leg1 * rate_1_leg1), -(g1_wz_leg2 * minus_rate_1_leg2),
-                g1_wz_leg3 * rate_1_leg3, minus_g1_wz_leg4 * minus_rate_1_leg4,
+                dwz, a_y_platform, -a_x_platform, 0.0, -(minus_g1_wz_leg1 * rate_dot_1_leg1),
+                -(g1_wz_leg2 * minus_rate_dot_1_leg2), g1_wz_leg3 * rate_dot_1_leg3,
+                minus_g1_wz_leg4 * minus_rate_dot_1_leg4, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -(g1_wz_leg2 * minus_rate_1_leg2), g1_wz_leg3 * rate_1_leg3,
+                minus_g1_wz_leg4 * minus_rate_1_leg4,
                 -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
                 g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t442 + g2_wz_leg1 * t444),
-                g1_wz_leg2 * t453 + minus_g2_wz_leg2 * t455,
-                g1_wz_leg3 * t464 + minus_g2_wz_leg3 * t466,
-                -(minus_g1_wz_leg4 * t475 + g2_wz_leg4 * t477), -(t491 * t487), -(t498 * t494),
-                t504 * t501, t511 * t507, -::overact::math::signed(t491, t487),
-                -::overact::math::signed(t498, t494), ::overact::math::signed(t504, t501),
-                ::overact::math::signed(t511, t507), t491, -t498, -t504, t511, t528 * t525,
-                t533 * t530, t538 * t535, t543 * t540, ::overact::math::signed(t528, t525),
-                ::overact::math::signed(t533, t530), ::overact::math::signed(t538, t535),
-                ::overact::math::signed(t543, t540), t528,
+                g2_wz_leg4 * rate_dot_2_leg4,
+                -(minus_g1_wz_leg1 * inv_l_ab_a_on_f2_leg1 + g2_wz_leg1 * a2_x_leg1),
+                g1_wz_leg2 * inv_l_ab_a_on_f2_leg2 + minus_g2_wz_leg2 * a2_x_leg2,
+                g1_wz_leg3 * inv_l_ab_a_on_f2_leg3 + minus_g2_wz_leg3 * a2_x_leg3,
+                -(minus_g1_wz_leg4 * inv_l_ab_a_on_f2_leg4 + g2_wz_leg4 * a2_x_leg4),
+                -(gq2_wz_leg1 * minus_qd_2_leg1), -(minus_gq2_wz_leg2 * qd_2_leg2),
+                minus_gq2_wz_leg3 * minus_qd_2_leg3, gq2_wz_leg4 * qd_2_leg4,
+                -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1),
+                -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2),
+                ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(gq2_wz_leg4, qd_2_leg4), gq2_wz_leg1, -minus_gq2_wz_leg2,
+                -minus_gq2_wz_leg3, gq2_wz_leg4, gq3_wz_leg1 * qd_3_leg1, gq3_wz_leg2 * qd_3_leg2,
+                gq3_wz_leg3 * qd_3_leg3, gq3_wz_leg4 * qd_3_leg4,
+                ::overact::math::signed(gq3_wz_leg1, qd_3_leg1),
+                ::overact::math::signed(gq3_wz_leg2, qd_3_leg2),
+                ::overact::math::signed(gq3_wz_leg3, qd_3_leg3),
+                ::overact::math::signed(gq3_wz_leg4, qd_3_leg4), gq3_wz_leg1,
             ],
         ])
     }
@@ -4100,254 +5283,415 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 + 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg2")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 - t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg2")?;
-        let t19 = 1.0 / t18;
-        let minus_g1_vx_leg2 = t17 * t19;
-        let t22 = pose[1] - t6 + 0.10970563941232059;
-        let t23 = 0.5 * t22;
-        let t24 = pose[0] + t2;
-        let t25 = t24 + 0.3950502153918333;
-        let t27 = t22 * t22;
-        let t28 = t25 * t25 + t27;
-        let t30 = 0.0784 / t28 - 0.25;
-        ::overact::guard::reach(t30, "leg3")?;
-        let t31 = ::overact::math::sqrt(t30);
-        let t33 = t23 - t25 * t31;
-        let t34 = t22 - t33;
-        let t35 = t28 * t31;
-        ::overact::guard::leg(t35, 0.07839913810297301, "leg3")?;
-        let t36 = 1.0 / t35;
-        let g1_vy_leg3 = t34 * t36;
-        let t39 = 0.5 * t8;
-        let t41 = t39 + t4 * t14;
-        let t42 = t8 - t41;
-        let minus_g1_vy_leg2 = t42 * t19;
-        let t46 = 0.5 * t25 + t22 * t31;
-        let t47 = t25 - t46;
-        let g1_vx_leg3 = t47 * t36;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t54 = t3 - 0.3950502153918333;
-        let t57 = t54 * t54 + t10;
-        let t59 = 0.0784 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg1")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t62 = 0.5 * t54 + t8 * t60;
-        let t63 = t54 - t62;
-        let t64 = t57 * t60;
-        ::overact::guard::leg(t64, 0.07839913810297301, "leg1")?;
-        let t65 = 1.0 / t64;
-        let g1_vx_leg1 = t63 * t65;
-        let t69 = t39 - t54 * t60;
-        let t70 = t8 - t69;
-        let g1_vy_leg1 = t70 * t65;
-        let t73 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-        let t74 = g1_wz_leg3 * t73;
-        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
-        let t75 = 0.5 / t74;
-        let t76 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t75;
-        let t81 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t75;
-        let t83 = t73 * t75;
-        let t84 = t83 * acceleration[2];
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t91 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t75;
-        let t92 = t2 * twist[2];
-        let t95 = twist[2] * t92 - t6 * acceleration[2];
-        let t96 = 9.090909090909092 * t95;
-        let t101 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t75;
-        let t102 = t6 * twist[2];
-        let t105 = twist[2] * t102 + t2 * acceleration[2];
-        let t106 = 9.090909090909092 * t105;
-        let t111 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t120 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t75;
-        let t125 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t75;
-        let t130 = t2 * t83;
-        let t132 = t6 * t83;
-        let t142 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t151 = t83 * t142;
-        let t160 = t95 + acceleration[0];
-        let t162 = acceleration[1] - t105;
-        let minus_g2_vx_leg1 = t62 * t65;
-        let t166 = twist[0] - t102;
-        let minus_g2_vy_leg1 = t69 * t65;
-        let t169 = twist[1] - t92;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t166 + minus_g2_vy_leg1 * t169;
-        let t172 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t174 = t63 * t160 + t70 * t162 + 0.0784 * t172;
-        let rate_1_leg1 = g1_vx_leg1 * t166 + g1_vy_leg1 * t169;
-        let t178 = rate_1_leg1 * rate_1_leg1;
-        let t180 = 0.5 * (t57 - 0.1568);
-        let rate_dot_1_leg1 = t65 * (t174 + t178 * t180);
-        let g2_vx_leg2 = t16 * t19;
-        let g2_vy_leg2 = t41 * t19;
-        let rate_2_leg2 = g2_vx_leg2 * t166 + g2_vy_leg2 * t169;
-        let t192 = rate_2_leg2 * rate_2_leg2;
-        let t194 = t17 * t160 + t42 * t162 + 0.0784 * t192;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t166 + minus_g1_vy_leg2 * t169;
-        let t198 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t200 = 0.5 * (t11 - 0.1568);
-        let minus_rate_dot_1_leg2 = t19 * (t194 + t198 * t200);
-        let t204 = acceleration[0] - t95;
-        let t206 = t105 + acceleration[1];
-        let minus_g2_vx_leg3 = t46 * t36;
-        let t210 = twist[0] + t102;
-        let minus_g2_vy_leg3 = t33 * t36;
-        let t213 = twist[1] + t92;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t210 + minus_g2_vy_leg3 * t213;
-        let t216 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t218 = t47 * t204 + t34 * t206 + 0.0784 * t216;
-        let rate_1_leg3 = g1_vx_leg3 * t210 + g1_vy_leg3 * t213;
-        let t222 = rate_1_leg3 * rate_1_leg3;
-        let t224 = 0.5 * (t28 - 0.1568);
-        let rate_dot_1_leg3 = t36 * (t218 + t222 * t224);
-        let t228 = t24 - 0.3950502153918333;
-        let t230 = t228 * t228 + t27;
-        let t232 = 0.0784 / t230 - 0.25;
-        ::overact::guard::reach(t232, "leg4")?;
-        let t233 = ::overact::math::sqrt(t232);
-        let t235 = t23 + t228 * t233;
-        let t236 = t22 - t235;
-        let t237 = t230 * t233;
-        ::overact::guard::leg(t237, 0.07839913810297301, "leg4")?;
-        let t238 = 1.0 / t237;
-        let minus_g1_vy_leg4 = t236 * t238;
-        let t243 = 0.5 * t228 - t22 * t233;
-        let t244 = t228 - t243;
-        let minus_g1_vx_leg4 = t244 * t238;
-        let t250 = minus_g1_vy_leg4 * t130 + minus_g1_vx_leg4 * t132;
-        let t251 = 2.0 * t250;
-        let minus_g1_wz_leg4 = g1_wz_leg3 * t251;
-        let t254 = minus_g1_vy_leg4 * t91 - minus_g1_vx_leg4 * t101
-            - minus_g1_wz_leg4 * t76;
-        let g2_vx_leg4 = t243 * t238;
-        let g2_vy_leg4 = t235 * t238;
-        let rate_2_leg4 = g2_vx_leg4 * t210 + g2_vy_leg4 * t213;
-        let t263 = rate_2_leg4 * rate_2_leg4;
-        let t265 = t244 * t204 + t236 * t206 + 0.0784 * t263;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t210 + minus_g1_vy_leg4 * t213;
-        let t269 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t271 = 0.5 * (t230 - 0.1568);
-        let minus_rate_dot_1_leg4 = t238 * (t265 + t269 * t271);
-        let t280 = minus_g1_vy_leg4 * t120 - minus_g1_vx_leg4 * t125
-            + minus_g1_wz_leg4 * t81;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t299 = minus_g2_vy_leg1 * t91 - minus_g2_vx_leg1 * t101 + g2_wz_leg1 * t76;
-        let t304 = t62 * t160 + t69 * t162 + 0.0784 * t178;
-        let minus_rate_dot_2_leg1 = t65 * (t304 + t172 * t180);
-        let t313 = minus_g2_vy_leg1 * t120 - minus_g2_vx_leg1 * t125 - g2_wz_leg1 * t81;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t322 = g2_vx_leg2 * t101 - g2_vy_leg2 * t91 - minus_g2_wz_leg2 * t76;
-        let t327 = t16 * t160 + t41 * t162 + 0.0784 * t198;
-        let rate_dot_2_leg2 = t19 * (t327 + t192 * t200);
-        let t336 = g2_vx_leg2 * t125 - g2_vy_leg2 * t120 + minus_g2_wz_leg2 * t81;
-        let t344 = 2.0 * (minus_g2_vy_leg3 * t130 + minus_g2_vx_leg3 * t132);
-        let minus_g2_wz_leg3 = g1_wz_leg3 * t344;
-        let t347 = minus_g2_vy_leg3 * t91 - minus_g2_vx_leg3 * t101
-            - minus_g2_wz_leg3 * t76;
-        let t352 = t46 * t204 + t33 * t206 + 0.0784 * t222;
-        let minus_rate_dot_2_leg3 = t36 * (t352 + t216 * t224);
-        let t361 = minus_g2_vy_leg3 * t120 - minus_g2_vx_leg3 * t125
-            + minus_g2_wz_leg3 * t81;
-        let t369 = g2_vx_leg4 * t132 + g2_vy_leg4 * t130;
-        let t370 = 2.0 * t369;
-        let g2_wz_leg4 = g1_wz_leg3 * t370;
-        let t373 = g2_vx_leg4 * t101 - g2_vy_leg4 * t91 + g2_wz_leg4 * t76;
-        let t378 = t243 * t204 + t235 * t206 + 0.0784 * t269;
-        let rate_dot_2_leg4 = t238 * (t378 + t263 * t271);
-        let t387 = g2_vx_leg4 * t125 - g2_vy_leg4 * t120 - g2_wz_leg4 * t81;
-        let t391 = 3.5714285714285716 * t174;
-        let t395 = 3.5714285714285716 * t194;
-        let t400 = 3.5714285714285716 * t218;
-        let t406 = 3.5714285714285716 * t378;
-        let t408 = 3.5714285714285716 * t265;
-        let t418 = rate_1_leg1 + minus_rate_2_leg1;
-        let t419 = t299 - 1.0;
-        let t422 = minus_rate_1_leg2 + rate_2_leg2;
-        let t424 = t336 - 1.0;
-        let t426 = rate_1_leg3 + minus_rate_2_leg3;
-        let t429 = t344 + 1.0;
-        let t431 = minus_rate_1_leg4 + rate_2_leg4;
-        let t432 = t373 - t254;
-        let t434 = t387 - t280;
-        let t436 = t251 + t370;
-        let t448 = minus_rate_2_leg1 + twist[2];
-        let t449 = t76 - t299;
-        let t451 = t313 + t81;
-        let t454 = twist[2] - rate_2_leg2;
-        let t455 = t76 - t322;
-        let t457 = t336 + t81;
-        let t460 = minus_rate_2_leg3 + twist[2];
-        let t461 = t76 - t347;
-        let t463 = t361 + t81;
-        let t465 = t83 + t344;
-        let t467 = twist[2] - rate_2_leg4;
-        let t468 = t76 - t373;
-        let t470 = t387 + t81;
-        let t472 = t83 - t370;
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        // --- leg2
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg1
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let det_ja = g1_wz_leg3 * t1;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        let half_per_det_ja = 0.5 / det_ja;
+        let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * half_per_det_ja;
+        let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+            * half_per_det_ja;
+        let wz_by_a3 = t1 * half_per_det_ja;
+        let zz_platform_on_q1_leg3 = wz_by_a3 * acceleration[2];
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vy_by_a3 = p_x_leg3 * wz_by_a3;
+        let vx_by_a3 = p_y_leg1 * wz_by_a3;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+        let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        // --- leg2
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
+        // --- leg3
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let t2 = minus_g1_vy_leg4 * vy_by_a3 + minus_g1_vx_leg4 * vx_by_a3;
+        let minus_g1_a3_leg4 = 2.0 * t2;
+        let minus_g1_wz_leg4 = g1_wz_leg3 * minus_g1_a3_leg4;
+        let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1 - minus_g1_vx_leg4 * vx_by_a1
+            - minus_g1_wz_leg4 * wz_by_a1;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2 - minus_g1_vx_leg4 * vx_by_a2
+            + minus_g1_wz_leg4 * minus_wz_by_a2;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - minus_g2_vx_leg1 * vx_by_a1
+            + g2_wz_leg1 * wz_by_a1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2 - minus_g2_vx_leg1 * vx_by_a2
+            - g2_wz_leg1 * minus_wz_by_a2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+            - minus_g2_wz_leg2 * wz_by_a1;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
+            + minus_g2_wz_leg2 * minus_wz_by_a2;
+        let minus_g2_a3_leg3 = 2.0
+            * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
+        let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1 - minus_g2_vx_leg3 * vx_by_a1
+            - minus_g2_wz_leg3 * wz_by_a1;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+        let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2 - minus_g2_vx_leg3 * vx_by_a2
+            + minus_g2_wz_leg3 * minus_wz_by_a2;
+        let t3 = g2_vx_leg4 * vx_by_a3 + g2_vy_leg4 * vy_by_a3;
+        let g2_a3_leg4 = 2.0 * t3;
+        let g2_wz_leg4 = g1_wz_leg3 * g2_a3_leg4;
+        let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
+            + g2_wz_leg4 * wz_by_a1;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+            - g2_wz_leg4 * minus_wz_by_a2;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+        let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+        let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+        let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
+        let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
+        // --- leg3
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
+        let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
+        let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+        // --- leg4
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
+        let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
+        let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
         ::core::result::Result::Ok([
             [
-                t76 * acceleration[2], t91 * t96 - t101 * t106 + t76 * t111,
-                t101 * t96 + t91 * t106 - t76 * t142,
-                t101 * acceleration[0] - t91 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
-                -(t254 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0, -(t254 * minus_rate_1_leg4),
-                ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                -::overact::math::signed(t254, minus_rate_1_leg4), 1.0, 0.0, 0.0, t254,
-                -(t299 * minus_rate_dot_2_leg1), t322 * rate_dot_2_leg2,
-                -(t347 * minus_rate_dot_2_leg3), t373 * rate_dot_2_leg4,
-                3.5714285714285716 * t304 - t299 * t391, -(t322 * t395), -(t347 * t400),
-                t254 * t406 - t373 * t408, -(t418 * t419), t322 * t422, -(t347 * t426), t431 * t432,
-                -::overact::math::signed(t419, t418), ::overact::math::signed(t322, t422),
-                -::overact::math::signed(t347, t426), ::overact::math::signed(t432, t431), t419,
-                t322, t347, t432, t448 * t449, t454 * t455, t460 * t461, t467 * t468,
-                ::overact::math::signed(t449, t448), ::overact::math::signed(t455, t454),
-                ::overact::math::signed(t461, t460), ::overact::math::signed(t468, t467), t449,
+                wz_by_a1 * acceleration[2],
+                minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 - vx_by_a1 * inv_r_p_a_arm_y_leg3
+                    + wz_by_a1 * a_y_platform,
+                vx_by_a1 * inv_r_p_a_arm_x_leg1 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3
+                    - wz_by_a1 * a_x_platform,
+                vx_by_a1 * acceleration[0] - minus_vy_by_a1 * acceleration[1],
+                rate_dot_1_leg1,
+                0.0,
+                0.0,
+                -(g1_a1_leg4 * minus_rate_dot_1_leg4),
+                rate_1_leg1,
+                0.0,
+                0.0,
+                -(g1_a1_leg4 * minus_rate_1_leg4),
+                ::overact::math::sign(rate_1_leg1),
+                0.0,
+                0.0,
+                -::overact::math::signed(g1_a1_leg4, minus_rate_1_leg4),
+                1.0,
+                0.0,
+                0.0,
+                g1_a1_leg4,
+                -(g2_a1_leg1 * minus_rate_dot_2_leg1),
+                g2_a1_leg2 * rate_dot_2_leg2,
+                -(g2_a1_leg3 * minus_rate_dot_2_leg3),
+                g2_a1_leg4 * rate_dot_2_leg4,
+                INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1,
+                -(g2_a1_leg2 * a2_x_leg2),
+                -(g2_a1_leg3 * a2_x_leg3),
+                g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a1_leg4 * a2_x_leg4,
+                -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
+                g2_a1_leg2 * qd_2_leg2,
+                -(g2_a1_leg3 * minus_qd_2_leg3),
+                qd_2_leg4 * off_2_leg4_on_q1_leg1,
+                -::overact::math::signed(off_2_leg1_on_q1_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(g2_a1_leg2, qd_2_leg2),
+                -::overact::math::signed(g2_a1_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(off_2_leg4_on_q1_leg1, qd_2_leg4),
+                off_2_leg1_on_q1_leg1,
+                g2_a1_leg2,
+                g2_a1_leg3,
+                off_2_leg4_on_q1_leg1,
+                qd_3_leg1 * off_3_leg1_on_q1_leg1,
+                qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2,
+                qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3,
+                qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4,
+                ::overact::math::signed(off_3_leg1_on_q1_leg1, qd_3_leg1),
+                ::overact::math::signed(wz_by_a1_minus_g2_a1_leg2, qd_3_leg2),
+                ::overact::math::signed(wz_by_a1_minus_g2_a1_leg3, qd_3_leg3),
+                ::overact::math::signed(wz_by_a1_minus_g2_a1_leg4, qd_3_leg4),
+                off_3_leg1_on_q1_leg1,
             ],
             [
-                -(t81 * acceleration[2]), t120 * t96 - t125 * t106 - t81 * t111,
-                t125 * t96 + t120 * t106 + t81 * t142,
-                t125 * acceleration[0] - t120 * acceleration[1], 0.0, -minus_rate_dot_1_leg2, 0.0,
-                -(t280 * minus_rate_dot_1_leg4), 0.0, -minus_rate_1_leg2, 0.0,
-                -(t280 * minus_rate_1_leg4), 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                -::overact::math::signed(t280, minus_rate_1_leg4), 0.0, 1.0, 0.0, t280,
-                -(t313 * minus_rate_dot_2_leg1), t336 * rate_dot_2_leg2,
-                -(t361 * minus_rate_dot_2_leg3), t387 * rate_dot_2_leg4, -(t313 * t391),
-                3.5714285714285716 * t327 - t336 * t395, -(t361 * t400), t280 * t406 - t387 * t408,
-                -(t313 * t418), t422 * t424, -(t361 * t426), t431 * t434,
-                -::overact::math::signed(t313, t418), ::overact::math::signed(t424, t422),
-                -::overact::math::signed(t361, t426), ::overact::math::signed(t434, t431), t313,
-                t424, t361, t434, -(t448 * t451), -(t454 * t457), -(t460 * t463), -(t467 * t470),
-                -::overact::math::signed(t451, t448), -::overact::math::signed(t457, t454),
-                -::overact::math::signed(t463, t460), -::overact::math::signed(t470, t467), -t451,
+                -(minus_wz_by_a2 * acceleration[2]),
+                minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 - vx_by_a2 * inv_r_p_a_arm_y_leg3
+                    - minus_wz_by_a2 * a_y_platform,
+                vx_by_a2 * inv_r_p_a_arm_x_leg1 + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                    + minus_wz_by_a2 * a_x_platform,
+                vx_by_a2 * acceleration[0] - minus_vy_by_a2 * acceleration[1],
+                0.0,
+                -minus_rate_dot_1_leg2,
+                0.0,
+                -(g1_a2_leg4 * minus_rate_dot_1_leg4),
+                0.0,
+                -minus_rate_1_leg2,
+                0.0,
+                -(g1_a2_leg4 * minus_rate_1_leg4),
+                0.0,
+                -::overact::math::sign(minus_rate_1_leg2),
+                0.0,
+                -::overact::math::signed(g1_a2_leg4, minus_rate_1_leg4),
+                0.0,
+                1.0,
+                0.0,
+                g1_a2_leg4,
+                -(g2_a2_leg1 * minus_rate_dot_2_leg1),
+                g2_a2_leg2 * rate_dot_2_leg2,
+                -(g2_a2_leg3 * minus_rate_dot_2_leg3),
+                g2_a2_leg4 * rate_dot_2_leg4,
+                -(g2_a2_leg1 * a2_x_leg1),
+                INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2,
+                -(g2_a2_leg3 * a2_x_leg3),
+                g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a2_leg4 * a2_x_leg4,
+                -(g2_a2_leg1 * minus_qd_2_leg1),
+                qd_2_leg2 * off_2_leg2_on_q1_leg2,
+                -(g2_a2_leg3 * minus_qd_2_leg3),
+                qd_2_leg4 * off_2_leg4_on_q1_leg2,
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(off_2_leg2_on_q1_leg2, qd_2_leg2),
+                -::overact::math::signed(g2_a2_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(off_2_leg4_on_q1_leg2, qd_2_leg4),
+                g2_a2_leg1,
+                off_2_leg2_on_q1_leg2,
+                g2_a2_leg3,
+                off_2_leg4_on_q1_leg2,
+                -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2),
+                -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2),
+                -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3),
+                -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4),
+                -::overact::math::signed(minus_off_3_leg1_on_q1_leg2, qd_3_leg1),
+                -::overact::math::signed(g2_a2_minus_wz_by_a2_leg2, qd_3_leg2),
+                -::overact::math::signed(g2_a2_minus_wz_by_a2_leg3, qd_3_leg3),
+                -::overact::math::signed(g2_a2_minus_wz_by_a2_leg4, qd_3_leg4),
+                -minus_off_3_leg1_on_q1_leg2,
             ],
             [
-                t84, t83 * t111 - (t130 * t96 + t132 * t106), -(0.11 * t84 + t151), 0.11 * t151,
-                0.0, 0.0, rate_dot_1_leg3, t251 * minus_rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
-                t251 * minus_rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                ::overact::math::signed(t251, minus_rate_1_leg4), 0.0, 0.0, 1.0, -t251, 0.0, 0.0,
-                t344 * minus_rate_dot_2_leg3, t370 * rate_dot_2_leg4, 0.0, 0.0,
-                3.5714285714285716 * t352 + t400 * t344,
-                -(7.142857142857143 * (t250 * t378 + t369 * t265)), 0.0, 0.0, t426 * t429,
-                t431 * t436, 0.0, 0.0, ::overact::math::signed(t429, t426),
-                ::overact::math::signed(t436, t431), 0.0, 0.0, -t429, t436, t83 * t448, t83 * t454,
-                t460 * t465, t467 * t472, ::overact::math::signed(t83, t448),
-                ::overact::math::signed(t83, t454), ::overact::math::signed(t465, t460),
-                ::overact::math::signed(t472, t467), t83,
+                zz_platform_on_q1_leg3,
+                wz_by_a3 * a_y_platform
+                    - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                        + vx_by_a3 * inv_r_p_a_arm_y_leg3),
+                -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform),
+                R_P * wz_by_a3_a_x_platform,
+                0.0,
+                0.0,
+                rate_dot_1_leg3,
+                minus_g1_a3_leg4 * minus_rate_dot_1_leg4,
+                0.0,
+                0.0,
+                rate_1_leg3,
+                minus_g1_a3_leg4 * minus_rate_1_leg4,
+                0.0,
+                0.0,
+                ::overact::math::sign(rate_1_leg3),
+                ::overact::math::signed(minus_g1_a3_leg4, minus_rate_1_leg4),
+                0.0,
+                0.0,
+                1.0,
+                -minus_g1_a3_leg4,
+                0.0,
+                0.0,
+                minus_g2_a3_leg3 * minus_rate_dot_2_leg3,
+                g2_a3_leg4 * rate_dot_2_leg4,
+                0.0,
+                0.0,
+                INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3,
+                -(7.142857142857143 * (t2 * a_on_f2_leg4 + t3 * minus_a_on_f1_leg4)),
+                0.0,
+                0.0,
+                minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3,
+                qd_2_leg4 * off_2_leg4_on_q1_leg3,
+                0.0,
+                0.0,
+                ::overact::math::signed(minus_off_2_leg3_on_q1_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(off_2_leg4_on_q1_leg3, qd_2_leg4),
+                0.0,
+                0.0,
+                -minus_off_2_leg3_on_q1_leg3,
+                off_2_leg4_on_q1_leg3,
+                wz_by_a3 * qd_3_leg1,
+                wz_by_a3 * qd_3_leg2,
+                qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3,
+                qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4,
+                ::overact::math::signed(wz_by_a3, qd_3_leg1),
+                ::overact::math::signed(wz_by_a3, qd_3_leg2),
+                ::overact::math::signed(wz_by_a3_minus_g2_a3_leg3, qd_3_leg3),
+                ::overact::math::signed(wz_by_a3_minus_g2_a3_leg4, qd_3_leg4),
+                wz_by_a3,
             ],
         ])
     }
@@ -4372,6 +5716,15 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        // --- sines and cosines
         let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
         (s2_leg3, c2_leg3), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi),
         (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -4382,200 +5735,352 @@ impl DualV {
         ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+        // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t10 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t10;
+        let k1_leg2 = INV_L_AB / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * k1_leg2;
+        // --- leg3
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t22 = 3.5714285714285716 / s2_leg3;
-        let g1_vy_leg3 = s12_leg3 * t22;
-        let g1_vy_leg2 = s12_leg2 * t10;
-        let g1_vx_leg3 = c12_leg3 * t22;
+        let k1_leg3 = INV_L_AB / s2_leg3;
+        let g1_vy_leg3 = s12_leg3 * k1_leg3;
+        let g1_vy_leg2 = s12_leg2 * k1_leg2;
+        let g1_vx_leg3 = c12_leg3 * k1_leg3;
+        // --- leg1
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t39 = 3.5714285714285716 / s2_leg1;
-        let g1_vy_leg1 = s12_leg1 * t39;
-        let t43 = 0.11 * s_phi;
-        let g1_vx_leg1 = c12_leg1 * t39;
-        let t46 = 0.11 * c_phi;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t43 + g1_vx_leg1 * t46;
-        let g1_wz_leg3 = t43 * g1_vy_leg3 + t46 * g1_vx_leg3;
-        let t54 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
-        let t58 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let minus_g1_wz_leg2 = t43 * g1_vy_leg2 + t46 * g1_vx_leg2;
-        let t66 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
-        let t68 = g1_vy_leg2 * t54 - g1_vx_leg2 * t58 - minus_g1_wz_leg2 * t66;
-        ::overact::guard::platform(t68, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(t68, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(t68, 7.075383197161306, "kept actuators")?;
-        let t69 = 1.0 / t68;
-        let t70 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3) * t69;
-        let t72 = t66 * t69;
-        let t77 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2) * t69;
-        let t78 = t77 * acceleration[2];
-        let t82 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3) * t69;
-        let t83 = t43 * twist[2];
-        let t86 = twist[2] * t83 - t46 * acceleration[2];
-        let t87 = 9.090909090909092 * t86;
-        let t92 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3) * t69;
-        let t93 = t46 * twist[2];
-        let t96 = twist[2] * t93 + t43 * acceleration[2];
-        let t97 = 9.090909090909092 * t96;
-        let t102 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t105 = t58 * t69;
-        let t107 = t54 * t69;
-        let t124 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t133 = t77 * t124;
-        let t142 = t86 + acceleration[0];
-        let t144 = acceleration[1] - t96;
-        let minus_g2_vx_leg1 = c1_leg1 * t39;
-        let t148 = twist[0] - t93;
-        let minus_g2_vy_leg1 = s1_leg1 * t39;
-        let t151 = twist[1] - t83;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t148 + minus_g2_vy_leg1 * t151;
-        let t154 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t156 = c12_leg1 * t142 + s12_leg1 * t144 + 0.28 * t154;
-        let rate_1_leg1 = g1_vx_leg1 * t148 + g1_vy_leg1 * t151;
-        let t160 = rate_1_leg1 * rate_1_leg1;
-        let t161 = 0.28 * c2_leg1;
-        let rate_dot_1_leg1 = t39 * (t156 + t160 * t161);
-        let minus_g2_vx_leg2 = c1_leg2 * t10;
-        let minus_g2_vy_leg2 = s1_leg2 * t10;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t148 + minus_g2_vy_leg2 * t151;
-        let t173 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t175 = c12_leg2 * t142 + s12_leg2 * t144 + 0.28 * t173;
-        let rate_1_leg2 = g1_vx_leg2 * t148 + g1_vy_leg2 * t151;
-        let t179 = rate_1_leg2 * rate_1_leg2;
-        let t180 = 0.28 * c2_leg2;
-        let rate_dot_1_leg2 = t10 * (t175 + t179 * t180);
-        let t184 = acceleration[0] - t86;
-        let t186 = t96 + acceleration[1];
-        let minus_g2_vx_leg3 = c1_leg3 * t22;
-        let t190 = twist[0] + t93;
-        let minus_g2_vy_leg3 = s1_leg3 * t22;
-        let t193 = twist[1] + t83;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t190 + minus_g2_vy_leg3 * t193;
-        let t196 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t198 = c12_leg3 * t184 + s12_leg3 * t186 + 0.28 * t196;
-        let rate_1_leg3 = g1_vx_leg3 * t190 + g1_vy_leg3 * t193;
-        let t202 = rate_1_leg3 * rate_1_leg3;
-        let t203 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t22 * (t198 + t202 * t203);
+        let k1_leg1 = INV_L_AB / s2_leg1;
+        let g1_vy_leg1 = s12_leg1 * k1_leg1;
+        let p_x_leg3 = R_P * s_phi;
+        let g1_vx_leg1 = c12_leg1 * k1_leg1;
+        let p_y_leg1 = R_P * c_phi;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let t1 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
+        let t2 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+        let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
+        let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
+        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3) * inv_det_ja;
+        let wz_by_a2 = t3 * inv_det_ja;
+        let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
+            * inv_det_ja;
+        let minus_zz_platform_on_q1_leg3 = minus_wz_by_a3 * acceleration[2];
+        let minus_vy_by_a1 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3)
+            * inv_det_ja;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let vx_by_a1 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3)
+            * inv_det_ja;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let minus_vx_by_a2 = t2 * inv_det_ja;
+        let vy_by_a2 = t1 * inv_det_ja;
+        let minus_vx_by_a3 = p_y_leg1 * minus_wz_by_a3;
+        let minus_vy_by_a3 = p_x_leg3 * minus_wz_by_a3;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let minus_wz_by_a3_a_x_platform = minus_wz_by_a3 * a_x_platform;
+        let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1 + s12_leg1 * a_end_y_leg1
+            + L_AB * rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let v2_by_1_y_leg1 = L_AB * c2_leg1;
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
+        // --- leg2
+        let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+        let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+            + minus_g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1 + s12_leg2 * a_end_y_leg1
+            + L_AB * rate_2_squared_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = L_AB * c2_leg2;
+        let rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        // --- leg3
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
+        let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3 + s12_leg3 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = L_AB * c2_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        // --- leg4
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t217 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t217;
-        let g1_vy_leg4 = s12_leg4 * t217;
-        let g1_wz_leg4 = t43 * g1_vy_leg4 + t46 * g1_vx_leg4;
-        let t227 = g1_vx_leg4 * t92 - g1_vy_leg4 * t82 + g1_wz_leg4 * t70;
-        let minus_g2_vx_leg4 = c1_leg4 * t217;
-        let minus_g2_vy_leg4 = s1_leg4 * t217;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t190 + minus_g2_vy_leg4 * t193;
-        let t236 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t238 = c12_leg4 * t184 + s12_leg4 * t186 + 0.28 * t236;
-        let rate_1_leg4 = g1_vx_leg4 * t190 + g1_vy_leg4 * t193;
-        let t242 = rate_1_leg4 * rate_1_leg4;
-        let t243 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t217 * (t238 + t242 * t243);
-        let t252 = g1_vy_leg4 * t107 - g1_vx_leg4 * t105 + g1_wz_leg4 * t72;
-        let t255 = 2.0 * (g1_wz_leg4 * t77);
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t43 + minus_g2_vx_leg1 * t46;
-        let t273 = minus_g2_vy_leg1 * t82 - minus_g2_vx_leg1 * t92 + g2_wz_leg1 * t70;
-        let t278 = c1_leg1 * t142 + s1_leg1 * t144 + 0.28 * t160;
-        let minus_rate_dot_2_leg1 = t39 * (t278 + t154 * t161);
-        let t287 = minus_g2_vx_leg1 * t105 - minus_g2_vy_leg1 * t107 + g2_wz_leg1 * t72;
-        let g2_wz_leg2 = t43 * minus_g2_vy_leg2 + t46 * minus_g2_vx_leg2;
-        let t296 = minus_g2_vy_leg2 * t82 - minus_g2_vx_leg2 * t92 + g2_wz_leg2 * t70;
-        let t301 = c1_leg2 * t142 + s1_leg2 * t144 + 0.28 * t179;
-        let minus_rate_dot_2_leg2 = t10 * (t301 + t173 * t180);
-        let t310 = minus_g2_vx_leg2 * t105 - minus_g2_vy_leg2 * t107 + g2_wz_leg2 * t72;
-        let minus_g2_wz_leg3 = t43 * minus_g2_vy_leg3 + t46 * minus_g2_vx_leg3;
-        let t319 = minus_g2_vy_leg3 * t82 - minus_g2_vx_leg3 * t92
-            - minus_g2_wz_leg3 * t70;
-        let t324 = c1_leg3 * t184 + s1_leg3 * t186 + 0.28 * t202;
-        let minus_rate_dot_2_leg3 = t22 * (t324 + t196 * t203);
-        let t333 = minus_g2_vx_leg3 * t105 - minus_g2_vy_leg3 * t107
-            - minus_g2_wz_leg3 * t72;
-        let t336 = 2.0 * (minus_g2_wz_leg3 * t77);
-        let minus_g2_wz_leg4 = t43 * minus_g2_vy_leg4 + t46 * minus_g2_vx_leg4;
-        let t345 = minus_g2_vy_leg4 * t82 - minus_g2_vx_leg4 * t92
-            - minus_g2_wz_leg4 * t70;
-        let t350 = c1_leg4 * t184 + s1_leg4 * t186 + 0.28 * t242;
-        let minus_rate_dot_2_leg4 = t217 * (t350 + t236 * t243);
-        let t359 = minus_g2_vx_leg4 * t105 - minus_g2_vy_leg4 * t107
-            - minus_g2_wz_leg4 * t72;
-        let t362 = 2.0 * (minus_g2_wz_leg4 * t77);
-        let t383 = rate_1_leg1 + minus_rate_2_leg1;
-        let t384 = t273 - 1.0;
-        let t387 = rate_1_leg2 + minus_rate_2_leg2;
-        let t389 = t310 - 1.0;
-        let t391 = rate_1_leg3 + minus_rate_2_leg3;
-        let t394 = t336 - 1.0;
-        let t396 = rate_1_leg4 + minus_rate_2_leg4;
-        let t397 = t345 - t227;
-        let t399 = t359 - t252;
-        let t401 = t255 + t362;
-        let t413 = minus_rate_2_leg1 + twist[2];
-        let t414 = t70 - t273;
-        let t416 = t72 - t287;
-        let t419 = minus_rate_2_leg2 + twist[2];
-        let t420 = t70 - t296;
-        let t422 = t72 - t310;
-        let t425 = minus_rate_2_leg3 + twist[2];
-        let t426 = t70 - t319;
-        let t428 = t72 - t333;
-        let t430 = t336 + t77;
-        let t432 = minus_rate_2_leg4 + twist[2];
-        let t433 = t70 - t345;
-        let t435 = t72 - t359;
-        let t437 = t362 + t77;
+        let k1_leg4 = INV_L_AB / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * k1_leg4;
+        let g1_vy_leg4 = s12_leg4 * k1_leg4;
+        let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
+        let g1_a1_leg4 = g1_vx_leg4 * vx_by_a1 - g1_vy_leg4 * minus_vy_by_a1
+            + g1_wz_leg4 * wz_by_a1;
+        let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
+        let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
+            + minus_g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3 + s12_leg4 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
+        let v2_by_1_y_leg4 = L_AB * c2_leg4;
+        let rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
+        let g1_a2_leg4 = g1_vy_leg4 * vy_by_a2 - g1_vx_leg4 * minus_vx_by_a2
+            + g1_wz_leg4 * wz_by_a2;
+        let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
+        let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
+        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - minus_g2_vx_leg1 * vx_by_a1
+            + g2_wz_leg1 * wz_by_a1;
+        let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+            + L_AB * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+        let g2_a2_leg1 = minus_g2_vx_leg1 * minus_vx_by_a2 - minus_g2_vy_leg1 * vy_by_a2
+            + g2_wz_leg1 * wz_by_a2;
+        let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
+        let g2_a1_leg2 = minus_g2_vy_leg2 * minus_vy_by_a1 - minus_g2_vx_leg2 * vx_by_a1
+            + g2_wz_leg2 * wz_by_a1;
+        let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+            + L_AB * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k1_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - minus_g2_vy_leg2 * vy_by_a2
+            + g2_wz_leg2 * wz_by_a2;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1 - minus_g2_vx_leg3 * vx_by_a1
+            - minus_g2_wz_leg3 * wz_by_a1;
+        let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+            + L_AB * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - minus_g2_vy_leg3 * vy_by_a2
+            - minus_g2_wz_leg3 * wz_by_a2;
+        let g2_a3_leg3 = 2.0 * (minus_g2_wz_leg3 * minus_wz_by_a3);
+        let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4 + p_y_leg1 * minus_g2_vx_leg4;
+        let g2_a1_leg4 = minus_g2_vy_leg4 * minus_vy_by_a1 - minus_g2_vx_leg4 * vx_by_a1
+            - minus_g2_wz_leg4 * wz_by_a1;
+        let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
+            + L_AB * rate_1_squared_leg4;
+        let minus_rate_dot_2_leg4 = k1_leg4
+            * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
+        let g2_a2_leg4 = minus_g2_vx_leg4 * minus_vx_by_a2 - minus_g2_vy_leg4 * vy_by_a2
+            - minus_g2_wz_leg4 * wz_by_a2;
+        let g2_a3_leg4 = 2.0 * (minus_g2_wz_leg4 * minus_wz_by_a3);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+        let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+        let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
+        let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
+        let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+        let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+        let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+        let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
+        let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+        let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
+        let wz_by_a2_minus_g2_a2_leg2 = wz_by_a2 - g2_a2_leg2;
+        // --- leg3
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
+        let wz_by_a2_minus_g2_a2_leg3 = wz_by_a2 - g2_a2_leg3;
+        let g2_a3_minus_wz_by_a3_leg3 = g2_a3_leg3 + minus_wz_by_a3;
+        // --- leg4
+        let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
+        let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
+        let wz_by_a2_minus_g2_a2_leg4 = wz_by_a2 - g2_a2_leg4;
+        let g2_a3_minus_wz_by_a3_leg4 = g2_a3_leg4 + minus_wz_by_a3;
         ::core::result::Result::Ok([
             [
-                t70 * acceleration[2], t82 * t87 - t92 * t97 + t70 * t102,
-                t92 * t87 + t82 * t97 - t70 * t124, t92 * acceleration[0] - t82 * acceleration[1],
-                rate_dot_1_leg1, 0.0, 0.0, t227 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0,
-                t227 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t227, rate_1_leg4), 1.0, 0.0, 0.0, t227,
-                -(t273 * minus_rate_dot_2_leg1), -(t296 * minus_rate_dot_2_leg2),
-                -(t319 * minus_rate_dot_2_leg3), -(t345 * minus_rate_dot_2_leg4),
-                t278 - t273 * t156, -(t296 * t175), -(t319 * t198), t227 * t350 - t345 * t238,
-                -(t383 * t384), -(t296 * t387), -(t319 * t391), -(t396 * t397),
-                -::overact::math::signed(t384, t383), -::overact::math::signed(t296, t387),
-                -::overact::math::signed(t319, t391), -::overact::math::signed(t397, t396), t384,
-                t296, t319, t397, t413 * t414, t419 * t420, t425 * t426, t432 * t433,
-                ::overact::math::signed(t414, t413), ::overact::math::signed(t420, t419),
-                ::overact::math::signed(t426, t425), ::overact::math::signed(t433, t432), t414,
+                wz_by_a1 * acceleration[2],
+                minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 - vx_by_a1 * inv_r_p_a_arm_y_leg3
+                    + wz_by_a1 * a_y_platform,
+                vx_by_a1 * inv_r_p_a_arm_x_leg1 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3
+                    - wz_by_a1 * a_x_platform,
+                vx_by_a1 * acceleration[0] - minus_vy_by_a1 * acceleration[1],
+                rate_dot_1_leg1,
+                0.0,
+                0.0,
+                g1_a1_leg4 * rate_dot_1_leg4,
+                rate_1_leg1,
+                0.0,
+                0.0,
+                g1_a1_leg4 * rate_1_leg4,
+                ::overact::math::sign(rate_1_leg1),
+                0.0,
+                0.0,
+                ::overact::math::signed(g1_a1_leg4, rate_1_leg4),
+                1.0,
+                0.0,
+                0.0,
+                g1_a1_leg4,
+                -(g2_a1_leg1 * minus_rate_dot_2_leg1),
+                -(g2_a1_leg2 * minus_rate_dot_2_leg2),
+                -(g2_a1_leg3 * minus_rate_dot_2_leg3),
+                -(g2_a1_leg4 * minus_rate_dot_2_leg4),
+                a_on_f2_leg1 - g2_a1_leg1 * minus_a_on_f1_leg1,
+                -(g2_a1_leg2 * minus_a_on_f1_leg2),
+                -(g2_a1_leg3 * minus_a_on_f1_leg3),
+                g1_a1_leg4 * a_on_f2_leg4 - g2_a1_leg4 * minus_a_on_f1_leg4,
+                -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
+                -(g2_a1_leg2 * minus_qd_2_leg2),
+                -(g2_a1_leg3 * minus_qd_2_leg3),
+                -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg1),
+                -::overact::math::signed(off_2_leg1_on_q1_leg1, minus_qd_2_leg1),
+                -::overact::math::signed(g2_a1_leg2, minus_qd_2_leg2),
+                -::overact::math::signed(g2_a1_leg3, minus_qd_2_leg3),
+                -::overact::math::signed(off_2_leg4_on_q1_leg1, minus_qd_2_leg4),
+                off_2_leg1_on_q1_leg1,
+                g2_a1_leg2,
+                g2_a1_leg3,
+                off_2_leg4_on_q1_leg1,
+                qd_3_leg1 * off_3_leg1_on_q1_leg1,
+                qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2,
+                qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3,
+                qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4,
+                ::overact::math::signed(off_3_leg1_on_q1_leg1, qd_3_leg1),
+                ::overact::math::signed(wz_by_a1_minus_g2_a1_leg2, qd_3_leg2),
+                ::overact::math::signed(wz_by_a1_minus_g2_a1_leg3, qd_3_leg3),
+                ::overact::math::signed(wz_by_a1_minus_g2_a1_leg4, qd_3_leg4),
+                off_3_leg1_on_q1_leg1,
             ],
             [
-                t72 * acceleration[2], t105 * t97 - t107 * t87 + t72 * t102,
-                -(t105 * t87 + t107 * t97 + t72 * t124),
-                t107 * acceleration[1] - t105 * acceleration[0], 0.0, rate_dot_1_leg2, 0.0,
-                t252 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t252 * rate_1_leg4, 0.0,
-                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t252, rate_1_leg4),
-                0.0, 1.0, 0.0, t252, -(t287 * minus_rate_dot_2_leg1),
-                -(t310 * minus_rate_dot_2_leg2), -(t333 * minus_rate_dot_2_leg3),
-                -(t359 * minus_rate_dot_2_leg4), -(t287 * t156), t301 - t310 * t175, -(t333 * t198),
-                t252 * t350 - t359 * t238, -(t287 * t383), -(t387 * t389), -(t333 * t391),
-                -(t396 * t399), -::overact::math::signed(t287, t383),
-                -::overact::math::signed(t389, t387), -::overact::math::signed(t333, t391),
-                -::overact::math::signed(t399, t396), t287, t389, t333, t399, t413 * t416,
-                t419 * t422, t425 * t428, t432 * t435, ::overact::math::signed(t416, t413),
-                ::overact::math::signed(t422, t419), ::overact::math::signed(t428, t425),
-                ::overact::math::signed(t435, t432), t416,
+                wz_by_a2 * acceleration[2],
+                minus_vx_by_a2 * inv_r_p_a_arm_y_leg3 - vy_by_a2 * inv_r_p_a_arm_x_leg1
+                    + wz_by_a2 * a_y_platform,
+                -(minus_vx_by_a2 * inv_r_p_a_arm_x_leg1 + vy_by_a2 * inv_r_p_a_arm_y_leg3
+                    + wz_by_a2 * a_x_platform),
+                vy_by_a2 * acceleration[1] - minus_vx_by_a2 * acceleration[0],
+                0.0,
+                rate_dot_1_leg2,
+                0.0,
+                g1_a2_leg4 * rate_dot_1_leg4,
+                0.0,
+                rate_1_leg2,
+                0.0,
+                g1_a2_leg4 * rate_1_leg4,
+                0.0,
+                ::overact::math::sign(rate_1_leg2),
+                0.0,
+                ::overact::math::signed(g1_a2_leg4, rate_1_leg4),
+                0.0,
+                1.0,
+                0.0,
+                g1_a2_leg4,
+                -(g2_a2_leg1 * minus_rate_dot_2_leg1),
+                -(g2_a2_leg2 * minus_rate_dot_2_leg2),
+                -(g2_a2_leg3 * minus_rate_dot_2_leg3),
+                -(g2_a2_leg4 * minus_rate_dot_2_leg4),
+                -(g2_a2_leg1 * minus_a_on_f1_leg1),
+                a_on_f2_leg2 - g2_a2_leg2 * minus_a_on_f1_leg2,
+                -(g2_a2_leg3 * minus_a_on_f1_leg3),
+                g1_a2_leg4 * a_on_f2_leg4 - g2_a2_leg4 * minus_a_on_f1_leg4,
+                -(g2_a2_leg1 * minus_qd_2_leg1),
+                -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2),
+                -(g2_a2_leg3 * minus_qd_2_leg3),
+                -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2),
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1),
+                -::overact::math::signed(off_2_leg2_on_q1_leg2, minus_qd_2_leg2),
+                -::overact::math::signed(g2_a2_leg3, minus_qd_2_leg3),
+                -::overact::math::signed(off_2_leg4_on_q1_leg2, minus_qd_2_leg4),
+                g2_a2_leg1,
+                off_2_leg2_on_q1_leg2,
+                g2_a2_leg3,
+                off_2_leg4_on_q1_leg2,
+                qd_3_leg1 * off_3_leg1_on_q1_leg2,
+                qd_3_leg2 * wz_by_a2_minus_g2_a2_leg2,
+                qd_3_leg3 * wz_by_a2_minus_g2_a2_leg3,
+                qd_3_leg4 * wz_by_a2_minus_g2_a2_leg4,
+                ::overact::math::signed(off_3_leg1_on_q1_leg2, qd_3_leg1),
+                ::overact::math::signed(wz_by_a2_minus_g2_a2_leg2, qd_3_leg2),
+                ::overact::math::signed(wz_by_a2_minus_g2_a2_leg3, qd_3_leg3),
+                ::overact::math::signed(wz_by_a2_minus_g2_a2_leg4, qd_3_leg4),
+                off_3_leg1_on_q1_leg2,
             ],
             [
-                -t78, t46 * t77 * t97 + t43 * t77 * t87 - t77 * t102, 0.11 * t78 + t133,
-                -(0.11 * t133), 0.0, 0.0, rate_dot_1_leg3, -(t255 * rate_dot_1_leg4), 0.0, 0.0,
-                rate_1_leg3, -(t255 * rate_1_leg4), 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                -::overact::math::signed(t255, rate_1_leg4), 0.0, 0.0, 1.0, -t255, 0.0, 0.0,
-                -(t336 * minus_rate_dot_2_leg3), -(t362 * minus_rate_dot_2_leg4), 0.0, 0.0,
-                t324 - t336 * t198, -(t255 * t350 + t362 * t238), 0.0, 0.0, -(t391 * t394),
-                -(t396 * t401), 0.0, 0.0, -::overact::math::signed(t394, t391),
-                -::overact::math::signed(t401, t396), 0.0, 0.0, t394, t401, -(t77 * t413),
-                -(t77 * t419), -(t425 * t430), -(t432 * t437), -::overact::math::signed(t77, t413),
-                -::overact::math::signed(t77, t419), -::overact::math::signed(t430, t425),
-                -::overact::math::signed(t437, t432), -t77,
+                -minus_zz_platform_on_q1_leg3,
+                minus_vx_by_a3 * inv_r_p_a_arm_y_leg3
+                    + minus_vy_by_a3 * inv_r_p_a_arm_x_leg1
+                    - minus_wz_by_a3 * a_y_platform,
+                R_P * minus_zz_platform_on_q1_leg3 + minus_wz_by_a3_a_x_platform,
+                -(R_P * minus_wz_by_a3_a_x_platform),
+                0.0,
+                0.0,
+                rate_dot_1_leg3,
+                -(minus_g1_a3_leg4 * rate_dot_1_leg4),
+                0.0,
+                0.0,
+                rate_1_leg3,
+                -(minus_g1_a3_leg4 * rate_1_leg4),
+                0.0,
+                0.0,
+                ::overact::math::sign(rate_1_leg3),
+                -::overact::math::signed(minus_g1_a3_leg4, rate_1_leg4),
+                0.0,
+                0.0,
+                1.0,
+                -minus_g1_a3_leg4,
+                0.0,
+                0.0,
+                -(g2_a3_leg3 * minus_rate_dot_2_leg3),
+                -(g2_a3_leg4 * minus_rate_dot_2_leg4),
+                0.0,
+                0.0,
+                a_on_f2_leg3 - g2_a3_leg3 * minus_a_on_f1_leg3,
+                -(minus_g1_a3_leg4 * a_on_f2_leg4 + g2_a3_leg4 * minus_a_on_f1_leg4),
+                0.0,
+                0.0,
+                -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3),
+                -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3),
+                0.0,
+                0.0,
+                -::overact::math::signed(off_2_leg3_on_q1_leg3, minus_qd_2_leg3),
+                -::overact::math::signed(off_2_leg4_on_q1_leg3, minus_qd_2_leg4),
+                0.0,
+                0.0,
+                off_2_leg3_on_q1_leg3,
+                off_2_leg4_on_q1_leg3,
+                -(minus_wz_by_a3 * qd_3_leg1),
+                -(minus_wz_by_a3 * qd_3_leg2),
+                -(qd_3_leg3 * g2_a3_minus_wz_by_a3_leg3),
+                -(qd_3_leg4 * g2_a3_minus_wz_by_a3_leg4),
+                -::overact::math::signed(minus_wz_by_a3, qd_3_leg1),
+                -::overact::math::signed(minus_wz_by_a3, qd_3_leg2),
+                -::overact::math::signed(g2_a3_minus_wz_by_a3_leg3, qd_3_leg3),
+                -::overact::math::signed(g2_a3_minus_wz_by_a3_leg4, qd_3_leg4),
+                -minus_wz_by_a3,
             ],
         ])
     }
@@ -4601,325 +6106,511 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 + 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg2")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 - t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg2")?;
-        let t19 = 1.0 / t18;
-        let minus_g1_vx_leg2 = t17 * t19;
-        let t22 = pose[1] - t6 + 0.10970563941232059;
-        let t23 = 0.5 * t22;
-        let t24 = pose[0] + t2;
-        let t25 = t24 + 0.3950502153918333;
-        let t27 = t22 * t22;
-        let t28 = t25 * t25 + t27;
-        let t30 = 0.0784 / t28 - 0.25;
-        ::overact::guard::reach(t30, "leg3")?;
-        let t31 = ::overact::math::sqrt(t30);
-        let t33 = t23 - t25 * t31;
-        let t34 = t22 - t33;
-        let t35 = t28 * t31;
-        ::overact::guard::leg(t35, 0.07839913810297301, "leg3")?;
-        let t36 = 1.0 / t35;
-        let g1_vy_leg3 = t34 * t36;
-        let t39 = 0.5 * t8;
-        let t41 = t39 + t4 * t14;
-        let t42 = t8 - t41;
-        let minus_g1_vy_leg2 = t42 * t19;
-        let t46 = 0.5 * t25 + t22 * t31;
-        let t47 = t25 - t46;
-        let g1_vx_leg3 = t47 * t36;
-        let t51 = t3 - 0.3950502153918333;
-        let t54 = t51 * t51 + t10;
-        let t56 = 0.0784 / t54 - 0.25;
-        ::overact::guard::reach(t56, "leg1")?;
-        let t57 = ::overact::math::sqrt(t56);
-        let t59 = 0.5 * t51 + t8 * t57;
-        let t60 = t51 - t59;
-        let t61 = t54 * t57;
-        ::overact::guard::leg(t61, 0.07839913810297301, "leg1")?;
-        let t62 = 1.0 / t61;
-        let g1_vx_leg1 = t60 * t62;
-        let t66 = t39 - t51 * t57;
-        let t67 = t8 - t66;
-        let g1_vy_leg1 = t67 * t62;
-        let t70 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-        let t71 = t6 * t70;
-        let t73 = t2 * t70;
-        let t75 = g1_vx_leg3 * t71 + g1_vy_leg3 * t73;
-        ::overact::guard::platform(t75, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t75, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t75, 3.5376915986291904, "kept actuators")?;
-        let t76 = 0.5 / t75;
-        let t77 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t76;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t92 = t24 - 0.3950502153918333;
-        let t94 = t92 * t92 + t27;
-        let t96 = 0.0784 / t94 - 0.25;
-        ::overact::guard::reach(t96, "leg4")?;
-        let t97 = ::overact::math::sqrt(t96);
-        let t99 = t23 + t92 * t97;
-        let t100 = t22 - t99;
-        let t101 = t94 * t97;
-        ::overact::guard::leg(t101, 0.07839913810297301, "leg4")?;
-        let t102 = 1.0 / t101;
-        let minus_g1_vy_leg4 = t100 * t102;
-        let t107 = 0.5 * t92 - t22 * t97;
-        let t108 = t92 - t107;
-        let minus_g1_vx_leg4 = t108 * t102;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t120 = g1_vx_leg3 * g1_wz_leg3
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        // --- leg2
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg1
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let t2 = p_y_leg1 * t1;
+        let t3 = p_x_leg3 * t1;
+        let det_ja = g1_vx_leg3 * t2 + g1_vy_leg3 * t3;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        let half_per_det_ja = 0.5 / det_ja;
+        let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * half_per_det_ja;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t127 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t127, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t127, 25.429161076750646, "actuators")?;
-        let t128 = 1.0 / t127;
-        let t129 = t120 * t128;
-        let t145 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t147 = g1_vy_leg3 * g1_wz_leg3
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t145 * t129;
-        let t155 = t145 * t128;
-        let t157 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t145 * t155;
-        ::overact::guard::platform(t157, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t157, 25.592368899353342, "actuators")?;
-        let t158 = 1.0 / t157;
-        let t159 = t147 * t158;
-        let t161 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t120 * t129
-            - t147 * t159;
-        ::overact::guard::platform(t161, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t161, 0.3076928490286828, "actuators")?;
-        let t162 = 1.0 / t161;
-        let t176 = g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let inv_pivot_3 = 1.0 / pivot_3;
+        let t4 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t187 = g1_vy_leg1 * actuator_velocities[0]
+        let t5 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t176 * t155;
-        let t189 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t4 * l_2_1;
+        let t6 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t176 * t129 - t159 * t187;
-        let rate_3_leg1 = t162 * t189;
-        let t191 = t6 * rate_3_leg1;
-        let t192 = rate_3_leg1 * t191;
-        let t194 = t2 * rate_3_leg1;
-        let t195 = rate_3_leg1 * t194;
-        let g2_vx_leg2 = t16 * t19;
-        let t202 = t158 * t187 - t159 * rate_3_leg1;
-        let t206 = t176 * t128 - t155 * t202 - t129 * rate_3_leg1;
-        let t207 = t206 - t191;
-        let g2_vy_leg2 = t41 * t19;
-        let t210 = t202 - t194;
-        let rate_2_leg2 = g2_vx_leg2 * t207 + g2_vy_leg2 * t210;
-        let t213 = rate_2_leg2 * rate_2_leg2;
-        let t214 = 0.0784 * t213;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t207 + minus_g1_vy_leg2 * t210;
-        let t219 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t221 = 0.5 * (t11 - 0.1568);
-        let t222 = t219 * t221;
-        let rate_dot_1_leg2 = t19 * (t42 * t192 - t17 * t195 - t214 - t222);
-        let t225 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t59 * t62;
-        let minus_g2_vy_leg1 = t66 * t62;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t207 + minus_g2_vy_leg1 * t210;
-        let t235 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t236 = 0.0784 * t235;
-        let rate_1_leg1 = g1_vx_leg1 * t207 + g1_vy_leg1 * t210;
-        let t241 = rate_1_leg1 * rate_1_leg1;
-        let t243 = 0.5 * (t54 - 0.1568);
-        let t244 = t241 * t243;
-        let minus_rate_dot_1_leg1 = t62 * (t67 * t192 - t60 * t195 - t236 - t244);
-        let t247 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let minus_g2_vx_leg3 = t46 * t36;
-        let t254 = t206 + t191;
-        let minus_g2_vy_leg3 = t33 * t36;
-        let t257 = t202 + t194;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t254 + minus_g2_vy_leg3 * t257;
-        let t260 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t261 = 0.0784 * t260;
-        let rate_1_leg3 = g1_vx_leg3 * t254 + g1_vy_leg3 * t257;
-        let t266 = rate_1_leg3 * rate_1_leg3;
-        let t268 = 0.5 * (t28 - 0.1568);
-        let t269 = t266 * t268;
-        let minus_rate_dot_1_leg3 = t36 * (t47 * t195 - t34 * t192 - t261 - t269);
-        let t272 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t107 * t102;
-        let g2_vy_leg4 = t99 * t102;
-        let rate_2_leg4 = g2_vx_leg4 * t254 + g2_vy_leg4 * t257;
-        let t283 = rate_2_leg4 * rate_2_leg4;
-        let t284 = 0.0784 * t283;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t254 + minus_g1_vy_leg4 * t257;
-        let t289 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t291 = 0.5 * (t94 - 0.1568);
-        let t292 = t289 * t291;
-        let rate_dot_1_leg4 = t102 * (t108 * t195 - t100 * t192 - t284 - t292);
-        let t295 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t304 = g1_vx_leg1 * t247 - minus_g1_vx_leg2 * t225 + g1_vx_leg3 * t272
-            - minus_g1_vx_leg4 * t295;
-        let t315 = g1_vy_leg1 * t247 - minus_g1_vy_leg2 * t225 + g1_vy_leg3 * t272
-            - minus_g1_vy_leg4 * t295 - t155 * t304;
-        let t317 = g1_wz_leg2 * t225 - minus_g1_wz_leg1 * t247 + g1_wz_leg3 * t272
-            - minus_g1_wz_leg4 * t295 - t129 * t304 - t159 * t315;
-        let rate_dot_3_leg1 = t162 * t317;
-        let t323 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t76;
-        let t325 = t70 * t76;
-        let t326 = t325 * rate_dot_3_leg1;
-        let t330 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t76;
-        let t332 = t195 - t6 * rate_dot_3_leg1;
-        let t333 = 9.090909090909092 * t332;
-        let t338 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t76;
-        let t340 = t192 + t2 * rate_dot_3_leg1;
-        let t341 = 9.090909090909092 * t340;
-        let t346 = t158 * t315 - t159 * rate_dot_3_leg1;
-        let t352 = t128 * t304 - t155 * t346 - t129 * rate_dot_3_leg1;
-        let t354 = c_phi * t346 - s_phi * t352;
-        let t360 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t76;
-        let t365 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t76;
-        let t370 = t73 * t76;
-        let t372 = t71 * t76;
-        let t382 = s_phi * t346 + c_phi * t352;
-        let t391 = t325 * t382;
-        let t400 = t332 + t352;
-        let t402 = t346 - t340;
-        let t405 = t60 * t400 + t67 * t402 + t236;
-        let rate_dot_1_leg1 = t62 * (t405 + t244);
-        let t411 = t17 * t400 + t42 * t402 + t214;
-        let minus_rate_dot_1_leg2 = t19 * (t411 + t222);
-        let t414 = t352 - t332;
-        let t416 = t340 + t346;
-        let t419 = t47 * t414 + t34 * t416 + t261;
-        let rate_dot_1_leg3 = t36 * (t419 + t269);
-        let t426 = minus_g1_vy_leg4 * t330 - minus_g1_vx_leg4 * t338
-            - minus_g1_wz_leg4 * t77;
-        let t430 = t108 * t414 + t100 * t416 + t284;
-        let minus_rate_dot_1_leg4 = t102 * (t430 + t292);
-        let t438 = minus_g1_vy_leg4 * t360 - minus_g1_vx_leg4 * t365
-            + minus_g1_wz_leg4 * t323;
-        let t440 = minus_g1_wz_leg4 * t325;
-        let t441 = 2.0 * t440;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t459 = minus_g2_vy_leg1 * t330 - minus_g2_vx_leg1 * t338 + g2_wz_leg1 * t77;
-        let t464 = t59 * t400 + t66 * t402 + 0.0784 * t241;
-        let minus_rate_dot_2_leg1 = t62 * (t464 + t235 * t243);
-        let t473 = minus_g2_vy_leg1 * t360 - minus_g2_vx_leg1 * t365 - g2_wz_leg1 * t323;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t482 = g2_vx_leg2 * t338 - g2_vy_leg2 * t330 - minus_g2_wz_leg2 * t77;
-        let t487 = t16 * t400 + t41 * t402 + 0.0784 * t219;
-        let rate_dot_2_leg2 = t19 * (t487 + t213 * t221);
-        let t496 = g2_vx_leg2 * t365 - g2_vy_leg2 * t360 + minus_g2_wz_leg2 * t323;
-        let t504 = 2.0 * (minus_g2_vy_leg3 * t370 + minus_g2_vx_leg3 * t372);
-        let minus_g2_wz_leg3 = g1_wz_leg3 * t504;
-        let t507 = minus_g2_vy_leg3 * t330 - minus_g2_vx_leg3 * t338
-            - minus_g2_wz_leg3 * t77;
-        let t512 = t46 * t414 + t33 * t416 + 0.0784 * t266;
-        let minus_rate_dot_2_leg3 = t36 * (t512 + t260 * t268);
-        let t521 = minus_g2_vy_leg3 * t360 - minus_g2_vx_leg3 * t365
-            + minus_g2_wz_leg3 * t323;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t531 = g2_vx_leg4 * t338 - g2_vy_leg4 * t330 + g2_wz_leg4 * t77;
-        let t536 = t107 * t414 + t99 * t416 + 0.0784 * t289;
-        let rate_dot_2_leg4 = t102 * (t536 + t283 * t291);
-        let t545 = g2_vx_leg4 * t365 - g2_vy_leg4 * t360 - g2_wz_leg4 * t323;
-        let t547 = g2_wz_leg4 * t325;
-        let t548 = 2.0 * t547;
-        let t551 = 3.5714285714285716 * t405;
-        let t555 = 3.5714285714285716 * t411;
-        let t560 = 3.5714285714285716 * t419;
-        let t566 = 3.5714285714285716 * t536;
-        let t568 = 3.5714285714285716 * t430;
-        let t578 = rate_1_leg1 + minus_rate_2_leg1;
-        let t579 = t459 - 1.0;
-        let t582 = minus_rate_1_leg2 + rate_2_leg2;
-        let t584 = t496 - 1.0;
-        let t586 = rate_1_leg3 + minus_rate_2_leg3;
-        let t589 = t504 + 1.0;
-        let t591 = minus_rate_1_leg4 + rate_2_leg4;
-        let t592 = t531 - t426;
-        let t594 = t545 - t438;
-        let t596 = t441 + t548;
-        let t608 = minus_rate_2_leg1 + rate_3_leg1;
-        let t609 = t77 - t459;
-        let t611 = t473 + t323;
-        let t614 = rate_3_leg1 - rate_2_leg2;
-        let t615 = t77 - t482;
-        let t617 = t496 + t323;
-        let t620 = minus_rate_2_leg3 + rate_3_leg1;
-        let t621 = t77 - t507;
-        let t623 = t521 + t323;
-        let t625 = t325 + t504;
-        let t627 = rate_3_leg1 - rate_2_leg4;
-        let t628 = t77 - t531;
-        let t630 = t545 + t323;
-        let t632 = t325 - t548;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t4 * l_3_1 - l_3_2 * t5;
+        let wz = inv_pivot_3 * t6;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * wz;
+        let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * wz;
+        let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let vy = inv_pivot_2 * t5 - l_3_2 * wz;
+        let vx = t4 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let v_end_x_leg1 = vx - v_arm_x_leg3;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let v_end_y_leg1 = vy - v_arm_y_leg3;
+        // --- leg2
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED * rate_2_squared_leg2;
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_leg1;
+        // --- leg3
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = vx + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = vy + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t2_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            + minus_bias_rate_dot_1_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED * rate_2_squared_leg4;
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
+        let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
+            - bias_rate_dot_1_leg4;
+        let t7 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
+        let t8 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t7;
+        let t9 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t7
+            - l_3_2 * t8;
+        let dwz = inv_pivot_3 * t9;
+        let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+            * half_per_det_ja;
+        let wz_by_a3 = t1 * half_per_det_ja;
+        let zz_platform_on_q1_leg3 = wz_by_a3 * dwz;
+        let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let dvy = inv_pivot_2 * t8 - l_3_2 * dwz;
+        let dvx = inv_pivot_1 * t7 - l_2_1 * dvy - l_3_1 * dwz;
+        let a_y_platform = c_phi * dvy - s_phi * dvx;
+        let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vy_by_a3 = t3 * half_per_det_ja;
+        let vx_by_a3 = t2 * half_per_det_ja;
+        let a_x_platform = s_phi * dvy + c_phi * dvx;
+        let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
+        // --- leg1
+        let a_end_x_leg1 = a_arm_x_leg1 + dvx;
+        let a_end_y_leg1 = dvy - a_arm_y_leg3;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg1;
+        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
+        // --- leg3
+        let a_end_x_leg3 = dvx - a_arm_x_leg1;
+        let a_end_y_leg3 = a_arm_y_leg3 + dvy;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
+        let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1 - minus_g1_vx_leg4 * vx_by_a1
+            - minus_g1_wz_leg4 * wz_by_a1;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
+        let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2 - minus_g1_vx_leg4 * vx_by_a2
+            + minus_g1_wz_leg4 * minus_wz_by_a2;
+        let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
+        let minus_g1_a3_leg4 = 2.0 * minus_g1_wz_wz_by_a3_leg4;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - minus_g2_vx_leg1 * vx_by_a1
+            + g2_wz_leg1 * wz_by_a1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2 - minus_g2_vx_leg1 * vx_by_a2
+            - g2_wz_leg1 * minus_wz_by_a2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let g2_a1_leg2 = g2_vx_leg2 * vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1
+            - minus_g2_wz_leg2 * wz_by_a1;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+        let g2_a2_leg2 = g2_vx_leg2 * vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2
+            + minus_g2_wz_leg2 * minus_wz_by_a2;
+        let minus_g2_a3_leg3 = 2.0
+            * (minus_g2_vy_leg3 * vy_by_a3 + minus_g2_vx_leg3 * vx_by_a3);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
+        let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1 - minus_g2_vx_leg3 * vx_by_a1
+            - minus_g2_wz_leg3 * wz_by_a1;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+        let g2_a2_leg3 = minus_g2_vy_leg3 * minus_vy_by_a2 - minus_g2_vx_leg3 * vx_by_a2
+            + minus_g2_wz_leg3 * minus_wz_by_a2;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let g2_a1_leg4 = g2_vx_leg4 * vx_by_a1 - g2_vy_leg4 * minus_vy_by_a1
+            + g2_wz_leg4 * wz_by_a1;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let g2_a2_leg4 = g2_vx_leg4 * vx_by_a2 - g2_vy_leg4 * minus_vy_by_a2
+            - g2_wz_leg4 * minus_wz_by_a2;
+        let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
+        let g2_a3_leg4 = 2.0 * g2_wz_wz_by_a3_leg4;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
+        // --- leg4
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let off_2_leg4_on_q1_leg1 = g2_a1_leg4 - g1_a1_leg4;
+        let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
+        let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
+        let qd_3_leg1 = minus_rate_2_leg1 + wz;
+        let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
+        let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
+        let qd_3_leg2 = wz - rate_2_leg2;
+        let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
+        let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
+        // --- leg3
+        let qd_3_leg3 = minus_rate_2_leg3 + wz;
+        let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
+        let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
+        let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
+        // --- leg4
+        let qd_3_leg4 = wz - rate_2_leg4;
+        let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
+        let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
+        let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
         ::core::result::Result::Ok([
             [
-                t77 * rate_dot_3_leg1, t330 * t333 - t338 * t341 + t77 * t354,
-                t338 * t333 + t330 * t341 - t77 * t382, t338 * t352 - t330 * t346, rate_dot_1_leg1,
-                0.0, 0.0, -(t426 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0,
-                -(t426 * minus_rate_1_leg4), ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                -::overact::math::signed(t426, minus_rate_1_leg4), 1.0, 0.0, 0.0, t426,
-                -(t459 * minus_rate_dot_2_leg1), t482 * rate_dot_2_leg2,
-                -(t507 * minus_rate_dot_2_leg3), t531 * rate_dot_2_leg4,
-                3.5714285714285716 * t464 - t459 * t551, -(t482 * t555), -(t507 * t560),
-                t426 * t566 - t531 * t568, -(t578 * t579), t482 * t582, -(t507 * t586), t591 * t592,
-                -::overact::math::signed(t579, t578), ::overact::math::signed(t482, t582),
-                -::overact::math::signed(t507, t586), ::overact::math::signed(t592, t591), t579,
-                t482, t507, t592, t608 * t609, t614 * t615, t620 * t621, t627 * t628,
-                ::overact::math::signed(t609, t608), ::overact::math::signed(t615, t614),
-                ::overact::math::signed(t621, t620), ::overact::math::signed(t628, t627), t609,
+                wz_by_a1 * dwz,
+                minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 - vx_by_a1 * inv_r_p_a_arm_y_leg3
+                    + wz_by_a1 * a_y_platform,
+                vx_by_a1 * inv_r_p_a_arm_x_leg1 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3
+                    - wz_by_a1 * a_x_platform,
+                vx_by_a1 * dvx - minus_vy_by_a1 * dvy,
+                rate_dot_1_leg1,
+                0.0,
+                0.0,
+                -(g1_a1_leg4 * minus_rate_dot_1_leg4),
+                rate_1_leg1,
+                0.0,
+                0.0,
+                -(g1_a1_leg4 * minus_rate_1_leg4),
+                ::overact::math::sign(rate_1_leg1),
+                0.0,
+                0.0,
+                -::overact::math::signed(g1_a1_leg4, minus_rate_1_leg4),
+                1.0,
+                0.0,
+                0.0,
+                g1_a1_leg4,
+                -(g2_a1_leg1 * minus_rate_dot_2_leg1),
+                g2_a1_leg2 * rate_dot_2_leg2,
+                -(g2_a1_leg3 * minus_rate_dot_2_leg3),
+                g2_a1_leg4 * rate_dot_2_leg4,
+                INV_L_AB * a_on_f2_leg1 - g2_a1_leg1 * a2_x_leg1,
+                -(g2_a1_leg2 * a2_x_leg2),
+                -(g2_a1_leg3 * a2_x_leg3),
+                g1_a1_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a1_leg4 * a2_x_leg4,
+                -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1),
+                g2_a1_leg2 * qd_2_leg2,
+                -(g2_a1_leg3 * minus_qd_2_leg3),
+                qd_2_leg4 * off_2_leg4_on_q1_leg1,
+                -::overact::math::signed(off_2_leg1_on_q1_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(g2_a1_leg2, qd_2_leg2),
+                -::overact::math::signed(g2_a1_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(off_2_leg4_on_q1_leg1, qd_2_leg4),
+                off_2_leg1_on_q1_leg1,
+                g2_a1_leg2,
+                g2_a1_leg3,
+                off_2_leg4_on_q1_leg1,
+                qd_3_leg1 * off_3_leg1_on_q1_leg1,
+                qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2,
+                qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3,
+                qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4,
+                ::overact::math::signed(off_3_leg1_on_q1_leg1, qd_3_leg1),
+                ::overact::math::signed(wz_by_a1_minus_g2_a1_leg2, qd_3_leg2),
+                ::overact::math::signed(wz_by_a1_minus_g2_a1_leg3, qd_3_leg3),
+                ::overact::math::signed(wz_by_a1_minus_g2_a1_leg4, qd_3_leg4),
+                off_3_leg1_on_q1_leg1,
             ],
             [
-                -(t323 * rate_dot_3_leg1), t360 * t333 - t365 * t341 - t323 * t354,
-                t365 * t333 + t360 * t341 + t323 * t382, t365 * t352 - t360 * t346, 0.0,
-                -minus_rate_dot_1_leg2, 0.0, -(t438 * minus_rate_dot_1_leg4), 0.0,
-                -minus_rate_1_leg2, 0.0, -(t438 * minus_rate_1_leg4), 0.0,
-                -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                -::overact::math::signed(t438, minus_rate_1_leg4), 0.0, 1.0, 0.0, t438,
-                -(t473 * minus_rate_dot_2_leg1), t496 * rate_dot_2_leg2,
-                -(t521 * minus_rate_dot_2_leg3), t545 * rate_dot_2_leg4, -(t473 * t551),
-                3.5714285714285716 * t487 - t496 * t555, -(t521 * t560), t438 * t566 - t545 * t568,
-                -(t473 * t578), t582 * t584, -(t521 * t586), t591 * t594,
-                -::overact::math::signed(t473, t578), ::overact::math::signed(t584, t582),
-                -::overact::math::signed(t521, t586), ::overact::math::signed(t594, t591), t473,
-                t584, t521, t594, -(t608 * t611), -(t614 * t617), -(t620 * t623), -(t627 * t630),
-                -::overact::math::signed(t611, t608), -::overact::math::signed(t617, t614),
-                -::overact::math::signed(t623, t620), -::overact::math::signed(t630, t627), -t611,
+                -(minus_wz_by_a2 * dwz),
+                minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 - vx_by_a2 * inv_r_p_a_arm_y_leg3
+                    - minus_wz_by_a2 * a_y_platform,
+                vx_by_a2 * inv_r_p_a_arm_x_leg1 + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                    + minus_wz_by_a2 * a_x_platform,
+                vx_by_a2 * dvx - minus_vy_by_a2 * dvy,
+                0.0,
+                -minus_rate_dot_1_leg2,
+                0.0,
+                -(g1_a2_leg4 * minus_rate_dot_1_leg4),
+                0.0,
+                -minus_rate_1_leg2,
+                0.0,
+                -(g1_a2_leg4 * minus_rate_1_leg4),
+                0.0,
+                -::overact::math::sign(minus_rate_1_leg2),
+                0.0,
+                -::overact::math::signed(g1_a2_leg4, minus_rate_1_leg4),
+                0.0,
+                1.0,
+                0.0,
+                g1_a2_leg4,
+                -(g2_a2_leg1 * minus_rate_dot_2_leg1),
+                g2_a2_leg2 * rate_dot_2_leg2,
+                -(g2_a2_leg3 * minus_rate_dot_2_leg3),
+                g2_a2_leg4 * rate_dot_2_leg4,
+                -(g2_a2_leg1 * a2_x_leg1),
+                INV_L_AB * a_on_f2_leg2 - g2_a2_leg2 * a2_x_leg2,
+                -(g2_a2_leg3 * a2_x_leg3),
+                g1_a2_leg4 * inv_l_ab_a_on_f2_leg4 - g2_a2_leg4 * a2_x_leg4,
+                -(g2_a2_leg1 * minus_qd_2_leg1),
+                qd_2_leg2 * off_2_leg2_on_q1_leg2,
+                -(g2_a2_leg3 * minus_qd_2_leg3),
+                qd_2_leg4 * off_2_leg4_on_q1_leg2,
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(off_2_leg2_on_q1_leg2, qd_2_leg2),
+                -::overact::math::signed(g2_a2_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(off_2_leg4_on_q1_leg2, qd_2_leg4),
+                g2_a2_leg1,
+                off_2_leg2_on_q1_leg2,
+                g2_a2_leg3,
+                off_2_leg4_on_q1_leg2,
+                -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2),
+                -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2),
+                -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3),
+                -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4),
+                -::overact::math::signed(minus_off_3_leg1_on_q1_leg2, qd_3_leg1),
+                -::overact::math::signed(g2_a2_minus_wz_by_a2_leg2, qd_3_leg2),
+                -::overact::math::signed(g2_a2_minus_wz_by_a2_leg3, qd_3_leg3),
+                -::overact::math::signed(g2_a2_minus_wz_by_a2_leg4, qd_3_leg4),
+                -minus_off_3_leg1_on_q1_leg2,
             ],
             [
-                t326, t325 * t354 - (t370 * t333 + t372 * t341), -(0.11 * t326 + t391), 0.11 * t391,
-                0.0, 0.0, rate_dot_1_leg3, t441 * minus_rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
-                t441 * minus_rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                ::overact::math::signed(t441, minus_rate_1_leg4), 0.0, 0.0, 1.0, -t441, 0.0, 0.0,
-                t504 * minus_rate_dot_2_leg3, t548 * rate_dot_2_leg4, 0.0, 0.0,
-                3.5714285714285716 * t512 + t560 * t504,
-                -(7.142857142857143 * (t440 * t536 + t547 * t430)), 0.0, 0.0, t586 * t589,
-                t591 * t596, 0.0, 0.0, ::overact::math::signed(t589, t586),
-                ::overact::math::signed(t596, t591), 0.0, 0.0, -t589, t596, t325 * t608,
-                t325 * t614, t620 * t625, t627 * t632, ::overact::math::signed(t325, t608),
-                ::overact::math::signed(t325, t614), ::overact::math::signed(t625, t620),
-                ::overact::math::signed(t632, t627), t325,
+                zz_platform_on_q1_leg3,
+                wz_by_a3 * a_y_platform
+                    - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                        + vx_by_a3 * inv_r_p_a_arm_y_leg3),
+                -(R_P * zz_platform_on_q1_leg3 + wz_by_a3_a_x_platform),
+                R_P * wz_by_a3_a_x_platform,
+                0.0,
+                0.0,
+                rate_dot_1_leg3,
+                minus_g1_a3_leg4 * minus_rate_dot_1_leg4,
+                0.0,
+                0.0,
+                rate_1_leg3,
+                minus_g1_a3_leg4 * minus_rate_1_leg4,
+                0.0,
+                0.0,
+                ::overact::math::sign(rate_1_leg3),
+                ::overact::math::signed(minus_g1_a3_leg4, minus_rate_1_leg4),
+                0.0,
+                0.0,
+                1.0,
+                -minus_g1_a3_leg4,
+                0.0,
+                0.0,
+                minus_g2_a3_leg3 * minus_rate_dot_2_leg3,
+                g2_a3_leg4 * rate_dot_2_leg4,
+                0.0,
+                0.0,
+                INV_L_AB * a_on_f2_leg3 + a2_x_leg3 * minus_g2_a3_leg3,
+                -(7.142857142857143
+                    * (minus_g1_wz_wz_by_a3_leg4 * a_on_f2_leg4
+                        + g2_wz_wz_by_a3_leg4 * minus_a_on_f1_leg4)),
+                0.0,
+                0.0,
+                minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3,
+                qd_2_leg4 * off_2_leg4_on_q1_leg3,
+                0.0,
+                0.0,
+                ::overact::math::signed(minus_off_2_leg3_on_q1_leg3, minus_qd_2_leg3),
+                ::overact::math::signed(off_2_leg4_on_q1_leg3, qd_2_leg4),
+                0.0,
+                0.0,
+                -minus_off_2_leg3_on_q1_leg3,
+                off_2_leg4_on_q1_leg3,
+                wz_by_a3 * qd_3_leg1,
+                wz_by_a3 * qd_3_leg2,
+                qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3,
+                qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4,
+                ::overact::math::signed(wz_by_a3, qd_3_leg1),
+                ::overact::math::signed(wz_by_a3, qd_3_leg2),
+                ::overact::math::signed(wz_by_a3_minus_g2_a3_leg3, qd_3_leg3),
+                ::overact::math::signed(wz_by_a3_minus_g2_a3_leg4, qd_3_leg4),
+                wz_by_a3,
             ],
         ])
     }
@@ -4940,18 +6631,26 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> [[::core::primitive::f64; 4]; 3] {
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t5 = 0.11 * s_phi;
-        let t8 = 9.090909090909092 * (twist[2] * (t2 * twist[2]) + t5 * acceleration[2]);
-        let t13 = 9.090909090909092
-            * (twist[2] * (t5 * twist[2]) - t2 * acceleration[2]);
+        // --- leg1
+        let p_y_leg1 = R_P * c_phi;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let p_x_leg3 = R_P * s_phi;
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
         [
-            [0.0, -t8, t13, acceleration[0]], [0.0, -t13, -t8, acceleration[1]],
-            [
-                acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
-            ],
+            [0.0, -minus_mx_payload_on_vx, my_payload_on_vx, acceleration[0]],
+            [0.0, -my_payload_on_vx, -minus_mx_payload_on_vx, acceleration[1]],
+            [acceleration[2], a_y_platform, -a_x_platform, 0.0],
         ]
     }
     /// The payload's columns of case 1, eq. (38).
@@ -4973,18 +6672,26 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> [[::core::primitive::f64; 4]; 3] {
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t5 = 0.11 * s_phi;
-        let t8 = 9.090909090909092 * (twist[2] * (t2 * twist[2]) + t5 * acceleration[2]);
-        let t13 = 9.090909090909092
-            * (twist[2] * (t5 * twist[2]) - t2 * acceleration[2]);
+        // --- leg1
+        let p_y_leg1 = R_P * c_phi;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let p_x_leg3 = R_P * s_phi;
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
         [
-            [0.0, -t8, t13, acceleration[0]], [0.0, -t13, -t8, acceleration[1]],
-            [
-                acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
-            ],
+            [0.0, -minus_mx_payload_on_vx, my_payload_on_vx, acceleration[0]],
+            [0.0, -my_payload_on_vx, -minus_mx_payload_on_vx, acceleration[1]],
+            [acceleration[2], a_y_platform, -a_x_platform, 0.0],
         ]
     }
     /// The payload's columns of case 1, eq. (38).
@@ -5009,178 +6716,229 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = 0.11 * c_phi;
-        let t5 = pose[1] + t3 - 0.10970563941232059;
-        let t6 = 0.5 * t5;
-        let t7 = pose[0] - t2;
-        let t8 = t7 - 0.3950502153918333;
-        let t10 = t5 * t5;
-        let t11 = t8 * t8 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = t6 - t8 * t14;
-        let t17 = t5 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vy_leg1 = t17 * t19;
-        let t24 = 0.5 * t8 + t5 * t14;
-        let t25 = t8 - t24;
-        let g1_vx_leg1 = t25 * t19;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t3 * g1_vx_leg1;
-        let t30 = t7 + 0.3950502153918333;
-        let t32 = t30 * t30 + t10;
-        let t34 = 0.0784 / t32 - 0.25;
-        ::overact::guard::reach(t34, "leg2")?;
-        let t35 = ::overact::math::sqrt(t34);
-        let t37 = t6 + t30 * t35;
-        let t38 = t5 - t37;
-        let t39 = t32 * t35;
-        ::overact::guard::leg(t39, 0.07839913810297301, "leg2")?;
-        let t40 = 1.0 / t39;
-        let minus_g1_vy_leg2 = t38 * t40;
-        let t45 = 0.5 * t30 - t5 * t35;
-        let t46 = t30 - t45;
-        let minus_g1_vx_leg2 = t46 * t40;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t53 = pose[1] - t3 + 0.10970563941232059;
-        let t54 = 0.5 * t53;
-        let t55 = pose[0] + t2;
-        let t56 = t55 + 0.3950502153918333;
-        let t58 = t53 * t53;
-        let t59 = t56 * t56 + t58;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg3")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = t54 - t56 * t62;
-        let t65 = t53 - t64;
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg3")?;
-        let t67 = 1.0 / t66;
-        let g1_vy_leg3 = t65 * t67;
-        let t72 = 0.5 * t56 + t53 * t62;
-        let t73 = t56 - t72;
-        let g1_vx_leg3 = t73 * t67;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t3 * g1_vx_leg3;
-        let t79 = t55 - 0.3950502153918333;
-        let t81 = t79 * t79 + t58;
-        let t83 = 0.0784 / t81 - 0.25;
-        ::overact::guard::reach(t83, "leg4")?;
-        let t84 = ::overact::math::sqrt(t83);
-        let t86 = t54 + t79 * t84;
-        let t87 = t53 - t86;
-        let t88 = t81 * t84;
-        ::overact::guard::leg(t88, 0.07839913810297301, "leg4")?;
-        let t89 = 1.0 / t88;
-        let minus_g1_vy_leg4 = t87 * t89;
-        let t94 = 0.5 * t79 - t53 * t84;
-        let t95 = t79 - t94;
-        let minus_g1_vx_leg4 = t95 * t89;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t3 * minus_g1_vx_leg4;
-        let t107 = g1_vx_leg3 * g1_wz_leg3
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        // --- leg3
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t114 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t114, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t114, 25.429161076750646, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t116 = t107 * t115;
-        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t134 = g1_vy_leg3 * g1_wz_leg3
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
-        let t142 = t132 * t115;
-        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t132 * t142;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        let t145 = 1.0 / t144;
-        let t146 = t134 * t145;
-        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t107 * t116
-            - t134 * t146;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        let t149 = 1.0 / t148;
-        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let inv_pivot_3 = 1.0 / pivot_3;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t174 = g1_vy_leg1 * actuator_velocities[0]
+        let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
-        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+        let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
-        let rate_3_leg1 = t149 * t176;
-        let t178 = t3 * rate_3_leg1;
-        let t179 = rate_3_leg1 * t178;
-        let t181 = t2 * rate_3_leg1;
-        let t182 = rate_3_leg1 * t181;
-        let g2_vx_leg2 = t45 * t40;
-        let t189 = t145 * t174 - t146 * rate_3_leg1;
-        let t193 = t163 * t115 - t142 * t189 - t116 * rate_3_leg1;
-        let t194 = t193 - t178;
-        let g2_vy_leg2 = t37 * t40;
-        let t197 = t189 - t181;
-        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
-        let t210 = t38 * t179 - t46 * t182 - 0.0784 * (rate_2_leg2 * rate_2_leg2)
-            - minus_rate_1_leg2 * minus_rate_1_leg2 * (0.5 * (t32 - 0.1568));
-        let rate_dot_1_leg2 = t40 * t210;
-        let t212 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t24 * t19;
-        let minus_g2_vy_leg1 = t16 * t19;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
-        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
-        let t232 = t17 * t179 - t25 * t182
-            - 0.0784 * (minus_rate_2_leg1 * minus_rate_2_leg1)
-            - rate_1_leg1 * rate_1_leg1 * (0.5 * (t11 - 0.1568));
-        let minus_rate_dot_1_leg1 = t19 * t232;
-        let t234 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let minus_g2_vx_leg3 = t72 * t67;
-        let t241 = t193 + t178;
-        let minus_g2_vy_leg3 = t64 * t67;
-        let t244 = t189 + t181;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
-        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
-        let t257 = t73 * t182 - t65 * t179
-            - 0.0784 * (minus_rate_2_leg3 * minus_rate_2_leg3)
-            - rate_1_leg3 * rate_1_leg3 * (0.5 * (t59 - 0.1568));
-        let minus_rate_dot_1_leg3 = t67 * t257;
-        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t94 * t89;
-        let g2_vy_leg4 = t86 * t89;
-        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
-        let t280 = t95 * t182 - t87 * t179 - 0.0784 * (rate_2_leg4 * rate_2_leg4)
-            - minus_rate_1_leg4 * minus_rate_1_leg4 * (0.5 * (t81 - 0.1568));
-        let rate_dot_1_leg4 = t89 * t280;
-        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t291 = g1_vx_leg1 * t234 - minus_g1_vx_leg2 * t212 + g1_vx_leg3 * t259
-            - minus_g1_vx_leg4 * t282;
-        let t302 = g1_vy_leg1 * t234 - minus_g1_vy_leg2 * t212 + g1_vy_leg3 * t259
-            - minus_g1_vy_leg4 * t282 - t142 * t291;
-        let t304 = g1_wz_leg2 * t212 - minus_g1_wz_leg1 * t234 + g1_wz_leg3 * t259
-            - minus_g1_wz_leg4 * t282 - t116 * t291 - t146 * t302;
-        let rate_dot_3_leg1 = t149 * t304;
-        let t308 = 9.090909090909092 * (t179 + t2 * rate_dot_3_leg1);
-        let t311 = 9.090909090909092 * (t182 - t3 * rate_dot_3_leg1);
-        let t314 = t145 * t302 - t146 * rate_dot_3_leg1;
-        let t320 = t115 * t291 - t142 * t314 - t116 * rate_dot_3_leg1;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+        let wz = inv_pivot_3 * t3;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * wz;
+        let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * wz;
+        let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let vy = inv_pivot_2 * t2 - l_3_2 * wz;
+        let vx = t1 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let v_end_x_leg1 = vx - v_arm_x_leg3;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let v_end_y_leg1 = vy - v_arm_y_leg3;
+        // --- leg2
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2
+            * (bias_a_on_f1_leg2
+                - rate_1_squared_leg2 * (0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED)));
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1
+            * (bias_a_on_f1_leg1
+                - rate_1_squared_leg1 * (0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED)));
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_leg1;
+        // --- leg3
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = vx + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = vy + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3
+            * (bias_a_on_f1_leg3
+                - rate_1_squared_leg3 * (0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED)));
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            + minus_bias_rate_dot_1_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4
+            * (bias_a_on_f1_leg4
+                - rate_1_squared_leg4 * (0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED)));
+        let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
+            - bias_rate_dot_1_leg4;
+        let t4 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
+        let t5 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t4;
+        let t6 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
+            - l_3_2 * t5;
+        let dwz = inv_pivot_3 * t6;
+        // --- leg1
+        let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
+        let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
+        let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
+        let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
+        let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
+        let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
+        let a_y_platform = c_phi * dvy - s_phi * dvx;
+        let a_x_platform = s_phi * dvy + c_phi * dvx;
         ::core::result::Result::Ok([
-            [0.0, -t308, t311, t320], [0.0, -t311, -t308, t314],
-            [
-                rate_dot_3_leg1, c_phi * t314 - s_phi * t320, -(s_phi * t314 + c_phi * t320), 0.0,
-            ],
+            [0.0, -minus_mx_payload_on_vx, my_payload_on_vx, dvx],
+            [0.0, -my_payload_on_vx, -minus_mx_payload_on_vx, dvy],
+            [dwz, a_y_platform, -a_x_platform, 0.0],
         ])
     }
     /// The payload's columns of case 2, eq. (38).
@@ -5202,81 +6960,118 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 + 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg2")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t17 = t11 * t14;
-        ::overact::guard::leg(t17, 0.07839913810297301, "leg2")?;
-        let t18 = 1.0 / t17;
-        let minus_g1_vx_leg2 = (0.5 * t4 + t8 * t14) * t18;
-        let t21 = pose[1] - t6 + 0.10970563941232059;
-        let t24 = pose[0] + t2 + 0.3950502153918333;
-        let t27 = t24 * t24 + t21 * t21;
-        let t29 = 0.0784 / t27 - 0.25;
-        ::overact::guard::reach(t29, "leg3")?;
-        let t30 = ::overact::math::sqrt(t29);
-        let t33 = t27 * t30;
-        ::overact::guard::leg(t33, 0.07839913810297301, "leg3")?;
-        let t34 = 1.0 / t33;
-        let g1_vy_leg3 = (0.5 * t21 + t24 * t30) * t34;
-        let t37 = 0.5 * t8;
-        let minus_g1_vy_leg2 = (t37 - t4 * t14) * t18;
-        let g1_vx_leg3 = (0.5 * t24 - t21 * t30) * t34;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t50 = t3 - 0.3950502153918333;
-        let t53 = t50 * t50 + t10;
-        let t55 = 0.0784 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg1")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t59 = t53 * t56;
-        ::overact::guard::leg(t59, 0.07839913810297301, "leg1")?;
-        let t60 = 1.0 / t59;
-        let g1_vx_leg1 = (0.5 * t50 - t8 * t56) * t60;
-        let g1_vy_leg1 = (t37 + t50 * t56) * t60;
-        let t67 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-        let t68 = g1_wz_leg3 * t67;
-        ::overact::guard::platform(t68, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t68, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t68, 3.5376915986291904, "kept actuators")?;
-        let t69 = 0.5 / t68;
-        let t70 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t69;
-        let t75 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t69;
-        let t77 = t67 * t69;
-        let t78 = t77 * acceleration[2];
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t85 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t69;
-        let t90 = 9.090909090909092
-            * (twist[2] * (t2 * twist[2]) - t6 * acceleration[2]);
-        let t95 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t69;
-        let t100 = 9.090909090909092
-            * (twist[2] * (t6 * twist[2]) + t2 * acceleration[2]);
-        let t105 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t114 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t69;
-        let t119 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t69;
-        let t136 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t145 = t77 * t136;
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        // --- leg2
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_x_leg3 = pose[0] + p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg1
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let det_ja = g1_wz_leg3 * t1;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        let half_per_det_ja = 0.5 / det_ja;
+        let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * half_per_det_ja;
+        let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+            * half_per_det_ja;
+        let wz_by_a3 = t1 * half_per_det_ja;
+        let zz_payload_on_q1_leg3 = wz_by_a3 * acceleration[2];
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vy_by_a3 = p_x_leg3 * wz_by_a3;
+        let vx_by_a3 = p_y_leg1 * wz_by_a3;
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let wz_by_a3_a_x_platform = wz_by_a3 * a_x_platform;
         ::core::result::Result::Ok([
             [
-                t70 * acceleration[2], t85 * t90 - t95 * t100 + t70 * t105,
-                t95 * t90 + t85 * t100 - t70 * t136, t95 * acceleration[0] - t85 * acceleration[1],
+                wz_by_a1 * acceleration[2],
+                minus_vy_by_a1 * inv_r_p_a_arm_x_leg1 - vx_by_a1 * inv_r_p_a_arm_y_leg3
+                    + wz_by_a1 * a_y_platform,
+                vx_by_a1 * inv_r_p_a_arm_x_leg1 + minus_vy_by_a1 * inv_r_p_a_arm_y_leg3
+                    - wz_by_a1 * a_x_platform,
+                vx_by_a1 * acceleration[0] - minus_vy_by_a1 * acceleration[1],
             ],
             [
-                -(t75 * acceleration[2]), t114 * t90 - t119 * t100 - t75 * t105,
-                t119 * t90 + t114 * t100 + t75 * t136,
-                t119 * acceleration[0] - t114 * acceleration[1],
+                -(minus_wz_by_a2 * acceleration[2]),
+                minus_vy_by_a2 * inv_r_p_a_arm_x_leg1 - vx_by_a2 * inv_r_p_a_arm_y_leg3
+                    - minus_wz_by_a2 * a_y_platform,
+                vx_by_a2 * inv_r_p_a_arm_x_leg1 + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3
+                    + minus_wz_by_a2 * a_x_platform,
+                vx_by_a2 * acceleration[0] - minus_vy_by_a2 * acceleration[1],
             ],
             [
-                t78, t77 * t105 - (t2 * t77 * t90 + t6 * t77 * t100), -(0.11 * t78 + t145),
-                0.11 * t145,
+                zz_payload_on_q1_leg3,
+                wz_by_a3 * a_y_platform
+                    - (vy_by_a3 * inv_r_p_a_arm_x_leg1
+                        + vx_by_a3 * inv_r_p_a_arm_y_leg3),
+                -(R_P * zz_payload_on_q1_leg3 + wz_by_a3_a_x_platform),
+                R_P * wz_by_a3_a_x_platform,
             ],
         ])
     }
@@ -5296,61 +7091,77 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t17 = t11 * t14;
-        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
-        let t18 = 1.0 / t17;
-        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
-        let t21 = t3 + 0.3950502153918333;
-        let t24 = t21 * t21 + t10;
-        let t26 = 0.0784 / t24 - 0.25;
-        ::overact::guard::reach(t26, "leg2")?;
-        let t27 = ::overact::math::sqrt(t26);
-        let t30 = t24 * t27;
-        ::overact::guard::leg(t30, 0.07839913810297301, "leg2")?;
-        let t31 = 1.0 / t30;
-        let minus_g1_vx_leg2 = (0.5 * t21 + t8 * t27) * t31;
-        let t35 = pose[0] + t2;
-        let t36 = t35 + 0.3950502153918333;
-        let t39 = pose[1] - t6 + 0.10970563941232059;
-        let t41 = t39 * t39;
-        let t42 = t36 * t36 + t41;
-        let t44 = 0.0784 / t42 - 0.25;
-        ::overact::guard::reach(t44, "leg3")?;
-        let t45 = ::overact::math::sqrt(t44);
-        let t48 = t42 * t45;
-        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
-        let t49 = 1.0 / t48;
-        let g1_vx_leg3 = (0.5 * t36 - t39 * t45) * t49;
-        let t53 = t35 - 0.3950502153918333;
-        let t56 = t53 * t53 + t41;
-        let t58 = 0.0784 / t56 - 0.25;
-        ::overact::guard::reach(t58, "leg4")?;
-        let t59 = ::overact::math::sqrt(t58);
-        let t62 = t56 * t59;
-        ::overact::guard::leg(t62, 0.07839913810297301, "leg4")?;
-        let t63 = 1.0 / t62;
-        let minus_g1_vx_leg4 = (0.5 * t53 + t39 * t59) * t63;
-        let t67 = 0.5 * t8;
-        let g1_vy_leg1 = (t67 + t4 * t14) * t18;
-        let minus_g1_vy_leg2 = (t67 - t21 * t27) * t31;
-        let t77 = 0.5 * t39;
-        let g1_vy_leg3 = (t77 + t36 * t45) * t49;
-        let minus_g1_vy_leg4 = (t77 - t53 * t59) * t63;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         ::core::result::Result::Ok([
             g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
                 + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3],
@@ -5376,94 +7187,108 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t4 = pose[1] - t2 + 0.10970563941232059;
-        let t5 = 0.5 * t4;
-        let t6 = 0.11 * s_phi;
-        let t7 = pose[0] + t6;
-        let t8 = t7 - 0.3950502153918333;
-        let t10 = t4 * t4;
-        let t11 = t8 * t8 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg4")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t17 = t11 * t14;
-        ::overact::guard::leg(t17, 0.07839913810297301, "leg4")?;
-        let t18 = 1.0 / t17;
-        let minus_g1_vy_leg4 = (t5 - t8 * t14) * t18;
-        let t21 = pose[1] + t2 - 0.10970563941232059;
-        let t22 = 0.5 * t21;
-        let t23 = pose[0] - t6;
-        let t24 = t23 + 0.3950502153918333;
-        let t26 = t21 * t21;
-        let t27 = t24 * t24 + t26;
-        let t29 = 0.0784 / t27 - 0.25;
-        ::overact::guard::reach(t29, "leg2")?;
-        let t30 = ::overact::math::sqrt(t29);
-        let t33 = t27 * t30;
-        ::overact::guard::leg(t33, 0.07839913810297301, "leg2")?;
-        let t34 = 1.0 / t33;
-        let minus_g1_vy_leg2 = (t22 - t24 * t30) * t34;
-        let minus_g1_vx_leg2 = (0.5 * t24 + t21 * t30) * t34;
-        let g1_wz_leg2 = t6 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
-        let t43 = t7 + 0.3950502153918333;
-        let t46 = t43 * t43 + t10;
-        let t48 = 0.0784 / t46 - 0.25;
-        ::overact::guard::reach(t48, "leg3")?;
-        let t49 = ::overact::math::sqrt(t48);
-        let t52 = t46 * t49;
-        ::overact::guard::leg(t52, 0.07839913810297301, "leg3")?;
-        let t53 = 1.0 / t52;
-        let g1_vx_leg3 = (0.5 * t43 - t4 * t49) * t53;
-        let g1_vy_leg3 = (t5 + t43 * t49) * t53;
-        let g1_wz_leg3 = t6 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t64 = t23 - 0.3950502153918333;
-        let t66 = t64 * t64 + t26;
-        let t68 = 0.0784 / t66 - 0.25;
-        ::overact::guard::reach(t68, "leg1")?;
-        let t69 = ::overact::math::sqrt(t68);
-        let t72 = t66 * t69;
-        ::overact::guard::leg(t72, 0.07839913810297301, "leg1")?;
-        let t73 = 1.0 / t72;
-        let g1_vy_leg1 = (t22 + t64 * t69) * t73;
-        let g1_vx_leg1 = (0.5 * t64 - t21 * t69) * t73;
-        let minus_g1_wz_leg1 = t6 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t84 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
-        let t88 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
-        let t90 = g1_vx_leg3 * t84 - g1_vy_leg3 * t88;
-        ::overact::guard::platform(t90, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t90, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t90, 3.5376915986291904, "kept actuators")?;
-        let t91 = 0.5 / t90;
-        let minus_g1_vx_leg4 = (0.5 * t8 + t4 * t14) * t18;
-        let t103 = minus_g1_vy_leg4
-            * ((g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t91)
-            - minus_g1_vx_leg4
-                * ((g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t91);
-        let minus_g1_wz_leg4 = t6 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
-        let t125 = minus_g1_vy_leg4
-            * ((minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t91)
-            - minus_g1_vx_leg4
-                * ((minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t91);
+        // --- leg1
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let p_x_leg3 = R_P * s_phi;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        // --- leg4
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        // --- leg2
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        // --- leg3
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg1
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let t1 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
+        let t2 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
+        let det_ja = g1_vx_leg3 * t1 - g1_vy_leg3 * t2;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        let half_per_det_ja = 0.5 / det_ja;
+        let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let vx_by_a1 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3)
+            * half_per_det_ja;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * half_per_det_ja;
+        let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1 - minus_g1_vx_leg4 * vx_by_a1
+            - minus_g1_wz_leg4 * wz_by_a1;
+        let minus_vy_by_a2 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let vx_by_a2 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3)
+            * half_per_det_ja;
+        let minus_wz_by_a2 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
+            * half_per_det_ja;
+        let g1_a2_leg4 = minus_g1_vy_leg4 * minus_vy_by_a2 - minus_g1_vx_leg4 * vx_by_a2
+            + minus_g1_wz_leg4 * minus_wz_by_a2;
+        let minus_vy_by_a3 = t2 * half_per_det_ja;
+        let vx_by_a3 = t1 * half_per_det_ja;
+        let g1_a3_leg4 = 2.0
+            * (minus_g1_vy_leg4 * minus_vy_by_a3 - minus_g1_vx_leg4 * vx_by_a3);
         ::core::result::Result::Ok([
-            torques[0]
-                + torques[3]
-                    * (t103
-                        - minus_g1_wz_leg4
-                            * ((minus_g1_vx_leg2 * g1_vy_leg3
-                                - minus_g1_vy_leg2 * g1_vx_leg3) * t91)),
-            torques[1]
-                + torques[3]
-                    * (t125
-                        + minus_g1_wz_leg4
-                            * ((g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-                                * t91)),
-            torques[2]
-                + torques[3]
-                    * (2.0
-                        * (minus_g1_vy_leg4 * (t88 * t91)
-                            - minus_g1_vx_leg4 * (t84 * t91))),
+            torques[0] + torques[3] * g1_a1_leg4, torques[1] + torques[3] * g1_a2_leg4,
+            torques[2] + torques[3] * g1_a3_leg4,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5486,289 +7311,344 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = t17 * t19;
-        let t21 = t2 * twist[2];
-        let t24 = twist[2] * t21 - t6 * acceleration[2];
-        let t25 = acceleration[0] + t24;
-        let t27 = 0.5 * t8;
-        let t29 = t27 - t4 * t14;
-        let t30 = t8 - t29;
-        let t31 = t6 * twist[2];
-        let t34 = twist[2] * t31 + t2 * acceleration[2];
-        let t35 = acceleration[1] - t34;
-        let minus_g2_vx_leg1 = t16 * t19;
-        let t39 = twist[0] - t31;
-        let minus_g2_vy_leg1 = t29 * t19;
-        let t42 = twist[1] - t21;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t39 + minus_g2_vy_leg1 * t42;
-        let t45 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t47 = t17 * t25 + t30 * t35 + 0.0784 * t45;
-        let g1_vy_leg1 = t30 * t19;
-        let rate_1_leg1 = g1_vx_leg1 * t39 + g1_vy_leg1 * t42;
-        let t52 = rate_1_leg1 * rate_1_leg1;
-        let t53 = t11 - 0.1568;
-        let t54 = 0.5 * t53;
-        let rate_dot_1_leg1 = t19 * (t47 + t52 * t54);
-        let t66 = 3.5714285714285716 * t18;
-        let minus_rate_dot_2_leg1 = t19
-            * (t16 * t25 + t29 * t35 + 0.0784 * t52 + t45 * t54);
-        let t78 = 3.5714285714285716 * t47;
-        let t82 = 1.7857142857142858 * t53;
-        let t85 = t52 * t66 + rate_dot_1_leg1 * t82;
-        let t92 = t66
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t45
-                + parameters[8] * t78)
-            + t82
-                * (parameters[8] * t85
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t45));
-        let t94 = rate_1_leg1 + minus_rate_2_leg1;
-        let t98 = parameters[11]
-            - (parameters[9] * t94 + ::overact::math::signed(parameters[10], t94));
-        let t99 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
-            + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t92
-            - t98;
-        let t107 = minus_rate_2_leg1 + twist[2];
-        let t111 = parameters[12] * t107 + ::overact::math::signed(parameters[13], t107)
-            + parameters[14];
-        let t112 = parameters[6] * t85 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t78 + t98 - t111;
-        let t115 = t3 + 0.3950502153918333;
-        let t118 = t115 * t115 + t10;
-        let t120 = 0.0784 / t118 - 0.25;
-        ::overact::guard::reach(t120, "leg2")?;
-        let t121 = ::overact::math::sqrt(t120);
-        let t123 = 0.5 * t115 - t8 * t121;
-        let t124 = t118 * t121;
-        ::overact::guard::leg(t124, 0.07839913810297301, "leg2")?;
-        let t125 = 1.0 / t124;
-        let g2_vx_leg2 = t123 * t125;
-        let t129 = t27 + t115 * t121;
-        let t132 = t115 - t123;
-        let minus_g1_vx_leg2 = t132 * t125;
-        let t135 = t8 - t129;
-        let minus_g1_vy_leg2 = t135 * t125;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
-        let t139 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let g2_vy_leg2 = t129 * t125;
-        let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
-        let t146 = rate_2_leg2 * rate_2_leg2;
-        let t147 = t118 - 0.1568;
-        let t148 = 0.5 * t147;
-        let rate_dot_2_leg2 = t125
-            * (t123 * t25 + t129 * t35 + 0.0784 * t139 + t146 * t148);
-        let t153 = 3.5714285714285716 * t124;
-        let t159 = t132 * t25 + t135 * t35 + 0.0784 * t146;
-        let minus_rate_dot_1_leg2 = t125 * (t159 + t139 * t148);
-        let t163 = 1.7857142857142858 * t147;
-        let t165 = t139 * t153 + minus_rate_dot_1_leg2 * t163;
-        let t168 = 3.5714285714285716 * t159;
-        let t171 = minus_rate_1_leg2 + rate_2_leg2;
-        let t175 = parameters[24] * t171 + ::overact::math::signed(parameters[25], t171)
-            + parameters[26];
-        let t177 = twist[2] - rate_2_leg2;
-        let t181 = parameters[27] * t177 + ::overact::math::signed(parameters[28], t177)
-            + parameters[29];
-        let t182 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t165
-            - parameters[22] * t168 + t175 - t181;
-        let t204 = t163
-            * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t146
-                - parameters[23] * t165)
-            - t153
-                * (parameters[23] * t168
-                    - (parameters[21] * t146 + parameters[22] * rate_dot_2_leg2));
-        let t206 = parameters[19]
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+        let moment1_z_leg1 = parameters[0] * rate_dot_1_leg1;
+        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 + parameters[8] * a2_x_leg1;
+        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
+        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
+            + rate_dot_1_leg1 * v2_by_1_y_leg1;
+        let force2_y_leg1 = parameters[8] * a2_y_leg1
+            - (parameters[6] * minus_rate_dot_2_leg1
+                + parameters[7] * rate_2_squared_leg1);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = parameters[11]
+            - (parameters[9] * minus_qd_2_leg1
+                + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
+        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            - tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1
+            - parameters[5] * minus_rate_dot_2_leg1 - parameters[7] * a2_x_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let tau_3_leg1 = parameters[12] * qd_3_leg1
+            + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let t2_leg2 = 0.5 * t1_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t2_leg2);
+        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
+        let minus_a2_y_leg2 = rate_1_squared_leg2 * minus_v2_by_1_x_leg2
+            + minus_rate_dot_1_leg2 * v2_by_1_y_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let moment2_z_leg2 = parameters[20] * rate_dot_2_leg2
+            - parameters[21] * minus_a2_y_leg2 - parameters[22] * a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let tau_2_leg2 = parameters[24] * qd_2_leg2
+            + ::overact::math::signed(parameters[25], qd_2_leg2) + parameters[26];
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let tau_3_leg2 = parameters[27] * qd_3_leg2
+            + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let tau_1_leg2 = parameters[19]
             - (parameters[16] * minus_rate_dot_1_leg2
                 + parameters[17] * minus_rate_1_leg2
-                + ::overact::math::signed(parameters[18], minus_rate_1_leg2))
-            - parameters[15] * minus_rate_dot_1_leg2 + t204 - t175;
-        let t210 = pose[0] + t2;
-        let t211 = t210 + 0.3950502153918333;
-        let t214 = pose[1] - t6 + 0.10970563941232059;
-        let t216 = t214 * t214;
-        let t217 = t211 * t211 + t216;
-        let t219 = 0.0784 / t217 - 0.25;
-        ::overact::guard::reach(t219, "leg3")?;
-        let t220 = ::overact::math::sqrt(t219);
-        let t222 = 0.5 * t211 + t214 * t220;
-        let t223 = t211 - t222;
-        let t224 = t217 * t220;
-        ::overact::guard::leg(t224, 0.07839913810297301, "leg3")?;
-        let t225 = 1.0 / t224;
-        let g1_vx_leg3 = t223 * t225;
-        let t227 = acceleration[0] - t24;
-        let t229 = 0.5 * t214;
-        let t231 = t229 - t211 * t220;
-        let t232 = t214 - t231;
-        let t233 = acceleration[1] + t34;
-        let minus_g2_vx_leg3 = t222 * t225;
-        let t237 = twist[0] + t31;
-        let minus_g2_vy_leg3 = t231 * t225;
-        let t240 = twist[1] + t21;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vy_leg3 * t240;
-        let t243 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t245 = t223 * t227 + t232 * t233 + 0.0784 * t243;
-        let g1_vy_leg3 = t232 * t225;
-        let rate_1_leg3 = g1_vx_leg3 * t237 + g1_vy_leg3 * t240;
-        let t250 = rate_1_leg3 * rate_1_leg3;
-        let t251 = t217 - 0.1568;
-        let t252 = 0.5 * t251;
-        let rate_dot_1_leg3 = t225 * (t245 + t250 * t252);
-        let t264 = 3.5714285714285716 * t224;
-        let minus_rate_dot_2_leg3 = t225
-            * (t222 * t227 + t231 * t233 + 0.0784 * t250 + t243 * t252);
-        let t276 = 3.5714285714285716 * t245;
-        let t280 = 1.7857142857142858 * t251;
-        let t283 = t250 * t264 + rate_dot_1_leg3 * t280;
-        let t290 = t264
-            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t243
-                + parameters[38] * t276)
-            + t280
-                * (parameters[38] * t283
-                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t243));
-        let t292 = rate_1_leg3 + minus_rate_2_leg3;
-        let t296 = parameters[41]
-            - (parameters[39] * t292 + ::overact::math::signed(parameters[40], t292));
-        let t297 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
-            + parameters[32] * rate_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t290 - t296;
-        let t305 = minus_rate_2_leg3 + twist[2];
-        let t309 = parameters[42] * t305 + ::overact::math::signed(parameters[43], t305)
-            + parameters[44];
-        let t310 = parameters[36] * t283 - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * t276 + t296 - t309;
-        let t313 = g1_vx_leg1 * t99 - minus_g2_vx_leg1 * t112 + g2_vx_leg2 * t182
-            - minus_g1_vx_leg2 * t206 + g1_vx_leg3 * t297 - minus_g2_vx_leg3 * t310;
-        let t314 = t210 - 0.3950502153918333;
-        let t317 = t314 * t314 + t216;
-        let t319 = 0.0784 / t317 - 0.25;
-        ::overact::guard::reach(t319, "leg4")?;
-        let t320 = ::overact::math::sqrt(t319);
-        let t322 = 0.5 * t314 - t214 * t320;
-        let t323 = t317 * t320;
-        ::overact::guard::leg(t323, 0.07839913810297301, "leg4")?;
-        let t324 = 1.0 / t323;
-        let g2_vx_leg4 = t322 * t324;
-        let t328 = t229 + t314 * t320;
-        let t331 = t314 - t322;
-        let minus_g1_vx_leg4 = t331 * t324;
-        let t334 = t214 - t328;
-        let minus_g1_vy_leg4 = t334 * t324;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t237 + minus_g1_vy_leg4 * t240;
-        let t338 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let g2_vy_leg4 = t328 * t324;
-        let rate_2_leg4 = g2_vx_leg4 * t237 + g2_vy_leg4 * t240;
-        let t345 = rate_2_leg4 * rate_2_leg4;
-        let t346 = t317 - 0.1568;
-        let t347 = 0.5 * t346;
-        let rate_dot_2_leg4 = t324
-            * (t322 * t227 + t328 * t233 + 0.0784 * t338 + t345 * t347);
-        let t352 = 3.5714285714285716 * t323;
-        let t358 = t331 * t227 + t334 * t233 + 0.0784 * t345;
-        let minus_rate_dot_1_leg4 = t324 * (t358 + t338 * t347);
-        let t362 = 1.7857142857142858 * t346;
-        let t364 = t338 * t352 + minus_rate_dot_1_leg4 * t362;
-        let t367 = 3.5714285714285716 * t358;
-        let t370 = minus_rate_1_leg4 + rate_2_leg4;
-        let t374 = parameters[54] * t370 + ::overact::math::signed(parameters[55], t370)
-            + parameters[56];
-        let t376 = twist[2] - rate_2_leg4;
-        let t380 = parameters[57] * t376 + ::overact::math::signed(parameters[58], t376)
-            + parameters[59];
-        let t381 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t364
-            - parameters[52] * t367 + t374 - t380;
-        let t403 = t362
-            * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t345
-                - parameters[53] * t364)
-            - t352
-                * (parameters[53] * t367
-                    - (parameters[51] * t345 + parameters[52] * rate_dot_2_leg4));
-        let t405 = parameters[49]
+                + ::overact::math::signed(parameters[18], minus_rate_1_leg2));
+        let minus_moment1_z_leg2 = parameters[15] * minus_rate_dot_1_leg2;
+        let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
+            - parameters[22] * rate_2_squared_leg2 - parameters[23] * minus_a2_y_leg2;
+        let force2_x_leg2 = parameters[23] * a2_x_leg2
+            - (parameters[21] * rate_2_squared_leg2 + parameters[22] * rate_dot_2_leg2);
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + v2_by_1_y_leg2 * force2_y_leg2 - minus_v2_by_1_x_leg2 * force2_x_leg2
+            - tau_2_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
+        let moment1_z_leg3 = parameters[30] * rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
+            - parameters[36] * rate_2_squared_leg3 + parameters[38] * a2_x_leg3;
+        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
+        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
+            + rate_dot_1_leg3 * v2_by_1_y_leg3;
+        let force2_y_leg3 = parameters[38] * a2_y_leg3
+            - (parameters[36] * minus_rate_dot_2_leg3
+                + parameters[37] * rate_2_squared_leg3);
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = parameters[41]
+            - (parameters[39] * minus_qd_2_leg3
+                + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let moment2_z_leg3 = parameters[36] * a2_y_leg3
+            - parameters[35] * minus_rate_dot_2_leg3 - parameters[37] * a2_x_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let tau_3_leg3 = parameters[42] * qd_3_leg3
+            + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
+        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let t2_leg4 = 0.5 * t1_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t2_leg4);
+        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
+        let minus_a2_y_leg4 = rate_1_squared_leg4 * minus_v2_by_1_x_leg4
+            + minus_rate_dot_1_leg4 * v2_by_1_y_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let moment2_z_leg4 = parameters[50] * rate_dot_2_leg4
+            - parameters[51] * minus_a2_y_leg4 - parameters[52] * a2_x_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let tau_2_leg4 = parameters[54] * qd_2_leg4
+            + ::overact::math::signed(parameters[55], qd_2_leg4) + parameters[56];
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let tau_3_leg4 = parameters[57] * qd_3_leg4
+            + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let tau_1_leg4 = parameters[49]
             - (parameters[46] * minus_rate_dot_1_leg4
                 + parameters[47] * minus_rate_1_leg4
-                + ::overact::math::signed(parameters[48], minus_rate_1_leg4))
-            - parameters[45] * minus_rate_dot_1_leg4 + t403 - t374;
-        let t409 = 9.090909090909092 * t24;
-        let t411 = 9.090909090909092 * t34;
-        let t421 = parameters[62] * t409 - parameters[61] * t411
-            + acceleration[0] * parameters[63] - parameters[65] * t411
-            + parameters[66] * t409 + acceleration[0] * parameters[67];
-        let t422 = t313 + g2_vx_leg4 * t381 - minus_g1_vx_leg4 * t405 + t421;
-        let t429 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+                + ::overact::math::signed(parameters[48], minus_rate_1_leg4));
+        let minus_moment1_z_leg4 = parameters[45] * minus_rate_dot_1_leg4;
+        let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
+            - parameters[52] * rate_2_squared_leg4 - parameters[53] * minus_a2_y_leg4;
+        let force2_x_leg4 = parameters[53] * a2_x_leg4
+            - (parameters[51] * rate_2_squared_leg4 + parameters[52] * rate_dot_2_leg4);
+        let force_on_u1_leg4 = tau_1_leg4 - minus_moment1_z_leg4
+            + v2_by_1_y_leg4 * force2_y_leg4 - minus_v2_by_1_x_leg4 * force2_x_leg4
+            - tau_2_leg4;
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let force_x_platform = parameters[62] * inv_r_p_a_arm_x_leg1
+            - parameters[61] * inv_r_p_a_arm_y_leg3 + acceleration[0] * parameters[63]
+            - parameters[65] * inv_r_p_a_arm_y_leg3
+            + parameters[66] * inv_r_p_a_arm_x_leg1 + acceleration[0] * parameters[67];
+        let t2 = t1 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            + force_x_platform;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t429, 25.429161076750646, "actuators")?;
-        let t430 = 1.0 / t429;
-        let t438 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t439 = t438 * t430;
-        let t448 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t438 * t439;
-        ::overact::guard::platform(t448, 25.592368899353342, "actuators")?;
-        let t449 = 1.0 / t448;
-        let t460 = g1_vy_leg1 * t99 - minus_g2_vy_leg1 * t112 + g2_vy_leg2 * t182
-            - minus_g1_vy_leg2 * t206 + g1_vy_leg3 * t297 - minus_g2_vy_leg3 * t310;
-        let t475 = acceleration[1] * parameters[63]
-            - (parameters[61] * t409 + parameters[62] * t411) - parameters[65] * t409
-            - parameters[66] * t411 + acceleration[1] * parameters[67];
-        let t478 = t460 + g2_vy_leg4 * t381 - minus_g1_vy_leg4 * t405 + t475
-            - t422 * t439;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t505 = g1_vx_leg3 * g1_wz_leg3
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = acceleration[1] * parameters[63]
+            - (parameters[61] * inv_r_p_a_arm_x_leg1
+                + parameters[62] * inv_r_p_a_arm_y_leg3)
+            - parameters[65] * inv_r_p_a_arm_x_leg1
+            - parameters[66] * inv_r_p_a_arm_y_leg3 + acceleration[1] * parameters[67];
+        let t4 = t3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+            + force_y_platform - t2 * l_2_1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t506 = t505 * t430;
-        let t508 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t438 * t506;
-        let t509 = t508 * t449;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t532 = g2_wz_leg1 * t112 - minus_g1_wz_leg1 * t99 + t111 + g1_wz_leg2 * t206
-            - minus_g2_wz_leg2 * t182 + t181 + g1_wz_leg3 * t297
-            - minus_g2_wz_leg3 * t310 + t309;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t544 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t549 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t557 = acceleration[2] * parameters[60] + parameters[61] * t544
-            - parameters[62] * t549 + acceleration[2] * parameters[64]
-            + parameters[65] * t544 - parameters[66] * t549;
-        let t562 = t532 + g2_wz_leg4 * t381 - minus_g1_wz_leg4 * t405 + t380 + t557
-            - t422 * t506 - t509 * t478;
-        let t573 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t505 * t506
-            - t508 * t509;
-        ::overact::guard::platform(t573, 0.3076928490286828, "actuators")?;
-        let t574 = t562 / t573;
-        let t576 = t449 * t478 - t509 * t574;
-        let t580 = t422 * t430 - t439 * t576 - t506 * t574;
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t5 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
+            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let moment_z_platform = acceleration[2] * parameters[60]
+            + parameters[61] * a_y_platform - parameters[62] * a_x_platform
+            + acceleration[2] * parameters[64] + parameters[65] * a_y_platform
+            - parameters[66] * a_x_platform;
+        let t6 = t5 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+            + tau_3_leg4 + moment_z_platform - t2 * l_3_1 - l_3_2 * t4;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let t7 = t6 / pivot_3;
+        let t8 = inv_pivot_2 * t4 - l_3_2 * t7;
+        let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t580 + g1_vy_leg1 * t576 - minus_g1_wz_leg1 * t574,
-            g1_wz_leg2 * t574 - (minus_g1_vx_leg2 * t580 + minus_g1_vy_leg2 * t576),
-            g1_vx_leg3 * t580 + g1_vy_leg3 * t576 + g1_wz_leg3 * t574,
-            -(minus_g1_vx_leg4 * t580 + minus_g1_vy_leg4 * t576
-                + minus_g1_wz_leg4 * t574),
+            g1_vx_leg1 * t9 + g1_vy_leg1 * t8 - minus_g1_wz_leg1 * t7,
+            g1_wz_leg2 * t7 - (minus_g1_vx_leg2 * t9 + minus_g1_vy_leg2 * t8),
+            g1_vx_leg3 * t9 + g1_vy_leg3 * t8 + g1_wz_leg3 * t7,
+            -(minus_g1_vx_leg4 * t9 + minus_g1_vy_leg4 * t8 + minus_g1_wz_leg4 * t7),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5793,6 +7673,15 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -5803,228 +7692,287 @@ impl DualV {
         ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+        // --- leg1
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t10 = 3.5714285714285716 / s2_leg1;
-        let g1_vx_leg1 = c12_leg1 * t10;
-        let t14 = 0.11 * s_phi;
-        let t15 = t14 * twist[2];
-        let t17 = 0.11 * c_phi;
-        let t19 = twist[2] * t15 - t17 * acceleration[2];
-        let t20 = acceleration[0] + t19;
-        let t22 = t17 * twist[2];
-        let t25 = twist[2] * t22 + t14 * acceleration[2];
-        let t26 = acceleration[1] - t25;
-        let minus_g2_vx_leg1 = c1_leg1 * t10;
-        let t30 = twist[0] - t22;
-        let minus_g2_vy_leg1 = s1_leg1 * t10;
-        let t33 = twist[1] - t15;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t30 + minus_g2_vy_leg1 * t33;
-        let t36 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t38 = c12_leg1 * t20 + s12_leg1 * t26 + 0.28 * t36;
-        let g1_vy_leg1 = s12_leg1 * t10;
-        let rate_1_leg1 = g1_vx_leg1 * t30 + g1_vy_leg1 * t33;
-        let t43 = rate_1_leg1 * rate_1_leg1;
-        let t44 = 0.28 * c2_leg1;
-        let rate_dot_1_leg1 = t10 * (t38 + t43 * t44);
-        let t60 = 0.28 * t43;
-        let minus_rate_dot_2_leg1 = t10
-            * (c1_leg1 * t20 + s1_leg1 * t26 + t60 + t36 * t44);
-        let t73 = s2_leg1 * t60 + t44 * rate_dot_1_leg1;
-        let t80 = 0.28 * s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t36
-                + parameters[8] * t38)
-            + t44
-                * (parameters[8] * t73
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t36));
-        let t82 = rate_1_leg1 + minus_rate_2_leg1;
-        let t86 = parameters[11]
-            - (parameters[9] * t82 + ::overact::math::signed(parameters[10], t82));
-        let t87 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
-            + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t80
-            - t86;
-        let t95 = minus_rate_2_leg1 + twist[2];
-        let t99 = parameters[12] * t95 + ::overact::math::signed(parameters[13], t95)
-            + parameters[14];
-        let t100 = parameters[6] * t73 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t38 + t86 - t99;
+        let k1_leg1 = INV_L_AB / s2_leg1;
+        let g1_vx_leg1 = c12_leg1 * k1_leg1;
+        let p_x_leg3 = R_P * s_phi;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let p_y_leg1 = R_P * c_phi;
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1 + s12_leg1 * a_end_y_leg1
+            + L_AB * rate_2_squared_leg1;
+        let g1_vy_leg1 = s12_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let v2_by_1_y_leg1 = L_AB * c2_leg1;
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
+        let moment1_z_leg1 = parameters[0] * rate_dot_1_leg1;
+        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let v2_by_1_x_leg1 = L_AB * s2_leg1;
+        let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
+        let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+            + l_ab_rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 + parameters[8] * minus_a_on_f1_leg1;
+        let a2_y_leg1 = s2_leg1 * l_ab_rate_1_squared_leg1
+            + v2_by_1_y_leg1 * rate_dot_1_leg1;
+        let force2_y_leg1 = parameters[8] * a2_y_leg1
+            - (parameters[6] * minus_rate_dot_2_leg1
+                + parameters[7] * rate_2_squared_leg1);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = parameters[11]
+            - (parameters[9] * minus_qd_2_leg1
+                + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
+        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            - tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1
+            - parameters[5] * minus_rate_dot_2_leg1 - parameters[7] * minus_a_on_f1_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let tau_3_leg1 = parameters[12] * qd_3_leg1
+            + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
+        // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t113 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t113;
-        let minus_g2_vx_leg2 = c1_leg2 * t113;
-        let minus_g2_vy_leg2 = s1_leg2 * t113;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t30 + minus_g2_vy_leg2 * t33;
-        let t123 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t125 = c12_leg2 * t20 + s12_leg2 * t26 + 0.28 * t123;
-        let g1_vy_leg2 = s12_leg2 * t113;
-        let rate_1_leg2 = g1_vx_leg2 * t30 + g1_vy_leg2 * t33;
-        let t130 = rate_1_leg2 * rate_1_leg2;
-        let t131 = 0.28 * c2_leg2;
-        let rate_dot_1_leg2 = t113 * (t125 + t130 * t131);
-        let t147 = 0.28 * t130;
-        let minus_rate_dot_2_leg2 = t113
-            * (c1_leg2 * t20 + s1_leg2 * t26 + t147 + t123 * t131);
-        let t160 = s2_leg2 * t147 + t131 * rate_dot_1_leg2;
-        let t167 = 0.28 * s2_leg2
-            * (parameters[22] * minus_rate_dot_2_leg2 - parameters[21] * t123
-                + parameters[23] * t125)
-            + t131
-                * (parameters[23] * t160
-                    - (parameters[21] * minus_rate_dot_2_leg2 + parameters[22] * t123));
-        let t169 = rate_1_leg2 + minus_rate_2_leg2;
-        let t173 = parameters[26]
-            - (parameters[24] * t169 + ::overact::math::signed(parameters[25], t169));
-        let t174 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
-            + parameters[17] * rate_1_leg2
-            + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t167 - t173;
-        let t182 = minus_rate_2_leg2 + twist[2];
-        let t186 = parameters[27] * t182 + ::overact::math::signed(parameters[28], t182)
-            + parameters[29];
-        let t187 = parameters[21] * t160 - parameters[20] * minus_rate_dot_2_leg2
-            - parameters[22] * t125 + t173 - t186;
+        let k1_leg2 = INV_L_AB / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * k1_leg2;
+        let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+        let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+            + minus_g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1 + s12_leg2 * a_end_y_leg1
+            + L_AB * rate_2_squared_leg2;
+        let g1_vy_leg2 = s12_leg2 * k1_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = L_AB * c2_leg2;
+        let rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let moment1_z_leg2 = parameters[15] * rate_dot_1_leg2;
+        let tau_1_leg2 = parameters[16] * rate_dot_1_leg2 + parameters[17] * rate_1_leg2
+            + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19];
+        let v2_by_1_x_leg2 = L_AB * s2_leg2;
+        let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
+        let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+            + l_ab_rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k1_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let force2_x_leg2 = parameters[22] * minus_rate_dot_2_leg2
+            - parameters[21] * rate_2_squared_leg2 + parameters[23] * minus_a_on_f1_leg2;
+        let a2_y_leg2 = s2_leg2 * l_ab_rate_1_squared_leg2
+            + v2_by_1_y_leg2 * rate_dot_1_leg2;
+        let force2_y_leg2 = parameters[23] * a2_y_leg2
+            - (parameters[21] * minus_rate_dot_2_leg2
+                + parameters[22] * rate_2_squared_leg2);
+        let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+        let tau_2_leg2 = parameters[26]
+            - (parameters[24] * minus_qd_2_leg2
+                + ::overact::math::signed(parameters[25], minus_qd_2_leg2));
+        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
+            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        let moment2_z_leg2 = parameters[21] * a2_y_leg2
+            - parameters[20] * minus_rate_dot_2_leg2
+            - parameters[22] * minus_a_on_f1_leg2;
+        let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+        let tau_3_leg2 = parameters[27] * qd_3_leg2
+            + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        // --- leg3
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t201 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t201;
-        let t203 = acceleration[0] - t19;
-        let t205 = acceleration[1] + t25;
-        let minus_g2_vx_leg3 = c1_leg3 * t201;
-        let t209 = twist[0] + t22;
-        let minus_g2_vy_leg3 = s1_leg3 * t201;
-        let t212 = twist[1] + t15;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t209 + minus_g2_vy_leg3 * t212;
-        let t215 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t217 = c12_leg3 * t203 + s12_leg3 * t205 + 0.28 * t215;
-        let g1_vy_leg3 = s12_leg3 * t201;
-        let rate_1_leg3 = g1_vx_leg3 * t209 + g1_vy_leg3 * t212;
-        let t222 = rate_1_leg3 * rate_1_leg3;
-        let t223 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t201 * (t217 + t222 * t223);
-        let t239 = 0.28 * t222;
-        let minus_rate_dot_2_leg3 = t201
-            * (c1_leg3 * t203 + s1_leg3 * t205 + t239 + t215 * t223);
-        let t252 = s2_leg3 * t239 + t223 * rate_dot_1_leg3;
-        let t259 = 0.28 * s2_leg3
-            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t215
-                + parameters[38] * t217)
-            + t223
-                * (parameters[38] * t252
-                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t215));
-        let t261 = rate_1_leg3 + minus_rate_2_leg3;
-        let t265 = parameters[41]
-            - (parameters[39] * t261 + ::overact::math::signed(parameters[40], t261));
-        let t266 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
-            + parameters[32] * rate_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t259 - t265;
-        let t274 = minus_rate_2_leg3 + twist[2];
-        let t278 = parameters[42] * t274 + ::overact::math::signed(parameters[43], t274)
-            + parameters[44];
-        let t279 = parameters[36] * t252 - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * t217 + t265 - t278;
-        let t282 = g1_vx_leg1 * t87 - minus_g2_vx_leg1 * t100 + g1_vx_leg2 * t174
-            - minus_g2_vx_leg2 * t187 + g1_vx_leg3 * t266 - minus_g2_vx_leg3 * t279;
+        let k1_leg3 = INV_L_AB / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * k1_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3 + s12_leg3 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg3;
+        let g1_vy_leg3 = s12_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = L_AB * c2_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let moment1_z_leg3 = parameters[30] * rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let v2_by_1_x_leg3 = L_AB * s2_leg3;
+        let l_ab_rate_1_squared_leg3 = L_AB * rate_1_squared_leg3;
+        let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+            + l_ab_rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
+            - parameters[36] * rate_2_squared_leg3 + parameters[38] * minus_a_on_f1_leg3;
+        let a2_y_leg3 = s2_leg3 * l_ab_rate_1_squared_leg3
+            + v2_by_1_y_leg3 * rate_dot_1_leg3;
+        let force2_y_leg3 = parameters[38] * a2_y_leg3
+            - (parameters[36] * minus_rate_dot_2_leg3
+                + parameters[37] * rate_2_squared_leg3);
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = parameters[41]
+            - (parameters[39] * minus_qd_2_leg3
+                + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let moment2_z_leg3 = parameters[36] * a2_y_leg3
+            - parameters[35] * minus_rate_dot_2_leg3
+            - parameters[37] * minus_a_on_f1_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let tau_3_leg3 = parameters[42] * qd_3_leg3
+            + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
+        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t293 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t293;
-        let minus_g2_vx_leg4 = c1_leg4 * t293;
-        let minus_g2_vy_leg4 = s1_leg4 * t293;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t209 + minus_g2_vy_leg4 * t212;
-        let t303 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t305 = c12_leg4 * t203 + s12_leg4 * t205 + 0.28 * t303;
-        let g1_vy_leg4 = s12_leg4 * t293;
-        let rate_1_leg4 = g1_vx_leg4 * t209 + g1_vy_leg4 * t212;
-        let t310 = rate_1_leg4 * rate_1_leg4;
-        let t311 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t293 * (t305 + t310 * t311);
-        let t327 = 0.28 * t310;
-        let minus_rate_dot_2_leg4 = t293
-            * (c1_leg4 * t203 + s1_leg4 * t205 + t327 + t303 * t311);
-        let t340 = s2_leg4 * t327 + t311 * rate_dot_1_leg4;
-        let t347 = 0.28 * s2_leg4
-            * (parameters[52] * minus_rate_dot_2_leg4 - parameters[51] * t303
-                + parameters[53] * t305)
-            + t311
-                * (parameters[53] * t340
-                    - (parameters[51] * minus_rate_dot_2_leg4 + parameters[52] * t303));
-        let t349 = rate_1_leg4 + minus_rate_2_leg4;
-        let t353 = parameters[56]
-            - (parameters[54] * t349 + ::overact::math::signed(parameters[55], t349));
-        let t354 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
-            + parameters[47] * rate_1_leg4
-            + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t347 - t353;
-        let t362 = minus_rate_2_leg4 + twist[2];
-        let t366 = parameters[57] * t362 + ::overact::math::signed(parameters[58], t362)
-            + parameters[59];
-        let t367 = parameters[51] * t340 - parameters[50] * minus_rate_dot_2_leg4
-            - parameters[52] * t305 + t353 - t366;
-        let t371 = 9.090909090909092 * t19;
-        let t373 = 9.090909090909092 * t25;
-        let t383 = parameters[62] * t371 - parameters[61] * t373
-            + acceleration[0] * parameters[63] - parameters[65] * t373
-            + parameters[66] * t371 + acceleration[0] * parameters[67];
-        let t384 = t282 + g1_vx_leg4 * t354 - minus_g2_vx_leg4 * t367 + t383;
-        let t391 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let k1_leg4 = INV_L_AB / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * k1_leg4;
+        let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
+        let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
+            + minus_g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3 + s12_leg4 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg4;
+        let g1_vy_leg4 = s12_leg4 * k1_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
+        let v2_by_1_y_leg4 = L_AB * c2_leg4;
+        let rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
+        let moment1_z_leg4 = parameters[45] * rate_dot_1_leg4;
+        let tau_1_leg4 = parameters[46] * rate_dot_1_leg4 + parameters[47] * rate_1_leg4
+            + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49];
+        let v2_by_1_x_leg4 = L_AB * s2_leg4;
+        let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
+        let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
+            + l_ab_rate_1_squared_leg4;
+        let minus_rate_dot_2_leg4 = k1_leg4
+            * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
+        let force2_x_leg4 = parameters[52] * minus_rate_dot_2_leg4
+            - parameters[51] * rate_2_squared_leg4 + parameters[53] * minus_a_on_f1_leg4;
+        let a2_y_leg4 = s2_leg4 * l_ab_rate_1_squared_leg4
+            + v2_by_1_y_leg4 * rate_dot_1_leg4;
+        let force2_y_leg4 = parameters[53] * a2_y_leg4
+            - (parameters[51] * minus_rate_dot_2_leg4
+                + parameters[52] * rate_2_squared_leg4);
+        let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
+        let tau_2_leg4 = parameters[56]
+            - (parameters[54] * minus_qd_2_leg4
+                + ::overact::math::signed(parameters[55], minus_qd_2_leg4));
+        let force_on_u1_leg4 = moment1_z_leg4 + tau_1_leg4
+            + v2_by_1_x_leg4 * force2_x_leg4 + v2_by_1_y_leg4 * force2_y_leg4
+            - tau_2_leg4;
+        let moment2_z_leg4 = parameters[51] * a2_y_leg4
+            - parameters[50] * minus_rate_dot_2_leg4
+            - parameters[52] * minus_a_on_f1_leg4;
+        let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
+        let tau_3_leg4 = parameters[57] * qd_3_leg4
+            + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let force_x_platform = parameters[62] * inv_r_p_a_arm_x_leg1
+            - parameters[61] * inv_r_p_a_arm_y_leg3 + acceleration[0] * parameters[63]
+            - parameters[65] * inv_r_p_a_arm_y_leg3
+            + parameters[66] * inv_r_p_a_arm_x_leg1 + acceleration[0] * parameters[67];
+        let t2 = t1 + g1_vx_leg4 * force_on_u1_leg4 - minus_g2_vx_leg4 * force_on_u2_leg4
+            + force_x_platform;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t391, 25.429161076041257, "actuators")?;
-        let t392 = 1.0 / t391;
-        let t400 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 25.429161076041257, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t401 = t400 * t392;
-        let t410 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t400 * t401;
-        ::overact::guard::platform(t410, 25.592368900079006, "actuators")?;
-        let t411 = 1.0 / t410;
-        let t422 = g1_vy_leg1 * t87 - minus_g2_vy_leg1 * t100 + g1_vy_leg2 * t174
-            - minus_g2_vy_leg2 * t187 + g1_vy_leg3 * t266 - minus_g2_vy_leg3 * t279;
-        let t437 = acceleration[1] * parameters[63]
-            - (parameters[61] * t371 + parameters[62] * t373) - parameters[65] * t371
-            - parameters[66] * t373 + acceleration[1] * parameters[67];
-        let t440 = t422 + g1_vy_leg4 * t354 - minus_g2_vy_leg4 * t367 + t437
-            - t384 * t401;
-        let g1_wz_leg3 = t14 * g1_vy_leg3 + t17 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t14 + g1_vx_leg1 * t17;
-        let minus_g1_wz_leg2 = t14 * g1_vy_leg2 + t17 * g1_vx_leg2;
-        let g1_wz_leg4 = t14 * g1_vy_leg4 + t17 * g1_vx_leg4;
-        let t467 = g1_vx_leg3 * g1_wz_leg3
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368900079006, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g1_vy_leg2 * force_on_u1_leg2 - minus_g2_vy_leg2 * force_on_u2_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = acceleration[1] * parameters[63]
+            - (parameters[61] * inv_r_p_a_arm_x_leg1
+                + parameters[62] * inv_r_p_a_arm_y_leg3)
+            - parameters[65] * inv_r_p_a_arm_x_leg1
+            - parameters[66] * inv_r_p_a_arm_y_leg3 + acceleration[1] * parameters[67];
+        let t4 = t3 + g1_vy_leg4 * force_on_u1_leg4 - minus_g2_vy_leg4 * force_on_u2_leg4
+            + force_y_platform - t2 * l_2_1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+        let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+        let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
+            + g1_vy_leg4 * g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
-        let t468 = t467 * t392;
-        let t470 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t400 * t468;
-        let t471 = t470 * t411;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t14 + minus_g2_vx_leg1 * t17;
-        let g2_wz_leg2 = t14 * minus_g2_vy_leg2 + t17 * minus_g2_vx_leg2;
-        let minus_g2_wz_leg3 = t14 * minus_g2_vy_leg3 + t17 * minus_g2_vx_leg3;
-        let t494 = g2_wz_leg1 * t100 - minus_g1_wz_leg1 * t87 + t99 + g2_wz_leg2 * t187
-            - minus_g1_wz_leg2 * t174 + t186 + g1_wz_leg3 * t266
-            - minus_g2_wz_leg3 * t279 + t278;
-        let minus_g2_wz_leg4 = t14 * minus_g2_vy_leg4 + t17 * minus_g2_vx_leg4;
-        let t506 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t511 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t519 = acceleration[2] * parameters[60] + parameters[61] * t506
-            - parameters[62] * t511 + acceleration[2] * parameters[64]
-            + parameters[65] * t506 - parameters[66] * t511;
-        let t524 = t494 + g1_wz_leg4 * t354 - minus_g2_wz_leg4 * t367 + t366 + t519
-            - t384 * t468 - t471 * t440;
-        let t535 = minus_g1_wz_leg1 * minus_g1_wz_leg1
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
+        let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t5 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g2_wz_leg2 * force_on_u2_leg2
+            - minus_g1_wz_leg2 * force_on_u1_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4 + p_y_leg1 * minus_g2_vx_leg4;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let moment_z_platform = acceleration[2] * parameters[60]
+            + parameters[61] * a_y_platform - parameters[62] * a_x_platform
+            + acceleration[2] * parameters[64] + parameters[65] * a_y_platform
+            - parameters[66] * a_x_platform;
+        let t6 = t5 + g1_wz_leg4 * force_on_u1_leg4 - minus_g2_wz_leg4 * force_on_u2_leg4
+            + tau_3_leg4 + moment_z_platform - t2 * l_3_1 - l_3_2 * t4;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1
             + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t467 * t468 - t470 * t471;
-        ::overact::guard::platform(t535, 0.30769284902009914, "actuators")?;
-        let t536 = t524 / t535;
-        let t538 = t411 * t440 - t471 * t536;
-        let t542 = t384 * t392 - t401 * t538 - t468 * t536;
+            + g1_wz_leg4 * g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.30769284902009914, "actuators")?;
+        let t7 = t6 / pivot_3;
+        let t8 = inv_pivot_2 * t4 - l_3_2 * t7;
+        let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t542 + g1_vy_leg1 * t538 - minus_g1_wz_leg1 * t536,
-            g1_vx_leg2 * t542 + g1_vy_leg2 * t538 - minus_g1_wz_leg2 * t536,
-            g1_vx_leg3 * t542 + g1_vy_leg3 * t538 + g1_wz_leg3 * t536,
-            g1_vx_leg4 * t542 + g1_vy_leg4 * t538 + g1_wz_leg4 * t536,
+            g1_vx_leg1 * t9 + g1_vy_leg1 * t8 - minus_g1_wz_leg1 * t7,
+            g1_vx_leg2 * t9 + g1_vy_leg2 * t8 - minus_g1_wz_leg2 * t7,
+            g1_vx_leg3 * t9 + g1_vy_leg3 * t8 + g1_wz_leg3 * t7,
+            g1_vx_leg4 * t9 + g1_vy_leg4 * t8 + g1_wz_leg4 * t7,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6050,337 +7998,420 @@ impl DualV {
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = t17 * t19;
-        let t22 = t3 + 0.3950502153918333;
-        let t25 = t22 * t22 + t10;
-        let t27 = 0.0784 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t30 = 0.5 * t22 - t8 * t28;
-        let t31 = t22 - t30;
-        let t32 = t25 * t28;
-        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
-        let t33 = 1.0 / t32;
-        let minus_g1_vx_leg2 = t31 * t33;
-        let t37 = pose[0] + t2;
-        let t38 = t37 + 0.3950502153918333;
-        let t41 = pose[1] - t6 + 0.10970563941232059;
-        let t43 = t41 * t41;
-        let t44 = t38 * t38 + t43;
-        let t46 = 0.0784 / t44 - 0.25;
-        ::overact::guard::reach(t46, "leg3")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t49 = 0.5 * t38 + t41 * t47;
-        let t50 = t38 - t49;
-        let t51 = t44 * t47;
-        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
-        let t52 = 1.0 / t51;
-        let g1_vx_leg3 = t50 * t52;
-        let t56 = t37 - 0.3950502153918333;
-        let t59 = t56 * t56 + t43;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg4")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.5 * t56 - t41 * t62;
-        let t65 = t56 - t64;
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
-        let t67 = 1.0 / t66;
-        let minus_g1_vx_leg4 = t65 * t67;
-        let t70 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
-        let t71 = 1.0 / t70;
-        let t72 = 0.5 * t8;
-        let t74 = t72 - t4 * t14;
-        let t75 = t8 - t74;
-        let g1_vy_leg1 = t75 * t19;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t82 = t72 + t22 * t28;
-        let t83 = t8 - t82;
-        let minus_g1_vy_leg2 = t83 * t33;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t90 = 0.5 * t41;
-        let t92 = t90 - t38 * t47;
-        let t93 = t41 - t92;
-        let g1_vy_leg3 = t93 * t52;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t101 = t90 + t56 * t62;
-        let t102 = t41 - t101;
-        let minus_g1_vy_leg4 = t102 * t67;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t115 = g1_vx_leg3 * g1_wz_leg3
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        // --- leg1
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        // --- leg2
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        // --- leg3
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t116 = t115 * t71;
-        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t134 = g1_vy_leg3 * g1_wz_leg3
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
-        let t142 = t132 * t71;
-        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t132 * t142;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        let t145 = 1.0 / t144;
-        let t146 = t134 * t145;
-        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t115 * t116
-            - t134 * t146;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        let t149 = 1.0 / t148;
-        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let inv_pivot_3 = 1.0 / pivot_3;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t174 = g1_vy_leg1 * actuator_velocities[0]
+        let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
-        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+        let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
-        let rate_3_leg1 = t149 * t176;
-        let t178 = t6 * rate_3_leg1;
-        let t179 = rate_3_leg1 * t178;
-        let t181 = t2 * rate_3_leg1;
-        let t182 = rate_3_leg1 * t181;
-        let minus_g2_vx_leg1 = t16 * t19;
-        let t189 = t145 * t174 - t146 * rate_3_leg1;
-        let t193 = t163 * t71 - t142 * t189 - t116 * rate_3_leg1;
-        let t194 = t193 - t178;
-        let minus_g2_vy_leg1 = t74 * t19;
-        let t197 = t189 - t181;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
-        let t200 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t201 = 0.0784 * t200;
-        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
-        let t206 = rate_1_leg1 * rate_1_leg1;
-        let t207 = t11 - 0.1568;
-        let t208 = 0.5 * t207;
-        let t209 = t206 * t208;
-        let minus_rate_dot_1_leg1 = t19 * (t75 * t179 - t17 * t182 - t201 - t209);
-        let t212 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let g2_vx_leg2 = t30 * t33;
-        let g2_vy_leg2 = t82 * t33;
-        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
-        let t222 = rate_2_leg2 * rate_2_leg2;
-        let t223 = 0.0784 * t222;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
-        let t228 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t229 = t25 - 0.1568;
-        let t230 = 0.5 * t229;
-        let t231 = t228 * t230;
-        let rate_dot_1_leg2 = t33 * (t83 * t179 - t31 * t182 - t223 - t231);
-        let t234 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = t49 * t52;
-        let t241 = t193 + t178;
-        let minus_g2_vy_leg3 = t92 * t52;
-        let t244 = t189 + t181;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
-        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t248 = 0.0784 * t247;
-        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
-        let t253 = rate_1_leg3 * rate_1_leg3;
-        let t254 = t44 - 0.1568;
-        let t255 = 0.5 * t254;
-        let t256 = t253 * t255;
-        let minus_rate_dot_1_leg3 = t52 * (t50 * t182 - t93 * t179 - t248 - t256);
-        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t64 * t67;
-        let g2_vy_leg4 = t101 * t67;
-        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
-        let t270 = rate_2_leg4 * rate_2_leg4;
-        let t271 = 0.0784 * t270;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
-        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t277 = t59 - 0.1568;
-        let t278 = 0.5 * t277;
-        let t279 = t276 * t278;
-        let rate_dot_1_leg4 = t67 * (t65 * t182 - t102 * t179 - t271 - t279);
-        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t284 = g1_vx_leg1 * t212 - minus_g1_vx_leg2 * t234 + g1_vx_leg3 * t259
-            - minus_g1_vx_leg4 * t282;
-        let t294 = g1_vy_leg1 * t212 - minus_g1_vy_leg2 * t234 + g1_vy_leg3 * t259
-            - minus_g1_vy_leg4 * t282 - t142 * t284;
-        let t306 = g1_wz_leg2 * t234 - minus_g1_wz_leg1 * t212 + g1_wz_leg3 * t259
-            - minus_g1_wz_leg4 * t282 - t116 * t284 - t146 * t294;
-        let rate_dot_3_leg1 = t149 * t306;
-        let t309 = t145 * t294 - t146 * rate_dot_3_leg1;
-        let t313 = t71 * t284 - t142 * t309 - t116 * rate_dot_3_leg1;
-        let t315 = t182 - t6 * rate_dot_3_leg1;
-        let t316 = t313 + t315;
-        let t319 = t179 + t2 * rate_dot_3_leg1;
-        let t320 = t309 - t319;
-        let t323 = t17 * t316 + t75 * t320 + t201;
-        let rate_dot_1_leg1 = t19 * (t323 + t209);
-        let t334 = 3.5714285714285716 * t18;
-        let minus_rate_dot_2_leg1 = t19
-            * (t16 * t316 + t74 * t320 + 0.0784 * t206 + t200 * t208);
-        let t346 = 3.5714285714285716 * t323;
-        let t350 = 1.7857142857142858 * t207;
-        let t353 = t206 * t334 + rate_dot_1_leg1 * t350;
-        let t360 = t334
-            * (parameters[7] * minus_rate_dot_2_leg1 - t200 * parameters[6]
-                + parameters[8] * t346)
-            + t350
-                * (parameters[8] * t353
-                    - (parameters[6] * minus_rate_dot_2_leg1 + t200 * parameters[7]));
-        let t362 = rate_1_leg1 + minus_rate_2_leg1;
-        let t366 = parameters[11]
-            - (t362 * parameters[9] + ::overact::math::signed(parameters[10], t362));
-        let t367 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
-            + rate_1_leg1 * parameters[2]
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t360
-            - t366;
-        let t375 = minus_rate_2_leg1 + rate_3_leg1;
-        let t379 = t375 * parameters[12] + ::overact::math::signed(parameters[13], t375)
-            + parameters[14];
-        let t380 = parameters[6] * t353 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t346 + t366 - t379;
-        let rate_dot_2_leg2 = t33
-            * (t30 * t316 + t82 * t320 + 0.0784 * t228 + t222 * t230);
-        let t392 = 3.5714285714285716 * t32;
-        let t397 = t31 * t316 + t83 * t320 + t223;
-        let minus_rate_dot_1_leg2 = t33 * (t397 + t231);
-        let t400 = 1.7857142857142858 * t229;
-        let t402 = t228 * t392 + minus_rate_dot_1_leg2 * t400;
-        let t405 = 3.5714285714285716 * t397;
-        let t408 = minus_rate_1_leg2 + rate_2_leg2;
-        let t412 = t408 * parameters[24] + ::overact::math::signed(parameters[25], t408)
-            + parameters[26];
-        let t414 = rate_3_leg1 - rate_2_leg2;
-        let t418 = t414 * parameters[27] + ::overact::math::signed(parameters[28], t414)
-            + parameters[29];
-        let t419 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t402
-            - parameters[22] * t405 + t412 - t418;
-        let t441 = t400
-            * (parameters[21] * rate_dot_2_leg2 - t222 * parameters[22]
-                - parameters[23] * t402)
-            - t392
-                * (parameters[23] * t405
-                    - (t222 * parameters[21] + parameters[22] * rate_dot_2_leg2));
-        let t443 = parameters[19]
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+        let wz = inv_pivot_3 * t3;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * wz;
+        let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * wz;
+        let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let vy = inv_pivot_2 * t2 - l_3_2 * wz;
+        let vx = t1 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let v_end_x_leg1 = vx - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = vy - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t3_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_leg1;
+        // --- leg2
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED * rate_2_squared_leg2;
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let t2_leg2 = 0.5 * t1_leg2;
+        let t3_leg2 = rate_1_squared_leg2 * t2_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t3_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg3
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = vx + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = vy + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let t3_leg3 = rate_1_squared_leg3 * t2_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t3_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            + minus_bias_rate_dot_1_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED * rate_2_squared_leg4;
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let t2_leg4 = 0.5 * t1_leg4;
+        let t3_leg4 = rate_1_squared_leg4 * t2_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t3_leg4);
+        let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
+            - bias_rate_dot_1_leg4;
+        let t4 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
+        let t5 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t4;
+        let t6 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
+            - l_3_2 * t5;
+        let dwz = inv_pivot_3 * t6;
+        let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
+        let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
+        // --- leg1
+        let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
+        let a_end_x_leg1 = dvx + a_arm_x_leg1;
+        let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
+        let a_end_y_leg1 = dvy - a_arm_y_leg3;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg1;
+        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t3_leg1);
+        let moment1_z_leg1 = parameters[0] * rate_dot_1_leg1;
+        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + rate_1_leg1 * parameters[2]
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
+            - rate_2_squared_leg1 * parameters[6] + parameters[8] * a2_x_leg1;
+        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
+        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
+            + rate_dot_1_leg1 * v2_by_1_y_leg1;
+        let force2_y_leg1 = parameters[8] * a2_y_leg1
+            - (parameters[6] * minus_rate_dot_2_leg1
+                + rate_2_squared_leg1 * parameters[7]);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = parameters[11]
+            - (minus_qd_2_leg1 * parameters[9]
+                + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
+        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            - tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1
+            - parameters[5] * minus_rate_dot_2_leg1 - parameters[7] * a2_x_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + wz;
+        let tau_3_leg1 = qd_3_leg1 * parameters[12]
+            + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
+        // --- leg2
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t3_leg2);
+        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
+        let minus_a2_y_leg2 = rate_1_squared_leg2 * minus_v2_by_1_x_leg2
+            + minus_rate_dot_1_leg2 * v2_by_1_y_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let moment2_z_leg2 = parameters[20] * rate_dot_2_leg2
+            - parameters[21] * minus_a2_y_leg2 - parameters[22] * a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let tau_2_leg2 = qd_2_leg2 * parameters[24]
+            + ::overact::math::signed(parameters[25], qd_2_leg2) + parameters[26];
+        let qd_3_leg2 = wz - rate_2_leg2;
+        let tau_3_leg2 = qd_3_leg2 * parameters[27]
+            + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let tau_1_leg2 = parameters[19]
             - (parameters[16] * minus_rate_dot_1_leg2
                 + minus_rate_1_leg2 * parameters[17]
-                + ::overact::math::signed(parameters[18], minus_rate_1_leg2))
-            - parameters[15] * minus_rate_dot_1_leg2 + t441 - t412;
-        let t447 = t313 - t315;
-        let t449 = t309 + t319;
-        let t452 = t50 * t447 + t93 * t449 + t248;
-        let rate_dot_1_leg3 = t52 * (t452 + t256);
-        let t463 = 3.5714285714285716 * t51;
-        let minus_rate_dot_2_leg3 = t52
-            * (t49 * t447 + t92 * t449 + 0.0784 * t253 + t247 * t255);
-        let t475 = 3.5714285714285716 * t452;
-        let t479 = 1.7857142857142858 * t254;
-        let t482 = t253 * t463 + rate_dot_1_leg3 * t479;
-        let t489 = t463
-            * (parameters[37] * minus_rate_dot_2_leg3 - t247 * parameters[36]
-                + parameters[38] * t475)
-            + t479
-                * (parameters[38] * t482
-                    - (parameters[36] * minus_rate_dot_2_leg3 + t247 * parameters[37]));
-        let t491 = rate_1_leg3 + minus_rate_2_leg3;
-        let t495 = parameters[41]
-            - (t491 * parameters[39] + ::overact::math::signed(parameters[40], t491));
-        let t496 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
-            + rate_1_leg3 * parameters[32]
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t489 - t495;
-        let t504 = minus_rate_2_leg3 + rate_3_leg1;
-        let t508 = t504 * parameters[42] + ::overact::math::signed(parameters[43], t504)
-            + parameters[44];
-        let t509 = parameters[36] * t482 - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * t475 + t495 - t508;
-        let t512 = g1_vx_leg1 * t367 - minus_g2_vx_leg1 * t380 + g2_vx_leg2 * t419
-            - minus_g1_vx_leg2 * t443 + g1_vx_leg3 * t496 - minus_g2_vx_leg3 * t509;
-        let rate_dot_2_leg4 = t67
-            * (t64 * t447 + t101 * t449 + 0.0784 * t276 + t270 * t278);
-        let t522 = 3.5714285714285716 * t66;
-        let t527 = t65 * t447 + t102 * t449 + t271;
-        let minus_rate_dot_1_leg4 = t67 * (t527 + t279);
-        let t530 = 1.7857142857142858 * t277;
-        let t532 = t276 * t522 + minus_rate_dot_1_leg4 * t530;
-        let t535 = 3.5714285714285716 * t527;
-        let t538 = minus_rate_1_leg4 + rate_2_leg4;
-        let t542 = t538 * parameters[54] + ::overact::math::signed(parameters[55], t538)
-            + parameters[56];
-        let t544 = rate_3_leg1 - rate_2_leg4;
-        let t548 = t544 * parameters[57] + ::overact::math::signed(parameters[58], t544)
-            + parameters[59];
-        let t549 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t532
-            - parameters[52] * t535 + t542 - t548;
-        let t571 = t530
-            * (parameters[51] * rate_dot_2_leg4 - t270 * parameters[52]
-                - parameters[53] * t532)
-            - t522
-                * (parameters[53] * t535
-                    - (t270 * parameters[51] + parameters[52] * rate_dot_2_leg4));
-        let t573 = parameters[49]
+                + ::overact::math::signed(parameters[18], minus_rate_1_leg2));
+        let minus_moment1_z_leg2 = parameters[15] * minus_rate_dot_1_leg2;
+        let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
+            - rate_2_squared_leg2 * parameters[22] - parameters[23] * minus_a2_y_leg2;
+        let force2_x_leg2 = parameters[23] * a2_x_leg2
+            - (rate_2_squared_leg2 * parameters[21] + parameters[22] * rate_dot_2_leg2);
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + v2_by_1_y_leg2 * force2_y_leg2 - minus_v2_by_1_x_leg2 * force2_x_leg2
+            - tau_2_leg2;
+        // --- leg3
+        let a_end_x_leg3 = dvx - a_arm_x_leg1;
+        let a_end_y_leg3 = dvy + a_arm_y_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t3_leg3);
+        let moment1_z_leg3 = parameters[30] * rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + rate_1_leg3 * parameters[32]
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
+            - rate_2_squared_leg3 * parameters[36] + parameters[38] * a2_x_leg3;
+        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
+        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
+            + rate_dot_1_leg3 * v2_by_1_y_leg3;
+        let force2_y_leg3 = parameters[38] * a2_y_leg3
+            - (parameters[36] * minus_rate_dot_2_leg3
+                + rate_2_squared_leg3 * parameters[37]);
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = parameters[41]
+            - (minus_qd_2_leg3 * parameters[39]
+                + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let moment2_z_leg3 = parameters[36] * a2_y_leg3
+            - parameters[35] * minus_rate_dot_2_leg3 - parameters[37] * a2_x_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + wz;
+        let tau_3_leg3 = qd_3_leg3 * parameters[42]
+            + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
+        let t7 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t3_leg4);
+        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
+        let minus_a2_y_leg4 = rate_1_squared_leg4 * minus_v2_by_1_x_leg4
+            + minus_rate_dot_1_leg4 * v2_by_1_y_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let moment2_z_leg4 = parameters[50] * rate_dot_2_leg4
+            - parameters[51] * minus_a2_y_leg4 - parameters[52] * a2_x_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let tau_2_leg4 = qd_2_leg4 * parameters[54]
+            + ::overact::math::signed(parameters[55], qd_2_leg4) + parameters[56];
+        let qd_3_leg4 = wz - rate_2_leg4;
+        let tau_3_leg4 = qd_3_leg4 * parameters[57]
+            + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let tau_1_leg4 = parameters[49]
             - (parameters[46] * minus_rate_dot_1_leg4
                 + minus_rate_1_leg4 * parameters[47]
-                + ::overact::math::signed(parameters[48], minus_rate_1_leg4))
-            - parameters[45] * minus_rate_dot_1_leg4 + t571 - t542;
-        let t577 = 9.090909090909092 * t315;
-        let t579 = 9.090909090909092 * t319;
-        let t589 = parameters[62] * t577 - parameters[61] * t579 + t313 * parameters[63]
-            - parameters[65] * t579 + parameters[66] * t577 + t313 * parameters[67];
-        let t590 = t512 + g2_vx_leg4 * t549 - minus_g1_vx_leg4 * t573 + t589;
-        let t602 = g1_vy_leg1 * t367 - minus_g2_vy_leg1 * t380 + g2_vy_leg2 * t419
-            - minus_g1_vy_leg2 * t443 + g1_vy_leg3 * t496 - minus_g2_vy_leg3 * t509;
-        let t617 = t309 * parameters[63]
-            - (parameters[61] * t577 + parameters[62] * t579) - parameters[65] * t577
-            - parameters[66] * t579 + t309 * parameters[67];
-        let t620 = t602 + g2_vy_leg4 * t549 - minus_g1_vy_leg4 * t573 + t617
-            - t142 * t590;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t644 = g2_wz_leg1 * t380 - minus_g1_wz_leg1 * t367 + t379 + g1_wz_leg2 * t443
-            - minus_g2_wz_leg2 * t419 + t418 + g1_wz_leg3 * t496
-            - minus_g2_wz_leg3 * t509 + t508;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t656 = c_phi * t309 - s_phi * t313;
-        let t661 = s_phi * t309 + c_phi * t313;
-        let t669 = rate_dot_3_leg1 * parameters[60] + parameters[61] * t656
-            - parameters[62] * t661 + rate_dot_3_leg1 * parameters[64]
-            + parameters[65] * t656 - parameters[66] * t661;
-        let t674 = t644 + g2_wz_leg4 * t549 - minus_g1_wz_leg4 * t573 + t548 + t669
-            - t116 * t590 - t146 * t620;
-        let t675 = t149 * t674;
-        let t677 = t145 * t620 - t146 * t675;
-        let t681 = t71 * t590 - t142 * t677 - t116 * t675;
+                + ::overact::math::signed(parameters[48], minus_rate_1_leg4));
+        let minus_moment1_z_leg4 = parameters[45] * minus_rate_dot_1_leg4;
+        let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
+            - rate_2_squared_leg4 * parameters[52] - parameters[53] * minus_a2_y_leg4;
+        let force2_x_leg4 = parameters[53] * a2_x_leg4
+            - (rate_2_squared_leg4 * parameters[51] + parameters[52] * rate_dot_2_leg4);
+        let force_on_u1_leg4 = tau_1_leg4 - minus_moment1_z_leg4
+            + v2_by_1_y_leg4 * force2_y_leg4 - minus_v2_by_1_x_leg4 * force2_x_leg4
+            - tau_2_leg4;
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let force_x_platform = parameters[62] * inv_r_p_a_arm_x_leg1
+            - parameters[61] * inv_r_p_a_arm_y_leg3 + dvx * parameters[63]
+            - parameters[65] * inv_r_p_a_arm_y_leg3
+            + parameters[66] * inv_r_p_a_arm_x_leg1 + dvx * parameters[67];
+        let t8 = t7 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            + force_x_platform;
+        let t9 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = dvy * parameters[63]
+            - (parameters[61] * inv_r_p_a_arm_x_leg1
+                + parameters[62] * inv_r_p_a_arm_y_leg3)
+            - parameters[65] * inv_r_p_a_arm_x_leg1
+            - parameters[66] * inv_r_p_a_arm_y_leg3 + dvy * parameters[67];
+        let t10 = t9 + g2_vy_leg4 * force_on_u2_leg4
+            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform - l_2_1 * t8;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t11 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
+            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let a_y_platform = c_phi * dvy - s_phi * dvx;
+        let a_x_platform = s_phi * dvy + c_phi * dvx;
+        let moment_z_platform = dwz * parameters[60] + parameters[61] * a_y_platform
+            - parameters[62] * a_x_platform + dwz * parameters[64]
+            + parameters[65] * a_y_platform - parameters[66] * a_x_platform;
+        let t12 = t11 + g2_wz_leg4 * force_on_u2_leg4
+            - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
+            - l_3_1 * t8 - l_3_2 * t10;
+        let t13 = inv_pivot_3 * t12;
+        let t14 = inv_pivot_2 * t10 - l_3_2 * t13;
+        let t15 = inv_pivot_1 * t8 - l_2_1 * t14 - l_3_1 * t13;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t681 + g1_vy_leg1 * t677 - minus_g1_wz_leg1 * t675,
-            g1_wz_leg2 * t675 - (minus_g1_vx_leg2 * t681 + minus_g1_vy_leg2 * t677),
-            g1_vx_leg3 * t681 + g1_vy_leg3 * t677 + g1_wz_leg3 * t675,
-            -(minus_g1_vx_leg4 * t681 + minus_g1_vy_leg4 * t677
-                + minus_g1_wz_leg4 * t675),
+            g1_vx_leg1 * t15 + g1_vy_leg1 * t14 - minus_g1_wz_leg1 * t13,
+            g1_wz_leg2 * t13 - (minus_g1_vx_leg2 * t15 + minus_g1_vy_leg2 * t14),
+            g1_vx_leg3 * t15 + g1_vy_leg3 * t14 + g1_wz_leg3 * t13,
+            -(minus_g1_vx_leg4 * t15 + minus_g1_vy_leg4 * t14 + minus_g1_wz_leg4 * t13),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6399,215 +8430,277 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = t17 * t19;
-        let t24 = 3.5714285714285716 * t18;
-        let minus_g2_vx_leg1 = t16 * t19;
-        let c12_leg1 = 3.5714285714285716 * t17;
-        let t32 = 1.7857142857142858 * (t11 - 0.1568);
-        let t33 = g1_vx_leg1 * t32;
-        let t39 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
-            + t24 * (minus_g2_vx_leg1 * parameters[7] + c12_leg1 * parameters[8])
-            + t32 * (parameters[8] * t33 - minus_g2_vx_leg1 * parameters[6]);
-        let t48 = t3 + 0.3950502153918333;
-        let t51 = t48 * t48 + t10;
-        let t53 = 0.0784 / t51 - 0.25;
-        ::overact::guard::reach(t53, "leg2")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let t56 = 0.5 * t48 - t8 * t54;
-        let t57 = t51 * t54;
-        ::overact::guard::leg(t57, 0.07839913810297301, "leg2")?;
-        let t58 = 1.0 / t57;
-        let g2_vx_leg2 = t56 * t58;
-        let t61 = t48 - t56;
-        let minus_g1_vx_leg2 = t61 * t58;
-        let t64 = 1.7857142857142858 * (t51 - 0.1568);
-        let t65 = minus_g1_vx_leg2 * t64;
-        let c12_leg2 = 3.5714285714285716 * t61;
-        let t76 = 3.5714285714285716 * t57;
-        let t85 = t64 * (g2_vx_leg2 * parameters[21] - parameters[23] * t65)
-            - t76 * (c12_leg2 * parameters[23] - g2_vx_leg2 * parameters[22])
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let c12_leg1 = INV_L_AB * l2_x_leg1;
+        let v2_by_1_y_leg1 = 1.7857142857142858
+            * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let g1_vx_v2_by_1_y_leg1 = g1_vx_leg1 * v2_by_1_y_leg1;
+        let t1 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
+            + v2_by_1_x_leg1
+                * (minus_g2_vx_leg1 * parameters[7] + c12_leg1 * parameters[8])
+            + v2_by_1_y_leg1
+                * (parameters[8] * g1_vx_v2_by_1_y_leg1
+                    - minus_g2_vx_leg1 * parameters[6]);
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let v2_by_1_y_leg2 = 1.7857142857142858
+            * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let minus_g1_vx_v2_by_1_y_leg2 = minus_g1_vx_leg2 * v2_by_1_y_leg2;
+        let c12_leg2 = INV_L_AB * l2_x_leg2;
+        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
+        let t2 = v2_by_1_y_leg2
+            * (g2_vx_leg2 * parameters[21] - parameters[23] * minus_g1_vx_v2_by_1_y_leg2)
+            - minus_v2_by_1_x_leg2
+                * (c12_leg2 * parameters[23] - g2_vx_leg2 * parameters[22])
             - (minus_g1_vx_leg2 * parameters[16] + minus_g1_vx_leg2 * parameters[15]);
-        let t88 = g1_vx_leg1 * t39
+        let t3 = g1_vx_leg1 * t1
             - minus_g2_vx_leg1
-                * (parameters[6] * t33 - minus_g2_vx_leg1 * parameters[5]
-                    - c12_leg1 * parameters[7])
+                * (parameters[6] * g1_vx_v2_by_1_y_leg1
+                    - minus_g2_vx_leg1 * parameters[5] - c12_leg1 * parameters[7])
             + g2_vx_leg2
-                * (g2_vx_leg2 * parameters[20] - parameters[21] * t65
-                    - c12_leg2 * parameters[22]) - minus_g1_vx_leg2 * t85;
-        let t89 = pose[0] + t2;
-        let t90 = t89 + 0.3950502153918333;
-        let t93 = pose[1] - t6 + 0.10970563941232059;
-        let t95 = t93 * t93;
-        let t96 = t90 * t90 + t95;
-        let t98 = 0.0784 / t96 - 0.25;
-        ::overact::guard::reach(t98, "leg3")?;
-        let t99 = ::overact::math::sqrt(t98);
-        let t101 = 0.5 * t90 + t93 * t99;
-        let t102 = t90 - t101;
-        let t103 = t96 * t99;
-        ::overact::guard::leg(t103, 0.07839913810297301, "leg3")?;
-        let t104 = 1.0 / t103;
-        let g1_vx_leg3 = t102 * t104;
-        let t109 = 3.5714285714285716 * t103;
-        let minus_g2_vx_leg3 = t101 * t104;
-        let c12_leg3 = 3.5714285714285716 * t102;
-        let t117 = 1.7857142857142858 * (t96 - 0.1568);
-        let t118 = g1_vx_leg3 * t117;
-        let t124 = g1_vx_leg3 * parameters[30] + g1_vx_leg3 * parameters[31]
-            + t109 * (minus_g2_vx_leg3 * parameters[37] + c12_leg3 * parameters[38])
-            + t117 * (parameters[38] * t118 - minus_g2_vx_leg3 * parameters[36]);
-        let t134 = t89 - 0.3950502153918333;
-        let t137 = t134 * t134 + t95;
-        let t139 = 0.0784 / t137 - 0.25;
-        ::overact::guard::reach(t139, "leg4")?;
-        let t140 = ::overact::math::sqrt(t139);
-        let t142 = 0.5 * t134 - t93 * t140;
-        let t143 = t137 * t140;
-        ::overact::guard::leg(t143, 0.07839913810297301, "leg4")?;
-        let t144 = 1.0 / t143;
-        let g2_vx_leg4 = t142 * t144;
-        let t147 = t134 - t142;
-        let minus_g1_vx_leg4 = t147 * t144;
-        let t150 = 1.7857142857142858 * (t137 - 0.1568);
-        let t151 = minus_g1_vx_leg4 * t150;
-        let c12_leg4 = 3.5714285714285716 * t147;
-        let t162 = 3.5714285714285716 * t143;
-        let t171 = t150 * (g2_vx_leg4 * parameters[51] - parameters[53] * t151)
-            - t162 * (c12_leg4 * parameters[53] - g2_vx_leg4 * parameters[52])
+                * (g2_vx_leg2 * parameters[20]
+                    - parameters[21] * minus_g1_vx_v2_by_1_y_leg2
+                    - c12_leg2 * parameters[22]) - minus_g1_vx_leg2 * t2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let c12_leg3 = INV_L_AB * l2_x_leg3;
+        let v2_by_1_y_leg3 = 1.7857142857142858
+            * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let g1_vx_v2_by_1_y_leg3 = g1_vx_leg3 * v2_by_1_y_leg3;
+        let t4 = g1_vx_leg3 * parameters[30] + g1_vx_leg3 * parameters[31]
+            + v2_by_1_x_leg3
+                * (minus_g2_vx_leg3 * parameters[37] + c12_leg3 * parameters[38])
+            + v2_by_1_y_leg3
+                * (parameters[38] * g1_vx_v2_by_1_y_leg3
+                    - minus_g2_vx_leg3 * parameters[36]);
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let v2_by_1_y_leg4 = 1.7857142857142858
+            * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_g1_vx_v2_by_1_y_leg4 = minus_g1_vx_leg4 * v2_by_1_y_leg4;
+        let c12_leg4 = INV_L_AB * l2_x_leg4;
+        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
+        let t5 = v2_by_1_y_leg4
+            * (g2_vx_leg4 * parameters[51] - parameters[53] * minus_g1_vx_v2_by_1_y_leg4)
+            - minus_v2_by_1_x_leg4
+                * (c12_leg4 * parameters[53] - g2_vx_leg4 * parameters[52])
             - (minus_g1_vx_leg4 * parameters[46] + minus_g1_vx_leg4 * parameters[45]);
-        let t174 = t88 + g1_vx_leg3 * t124
+        let t6 = t3 + g1_vx_leg3 * t4
             - minus_g2_vx_leg3
-                * (parameters[36] * t118 - minus_g2_vx_leg3 * parameters[35]
-                    - c12_leg3 * parameters[37])
+                * (parameters[36] * g1_vx_v2_by_1_y_leg3
+                    - minus_g2_vx_leg3 * parameters[35] - c12_leg3 * parameters[37])
             + g2_vx_leg4
-                * (g2_vx_leg4 * parameters[50] - parameters[51] * t151
-                    - c12_leg4 * parameters[52]) - minus_g1_vx_leg4 * t171;
-        let t175 = parameters[63] + parameters[67];
-        let t177 = 0.5 * t8;
-        let t179 = t177 - t4 * t14;
-        let t180 = t8 - t179;
-        let g1_vy_leg1 = t180 * t19;
-        let minus_g2_vy_leg1 = t179 * t19;
-        let s12_leg1 = 3.5714285714285716 * t180;
-        let t191 = t32 * g1_vy_leg1;
-        let t197 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
-            + t24 * (minus_g2_vy_leg1 * parameters[7] + s12_leg1 * parameters[8])
-            + t32 * (parameters[8] * t191 - minus_g2_vy_leg1 * parameters[6]);
-        let t203 = parameters[6] * t191 - minus_g2_vy_leg1 * parameters[5]
+                * (g2_vx_leg4 * parameters[50]
+                    - parameters[51] * minus_g1_vx_v2_by_1_y_leg4
+                    - c12_leg4 * parameters[52]) - minus_g1_vx_leg4 * t5;
+        let m_platform_plus_m_payload = parameters[63] + parameters[67];
+        // --- leg1
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let s12_leg1 = INV_L_AB * l2_y_leg1;
+        let v2_by_1_y_g1_vy_leg1 = v2_by_1_y_leg1 * g1_vy_leg1;
+        let t7 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
+            + v2_by_1_x_leg1
+                * (minus_g2_vy_leg1 * parameters[7] + s12_leg1 * parameters[8])
+            + v2_by_1_y_leg1
+                * (parameters[8] * v2_by_1_y_g1_vy_leg1
+                    - minus_g2_vy_leg1 * parameters[6]);
+        let t8 = parameters[6] * v2_by_1_y_g1_vy_leg1 - minus_g2_vy_leg1 * parameters[5]
             - s12_leg1 * parameters[7];
-        let t207 = t177 + t48 * t54;
-        let g2_vy_leg2 = t207 * t58;
-        let t210 = t8 - t207;
-        let minus_g1_vy_leg2 = t210 * t58;
-        let t212 = t64 * minus_g1_vy_leg2;
-        let s12_leg2 = 3.5714285714285716 * t210;
-        let t217 = g2_vy_leg2 * parameters[20] - parameters[21] * t212
-            - s12_leg2 * parameters[22];
-        let t231 = t64 * (g2_vy_leg2 * parameters[21] - parameters[23] * t212)
-            - t76 * (s12_leg2 * parameters[23] - g2_vy_leg2 * parameters[22])
+        // --- leg2
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_v2_by_1_y_g1_vy_leg2 = v2_by_1_y_leg2 * minus_g1_vy_leg2;
+        let s12_leg2 = INV_L_AB * l2_y_leg2;
+        let t9 = g2_vy_leg2 * parameters[20]
+            - parameters[21] * minus_v2_by_1_y_g1_vy_leg2 - s12_leg2 * parameters[22];
+        let t10 = v2_by_1_y_leg2
+            * (g2_vy_leg2 * parameters[21] - parameters[23] * minus_v2_by_1_y_g1_vy_leg2)
+            - minus_v2_by_1_x_leg2
+                * (s12_leg2 * parameters[23] - g2_vy_leg2 * parameters[22])
             - (minus_g1_vy_leg2 * parameters[16] + minus_g1_vy_leg2 * parameters[15]);
-        let t235 = 0.5 * t93;
-        let t237 = t235 - t90 * t99;
-        let t238 = t93 - t237;
-        let g1_vy_leg3 = t238 * t104;
-        let minus_g2_vy_leg3 = t237 * t104;
-        let s12_leg3 = 3.5714285714285716 * t238;
-        let t249 = t117 * g1_vy_leg3;
-        let t255 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
-            + t109 * (minus_g2_vy_leg3 * parameters[37] + s12_leg3 * parameters[38])
-            + t117 * (parameters[38] * t249 - minus_g2_vy_leg3 * parameters[36]);
-        let t261 = parameters[36] * t249 - minus_g2_vy_leg3 * parameters[35]
-            - s12_leg3 * parameters[37];
-        let t264 = g1_vx_leg1 * t197 - minus_g2_vx_leg1 * t203 + g2_vx_leg2 * t217
-            - minus_g1_vx_leg2 * t231 + g1_vx_leg3 * t255 - minus_g2_vx_leg3 * t261;
-        let t266 = t235 + t134 * t140;
-        let g2_vy_leg4 = t266 * t144;
-        let t269 = t93 - t266;
-        let minus_g1_vy_leg4 = t269 * t144;
-        let t271 = t150 * minus_g1_vy_leg4;
-        let s12_leg4 = 3.5714285714285716 * t269;
-        let t276 = g2_vy_leg4 * parameters[50] - parameters[51] * t271
-            - s12_leg4 * parameters[52];
-        let t290 = t150 * (g2_vy_leg4 * parameters[51] - parameters[53] * t271)
-            - t162 * (s12_leg4 * parameters[53] - g2_vy_leg4 * parameters[52])
+        // --- leg3
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let s12_leg3 = INV_L_AB * l2_y_leg3;
+        let v2_by_1_y_g1_vy_leg3 = v2_by_1_y_leg3 * g1_vy_leg3;
+        let t11 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
+            + v2_by_1_x_leg3
+                * (minus_g2_vy_leg3 * parameters[37] + s12_leg3 * parameters[38])
+            + v2_by_1_y_leg3
+                * (parameters[38] * v2_by_1_y_g1_vy_leg3
+                    - minus_g2_vy_leg3 * parameters[36]);
+        let t12 = parameters[36] * v2_by_1_y_g1_vy_leg3
+            - minus_g2_vy_leg3 * parameters[35] - s12_leg3 * parameters[37];
+        let t13 = g1_vx_leg1 * t7 - minus_g2_vx_leg1 * t8 + g2_vx_leg2 * t9
+            - minus_g1_vx_leg2 * t10 + g1_vx_leg3 * t11 - minus_g2_vx_leg3 * t12;
+        // --- leg4
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_v2_by_1_y_g1_vy_leg4 = v2_by_1_y_leg4 * minus_g1_vy_leg4;
+        let s12_leg4 = INV_L_AB * l2_y_leg4;
+        let t14 = g2_vy_leg4 * parameters[50]
+            - parameters[51] * minus_v2_by_1_y_g1_vy_leg4 - s12_leg4 * parameters[52];
+        let t15 = v2_by_1_y_leg4
+            * (g2_vy_leg4 * parameters[51] - parameters[53] * minus_v2_by_1_y_g1_vy_leg4)
+            - minus_v2_by_1_x_leg4
+                * (s12_leg4 * parameters[53] - g2_vy_leg4 * parameters[52])
             - (minus_g1_vy_leg4 * parameters[46] + minus_g1_vy_leg4 * parameters[45]);
-        let t293 = t264 + g2_vx_leg4 * t276 - minus_g1_vx_leg4 * t290;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t301 = t32 * minus_g1_wz_leg1;
-        let t306 = t24 * minus_g1_wz_leg1;
-        let t314 = t32 * (g2_wz_leg1 * parameters[6] - parameters[8] * t301)
-            - t24 * (g2_wz_leg1 * parameters[7] + parameters[8] * t306)
+        let t16 = t13 + g2_vx_leg4 * t14 - minus_g1_vx_leg4 * t15;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let minus_v2_by_1_y_g1_wz_leg1 = v2_by_1_y_leg1 * minus_g1_wz_leg1;
+        let minus_v2_by_1_x_g1_wz_leg1 = v2_by_1_x_leg1 * minus_g1_wz_leg1;
+        let t17 = v2_by_1_y_leg1
+            * (g2_wz_leg1 * parameters[6] - parameters[8] * minus_v2_by_1_y_g1_wz_leg1)
+            - v2_by_1_x_leg1
+                * (g2_wz_leg1 * parameters[7]
+                    + parameters[8] * minus_v2_by_1_x_g1_wz_leg1)
             - (minus_g1_wz_leg1 * parameters[0] + minus_g1_wz_leg1 * parameters[1]);
-        let t320 = g2_wz_leg1 * parameters[5] - parameters[6] * t301
-            + parameters[7] * t306;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t326 = t64 * g1_wz_leg2;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t333 = t76 * g1_wz_leg2;
-        let t335 = parameters[21] * t326 - minus_g2_wz_leg2 * parameters[20]
-            + parameters[22] * t333;
-        let t349 = g1_wz_leg2 * parameters[16] + g1_wz_leg2 * parameters[15]
-            + t64 * (parameters[23] * t326 - minus_g2_wz_leg2 * parameters[21])
-            - t76 * (minus_g2_wz_leg2 * parameters[22] - parameters[23] * t333);
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t363 = t109 * g1_wz_leg3;
-        let t367 = t117 * g1_wz_leg3;
-        let t373 = g1_wz_leg3 * parameters[30] + g1_wz_leg3 * parameters[31]
-            + t109 * (minus_g2_wz_leg3 * parameters[37] + parameters[38] * t363)
-            + t117 * (parameters[38] * t367 - minus_g2_wz_leg3 * parameters[36]);
-        let t379 = parameters[36] * t367 - minus_g2_wz_leg3 * parameters[35]
-            - parameters[37] * t363;
-        let t382 = g1_vx_leg1 * t314 - minus_g2_vx_leg1 * t320 + g2_vx_leg2 * t335
-            - minus_g1_vx_leg2 * t349 + g1_vx_leg3 * t373 - minus_g2_vx_leg3 * t379;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t390 = t150 * minus_g1_wz_leg4;
-        let t393 = t162 * minus_g1_wz_leg4;
-        let t395 = g2_wz_leg4 * parameters[50] - parameters[51] * t390
-            - parameters[52] * t393;
-        let t409 = t150 * (g2_wz_leg4 * parameters[51] - parameters[53] * t390)
-            - t162 * (parameters[53] * t393 - g2_wz_leg4 * parameters[52])
+        let t18 = g2_wz_leg1 * parameters[5] - parameters[6] * minus_v2_by_1_y_g1_wz_leg1
+            + parameters[7] * minus_v2_by_1_x_g1_wz_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let v2_by_1_y_g1_wz_leg2 = v2_by_1_y_leg2 * g1_wz_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_v2_by_1_x_g1_wz_leg2 = minus_v2_by_1_x_leg2 * g1_wz_leg2;
+        let t19 = parameters[21] * v2_by_1_y_g1_wz_leg2
+            - minus_g2_wz_leg2 * parameters[20]
+            + parameters[22] * minus_v2_by_1_x_g1_wz_leg2;
+        let t20 = g1_wz_leg2 * parameters[16] + g1_wz_leg2 * parameters[15]
+            + v2_by_1_y_leg2
+                * (parameters[23] * v2_by_1_y_g1_wz_leg2
+                    - minus_g2_wz_leg2 * parameters[21])
+            - minus_v2_by_1_x_leg2
+                * (minus_g2_wz_leg2 * parameters[22]
+                    - parameters[23] * minus_v2_by_1_x_g1_wz_leg2);
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let v2_by_1_x_g1_wz_leg3 = v2_by_1_x_leg3 * g1_wz_leg3;
+        let v2_by_1_y_g1_wz_leg3 = v2_by_1_y_leg3 * g1_wz_leg3;
+        let t21 = g1_wz_leg3 * parameters[30] + g1_wz_leg3 * parameters[31]
+            + v2_by_1_x_leg3
+                * (minus_g2_wz_leg3 * parameters[37]
+                    + parameters[38] * v2_by_1_x_g1_wz_leg3)
+            + v2_by_1_y_leg3
+                * (parameters[38] * v2_by_1_y_g1_wz_leg3
+                    - minus_g2_wz_leg3 * parameters[36]);
+        let t22 = parameters[36] * v2_by_1_y_g1_wz_leg3
+            - minus_g2_wz_leg3 * parameters[35] - parameters[37] * v2_by_1_x_g1_wz_leg3;
+        let t23 = g1_vx_leg1 * t17 - minus_g2_vx_leg1 * t18 + g2_vx_leg2 * t19
+            - minus_g1_vx_leg2 * t20 + g1_vx_leg3 * t21 - minus_g2_vx_leg3 * t22;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let minus_v2_by_1_y_g1_wz_leg4 = v2_by_1_y_leg4 * minus_g1_wz_leg4;
+        let v2_by_1_x_g1_wz_leg4 = minus_v2_by_1_x_leg4 * minus_g1_wz_leg4;
+        let t24 = g2_wz_leg4 * parameters[50]
+            - parameters[51] * minus_v2_by_1_y_g1_wz_leg4
+            - parameters[52] * v2_by_1_x_g1_wz_leg4;
+        let t25 = v2_by_1_y_leg4
+            * (g2_wz_leg4 * parameters[51] - parameters[53] * minus_v2_by_1_y_g1_wz_leg4)
+            - minus_v2_by_1_x_leg4
+                * (parameters[53] * v2_by_1_x_g1_wz_leg4 - g2_wz_leg4 * parameters[52])
             - (minus_g1_wz_leg4 * parameters[46] + minus_g1_wz_leg4 * parameters[45]);
-        let t413 = 9.81 * s_phi;
-        let t415 = 9.81 * c_phi;
-        let t423 = t382 + g2_vx_leg4 * t395 - minus_g1_vx_leg4 * t409
-            - 0.1019367991845056
-                * (parameters[61] * t413 + parameters[62] * t415 + parameters[65] * t413
-                    + parameters[66] * t415);
-        let t434 = g1_vy_leg1 * t197 - minus_g2_vy_leg1 * t203 + g2_vy_leg2 * t217
-            - minus_g1_vy_leg2 * t231 + g1_vy_leg3 * t255 - minus_g2_vy_leg3 * t261;
-        let t450 = g1_vy_leg1 * t314 - minus_g2_vy_leg1 * t320 + g2_vy_leg2 * t335
-            - minus_g1_vy_leg2 * t349 + g1_vy_leg3 * t373 - minus_g2_vy_leg3 * t379;
-        let t463 = t450 + g2_vy_leg4 * t395 - minus_g1_vy_leg4 * t409
-            - 0.1019367991845056
-                * (parameters[62] * t413 - parameters[61] * t415 - parameters[65] * t415
-                    + parameters[66] * t413);
-        let t474 = g2_wz_leg1 * t320 - minus_g1_wz_leg1 * t314 + g1_wz_leg2 * t349
-            - minus_g2_wz_leg2 * t335 + g1_wz_leg3 * t373 - minus_g2_wz_leg3 * t379;
+        let t26 = 9.81 * s_phi;
+        let t27 = 9.81 * c_phi;
+        let moment_x_platform = parameters[61] * t26 + parameters[62] * t27
+            + parameters[65] * t26 + parameters[66] * t27;
+        let t28 = t23 + g2_vx_leg4 * t24 - minus_g1_vx_leg4 * t25
+            - 0.1019367991845056 * moment_x_platform;
+        let t29 = g1_vy_leg1 * t7 - minus_g2_vy_leg1 * t8 + g2_vy_leg2 * t9
+            - minus_g1_vy_leg2 * t10 + g1_vy_leg3 * t11 - minus_g2_vy_leg3 * t12;
+        let t30 = g1_vy_leg1 * t17 - minus_g2_vy_leg1 * t18 + g2_vy_leg2 * t19
+            - minus_g1_vy_leg2 * t20 + g1_vy_leg3 * t21 - minus_g2_vy_leg3 * t22;
+        let moment_y_platform = parameters[62] * t26 - parameters[61] * t27
+            - parameters[65] * t27 + parameters[66] * t26;
+        let t31 = t30 + g2_vy_leg4 * t24 - minus_g1_vy_leg4 * t25
+            - 0.1019367991845056 * moment_y_platform;
+        let t32 = g2_wz_leg1 * t18 - minus_g1_wz_leg1 * t17 + g1_wz_leg2 * t20
+            - minus_g2_wz_leg2 * t19 + g1_wz_leg3 * t21 - minus_g2_wz_leg3 * t22;
         ::core::result::Result::Ok([
-            [t174 + t175, t293, t423],
-            [t293, t434 + g2_vy_leg4 * t276 - minus_g1_vy_leg4 * t290 + t175, t463],
+            [t6 + m_platform_plus_m_payload, t16, t28],
             [
-                t423, t463,
-                t474 + g2_wz_leg4 * t395 - minus_g1_wz_leg4 * t409 + parameters[60]
+                t16,
+                t29 + g2_vy_leg4 * t14 - minus_g1_vy_leg4 * t15
+                    + m_platform_plus_m_payload,
+                t31,
+            ],
+            [
+                t28, t31,
+                t32 + g2_wz_leg4 * t24 - minus_g1_wz_leg4 * t25 + parameters[60]
                     + parameters[64],
             ],
         ])
@@ -6630,240 +8723,310 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = t17 * t19;
-        let t21 = t6 * twist[2];
-        let t22 = twist[0] - t21;
-        let t24 = 0.5 * t8;
-        let t26 = t24 - t4 * t14;
-        let t27 = t8 - t26;
-        let g1_vy_leg1 = t27 * t19;
-        let t29 = t2 * twist[2];
-        let t30 = twist[1] - t29;
-        let rate_1_leg1 = g1_vx_leg1 * t22 + g1_vy_leg1 * t30;
-        let t34 = twist[2] * t21;
-        let t36 = twist[2] * t29;
-        let minus_g2_vx_leg1 = t16 * t19;
-        let minus_g2_vy_leg1 = t26 * t19;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t22 + minus_g2_vy_leg1 * t30;
-        let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t46 = t27 * t34 - t17 * t36 - 0.0784 * t44;
-        let t47 = rate_1_leg1 * rate_1_leg1;
-        let t48 = t11 - 0.1568;
-        let t49 = 0.5 * t48;
-        let minus_rate_dot_1_leg1 = t19 * (t46 - t47 * t49);
-        let t60 = 3.5714285714285716 * t18;
-        let minus_rate_dot_2_leg1 = t19
-            * (t16 * t36 - t26 * t34 + 0.0784 * t47 + t44 * t49);
-        let t72 = 3.5714285714285716 * t46;
-        let t76 = 1.7857142857142858 * t48;
-        let t79 = t47 * t60 - minus_rate_dot_1_leg1 * t76;
-        let t86 = t60
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t44
-                - parameters[8] * t72)
-            + t76
-                * (parameters[8] * t79
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t44));
-        let t88 = rate_1_leg1 + minus_rate_2_leg1;
-        let t92 = parameters[11]
-            - (parameters[9] * t88 + ::overact::math::signed(parameters[10], t88));
-        let t93 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t86 - t92;
-        let t101 = minus_rate_2_leg1 + twist[2];
-        let t105 = parameters[12] * t101 + ::overact::math::signed(parameters[13], t101)
-            + parameters[14];
-        let t106 = parameters[6] * t79 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t72 + t92 - t105;
-        let t109 = t3 + 0.3950502153918333;
-        let t112 = t109 * t109 + t10;
-        let t114 = 0.0784 / t112 - 0.25;
-        ::overact::guard::reach(t114, "leg2")?;
-        let t115 = ::overact::math::sqrt(t114);
-        let t117 = 0.5 * t109 - t8 * t115;
-        let t118 = t112 * t115;
-        ::overact::guard::leg(t118, 0.07839913810297301, "leg2")?;
-        let t119 = 1.0 / t118;
-        let g2_vx_leg2 = t117 * t119;
-        let t123 = t24 + t109 * t115;
-        let t126 = t109 - t117;
-        let minus_g1_vx_leg2 = t126 * t119;
-        let t129 = t8 - t123;
-        let minus_g1_vy_leg2 = t129 * t119;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t22 + minus_g1_vy_leg2 * t30;
-        let t133 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let g2_vy_leg2 = t123 * t119;
-        let rate_2_leg2 = g2_vx_leg2 * t22 + g2_vy_leg2 * t30;
-        let t140 = rate_2_leg2 * rate_2_leg2;
-        let t141 = t112 - 0.1568;
-        let t142 = 0.5 * t141;
-        let rate_dot_2_leg2 = t119
-            * (t117 * t36 - t123 * t34 + 0.0784 * t133 + t140 * t142);
-        let t151 = t129 * t34 - t126 * t36 - 0.0784 * t140;
-        let rate_dot_1_leg2 = t119 * (t151 - t133 * t142);
-        let t155 = 1.7857142857142858 * t141;
-        let t157 = 3.5714285714285716 * t118;
-        let t159 = rate_dot_1_leg2 * t155 - t133 * t157;
-        let t162 = 3.5714285714285716 * t151;
-        let t165 = minus_rate_1_leg2 + rate_2_leg2;
-        let t169 = parameters[24] * t165 + ::overact::math::signed(parameters[25], t165)
-            + parameters[26];
-        let t171 = twist[2] - rate_2_leg2;
-        let t175 = parameters[27] * t171 + ::overact::math::signed(parameters[28], t171)
-            + parameters[29];
-        let t176 = parameters[20] * rate_dot_2_leg2 + parameters[21] * t159
-            + parameters[22] * t162 + t169 - t175;
-        let t198 = t157
-            * (parameters[21] * t140 + parameters[22] * rate_dot_2_leg2
-                + parameters[23] * t162)
-            + t155
-                * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t140
-                    + parameters[23] * t159);
-        let t200 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
+        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1
+            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+        let tau_1_leg1 = parameters[2] * rate_1_leg1
+            - parameters[1] * minus_bias_rate_dot_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let minus_moment1_z_leg1 = parameters[0] * minus_bias_rate_dot_1_leg1;
+        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
+            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_bias_rate_dot_2_leg1 = k1_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
+        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 - parameters[8] * minus_bias_a2_x_leg1;
+        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
+        let bias_a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
+            - minus_bias_rate_dot_1_leg1 * v2_by_1_y_leg1;
+        let force2_y_leg1 = parameters[8] * bias_a2_y_leg1
+            - (parameters[6] * minus_bias_rate_dot_2_leg1
+                + parameters[7] * rate_2_squared_leg1);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = parameters[11]
+            - (parameters[9] * minus_qd_2_leg1
+                + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            - tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * bias_a2_y_leg1
+            - parameters[5] * minus_bias_rate_dot_2_leg1
+            + parameters[7] * minus_bias_a2_x_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let tau_3_leg1 = parameters[12] * qd_3_leg1
+            + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let bias_a_on_f2_leg2 = l1_x_leg2 * bias_a_end_x_leg1
+            - l1_y_leg2 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let t2_leg2 = 0.5 * t1_leg2;
+        let bias_rate_dot_2_leg2 = k1_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2
+            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
+        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
+        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
+        let bias_a2_y_leg2 = bias_rate_dot_1_leg2 * v2_by_1_y_leg2
+            - rate_1_squared_leg2 * minus_v2_by_1_x_leg2;
+        let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
+        let moment2_z_leg2 = parameters[20] * bias_rate_dot_2_leg2
+            + parameters[21] * bias_a2_y_leg2 + parameters[22] * minus_bias_a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let tau_2_leg2 = parameters[24] * qd_2_leg2
+            + ::overact::math::signed(parameters[25], qd_2_leg2) + parameters[26];
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let tau_3_leg2 = parameters[27] * qd_3_leg2
+            + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let moment1_z_leg2 = parameters[15] * bias_rate_dot_1_leg2;
+        let tau_1_leg2 = parameters[16] * bias_rate_dot_1_leg2
             - parameters[17] * minus_rate_1_leg2
-            - ::overact::math::signed(parameters[18], minus_rate_1_leg2) + parameters[19]
-            + t198 - t169;
-        let t204 = pose[0] + t2;
-        let t205 = t204 + 0.3950502153918333;
-        let t208 = pose[1] - t6 + 0.10970563941232059;
-        let t210 = t208 * t208;
-        let t211 = t205 * t205 + t210;
-        let t213 = 0.0784 / t211 - 0.25;
-        ::overact::guard::reach(t213, "leg3")?;
-        let t214 = ::overact::math::sqrt(t213);
-        let t216 = 0.5 * t205 + t208 * t214;
-        let t217 = t205 - t216;
-        let t218 = t211 * t214;
-        ::overact::guard::leg(t218, 0.07839913810297301, "leg3")?;
-        let t219 = 1.0 / t218;
-        let g1_vx_leg3 = t217 * t219;
-        let t221 = twist[0] + t21;
-        let t223 = 0.5 * t208;
-        let t225 = t223 - t205 * t214;
-        let t226 = t208 - t225;
-        let g1_vy_leg3 = t226 * t219;
-        let t228 = twist[1] + t29;
-        let rate_1_leg3 = g1_vx_leg3 * t221 + g1_vy_leg3 * t228;
-        let minus_g2_vx_leg3 = t216 * t219;
-        let minus_g2_vy_leg3 = t225 * t219;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t221 + minus_g2_vy_leg3 * t228;
-        let t240 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t242 = t217 * t36 - t226 * t34 - 0.0784 * t240;
-        let t243 = rate_1_leg3 * rate_1_leg3;
-        let t244 = t211 - 0.1568;
-        let t245 = 0.5 * t244;
-        let minus_rate_dot_1_leg3 = t219 * (t242 - t243 * t245);
-        let t256 = 3.5714285714285716 * t218;
-        let minus_rate_dot_2_leg3 = t219
-            * (t225 * t34 - t216 * t36 + 0.0784 * t243 + t240 * t245);
-        let t268 = 3.5714285714285716 * t242;
-        let t272 = 1.7857142857142858 * t244;
-        let t275 = t243 * t256 - minus_rate_dot_1_leg3 * t272;
-        let t282 = t256
-            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t240
-                - parameters[38] * t268)
-            + t272
-                * (parameters[38] * t275
-                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t240));
-        let t284 = rate_1_leg3 + minus_rate_2_leg3;
-        let t288 = parameters[41]
-            - (parameters[39] * t284 + ::overact::math::signed(parameters[40], t284));
-        let t289 = parameters[32] * rate_1_leg3 - parameters[31] * minus_rate_dot_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            - parameters[30] * minus_rate_dot_1_leg3 + t282 - t288;
-        let t297 = minus_rate_2_leg3 + twist[2];
-        let t301 = parameters[42] * t297 + ::overact::math::signed(parameters[43], t297)
-            + parameters[44];
-        let t302 = parameters[36] * t275 - parameters[35] * minus_rate_dot_2_leg3
-            + parameters[37] * t268 + t288 - t301;
-        let t305 = g1_vx_leg1 * t93 - minus_g2_vx_leg1 * t106 + g2_vx_leg2 * t176
-            - minus_g1_vx_leg2 * t200 + g1_vx_leg3 * t289 - minus_g2_vx_leg3 * t302;
-        let t306 = t204 - 0.3950502153918333;
-        let t309 = t306 * t306 + t210;
-        let t311 = 0.0784 / t309 - 0.25;
-        ::overact::guard::reach(t311, "leg4")?;
-        let t312 = ::overact::math::sqrt(t311);
-        let t314 = 0.5 * t306 - t208 * t312;
-        let t315 = t309 * t312;
-        ::overact::guard::leg(t315, 0.07839913810297301, "leg4")?;
-        let t316 = 1.0 / t315;
-        let g2_vx_leg4 = t314 * t316;
-        let t319 = t223 + t306 * t312;
-        let t323 = t306 - t314;
-        let minus_g1_vx_leg4 = t323 * t316;
-        let t326 = t208 - t319;
-        let minus_g1_vy_leg4 = t326 * t316;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t221 + minus_g1_vy_leg4 * t228;
-        let t330 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let g2_vy_leg4 = t319 * t316;
-        let rate_2_leg4 = g2_vx_leg4 * t221 + g2_vy_leg4 * t228;
-        let t337 = rate_2_leg4 * rate_2_leg4;
-        let t338 = t309 - 0.1568;
-        let t339 = 0.5 * t338;
-        let rate_dot_2_leg4 = t316
-            * (t319 * t34 - t314 * t36 + 0.0784 * t330 + t337 * t339);
-        let t348 = t323 * t36 - t326 * t34 - 0.0784 * t337;
-        let rate_dot_1_leg4 = t316 * (t348 - t330 * t339);
-        let t352 = 1.7857142857142858 * t338;
-        let t354 = 3.5714285714285716 * t315;
-        let t356 = rate_dot_1_leg4 * t352 - t330 * t354;
-        let t359 = 3.5714285714285716 * t348;
-        let t362 = minus_rate_1_leg4 + rate_2_leg4;
-        let t366 = parameters[54] * t362 + ::overact::math::signed(parameters[55], t362)
-            + parameters[56];
-        let t368 = twist[2] - rate_2_leg4;
-        let t372 = parameters[57] * t368 + ::overact::math::signed(parameters[58], t368)
-            + parameters[59];
-        let t373 = parameters[50] * rate_dot_2_leg4 + parameters[51] * t356
-            + parameters[52] * t359 + t366 - t372;
-        let t395 = t354
-            * (parameters[51] * t337 + parameters[52] * rate_dot_2_leg4
-                + parameters[53] * t359)
-            + t352
-                * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t337
-                    + parameters[53] * t356);
-        let t397 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
+            - ::overact::math::signed(parameters[18], minus_rate_1_leg2)
+            + parameters[19];
+        let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
+            + parameters[22] * bias_rate_dot_2_leg2
+            + parameters[23] * minus_bias_a2_x_leg2;
+        let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
+            - parameters[22] * rate_2_squared_leg2 + parameters[23] * bias_a2_y_leg2;
+        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
+            + minus_v2_by_1_x_leg2 * minus_force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3
+            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
+        let tau_1_leg3 = parameters[32] * rate_1_leg3
+            - parameters[31] * minus_bias_rate_dot_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let minus_moment1_z_leg3 = parameters[30] * minus_bias_rate_dot_1_leg3;
+        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
+            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_bias_rate_dot_2_leg3 = k1_leg3
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
+        let force2_x_leg3 = parameters[37] * minus_bias_rate_dot_2_leg3
+            - parameters[36] * rate_2_squared_leg3
+            - parameters[38] * minus_bias_a2_x_leg3;
+        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
+        let bias_a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
+            - minus_bias_rate_dot_1_leg3 * v2_by_1_y_leg3;
+        let force2_y_leg3 = parameters[38] * bias_a2_y_leg3
+            - (parameters[36] * minus_bias_rate_dot_2_leg3
+                + parameters[37] * rate_2_squared_leg3);
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = parameters[41]
+            - (parameters[39] * minus_qd_2_leg3
+                + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
+        let force_on_u1_leg3 = tau_1_leg3 - minus_moment1_z_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let moment2_z_leg3 = parameters[36] * bias_a2_y_leg3
+            - parameters[35] * minus_bias_rate_dot_2_leg3
+            + parameters[37] * minus_bias_a2_x_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let tau_3_leg3 = parameters[42] * qd_3_leg3
+            + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
+        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let bias_a_on_f2_leg4 = l1_y_leg4 * bias_a_end_y_leg3
+            - l1_x_leg4 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let t2_leg4 = 0.5 * t1_leg4;
+        let bias_rate_dot_2_leg4 = k1_leg4
+            * (bias_a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4
+            * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t2_leg4);
+        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
+        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
+        let bias_a2_y_leg4 = bias_rate_dot_1_leg4 * v2_by_1_y_leg4
+            - rate_1_squared_leg4 * minus_v2_by_1_x_leg4;
+        let minus_bias_a2_x_leg4 = INV_L_AB * bias_a_on_f1_leg4;
+        let moment2_z_leg4 = parameters[50] * bias_rate_dot_2_leg4
+            + parameters[51] * bias_a2_y_leg4 + parameters[52] * minus_bias_a2_x_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let tau_2_leg4 = parameters[54] * qd_2_leg4
+            + ::overact::math::signed(parameters[55], qd_2_leg4) + parameters[56];
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let tau_3_leg4 = parameters[57] * qd_3_leg4
+            + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let moment1_z_leg4 = parameters[45] * bias_rate_dot_1_leg4;
+        let tau_1_leg4 = parameters[46] * bias_rate_dot_1_leg4
             - parameters[47] * minus_rate_1_leg4
-            - ::overact::math::signed(parameters[48], minus_rate_1_leg4) + parameters[49]
-            + t395 - t366;
-        let t401 = 9.090909090909092 * t36;
-        let t403 = 9.090909090909092 * t34;
-        let t410 = t305 + g2_vx_leg4 * t373 - minus_g1_vx_leg4 * t397
-            + parameters[62] * t401 - parameters[61] * t403 - parameters[65] * t403
-            + parameters[66] * t401;
-        let t421 = g1_vy_leg1 * t93 - minus_g2_vy_leg1 * t106 + g2_vy_leg2 * t176
-            - minus_g1_vy_leg2 * t200 + g1_vy_leg3 * t289 - minus_g2_vy_leg3 * t302;
-        let t433 = t421 + g2_vy_leg4 * t373 - minus_g1_vy_leg4 * t397
-            - (parameters[61] * t401 + parameters[62] * t403 + parameters[65] * t401
-                + parameters[66] * t403);
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t465 = g2_wz_leg1 * t106 - minus_g1_wz_leg1 * t93 + t105 + g1_wz_leg2 * t200
-            - minus_g2_wz_leg2 * t176 + t175 + g1_wz_leg3 * t289
-            - minus_g2_wz_leg3 * t302 + t301;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+            - ::overact::math::signed(parameters[48], minus_rate_1_leg4)
+            + parameters[49];
+        let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
+            + parameters[52] * bias_rate_dot_2_leg4
+            + parameters[53] * minus_bias_a2_x_leg4;
+        let force2_y_leg4 = parameters[51] * bias_rate_dot_2_leg4
+            - parameters[52] * rate_2_squared_leg4 + parameters[53] * bias_a2_y_leg4;
+        let force_on_u1_leg4 = moment1_z_leg4 + tau_1_leg4
+            + minus_v2_by_1_x_leg4 * minus_force2_x_leg4 + v2_by_1_y_leg4 * force2_y_leg4
+            - tau_2_leg4;
+        let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
+        let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
+        let force_x_platform = parameters[62] * inv_r_p_bias_a_end_x_leg1
+            - parameters[61] * inv_r_p_bias_a_end_y_leg3
+            - parameters[65] * inv_r_p_bias_a_end_y_leg3
+            + parameters[66] * inv_r_p_bias_a_end_x_leg1;
+        let t2 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let minus_force_y_platform = parameters[61] * inv_r_p_bias_a_end_x_leg1
+            + parameters[62] * inv_r_p_bias_a_end_y_leg3
+            + parameters[65] * inv_r_p_bias_a_end_x_leg1
+            + parameters[66] * inv_r_p_bias_a_end_y_leg3;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
+            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         ::core::result::Result::Ok([
-            t410, t433, t465 + g2_wz_leg4 * t373 - minus_g1_wz_leg4 * t397 + t372,
+            t1 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+                + force_x_platform,
+            t2 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+                - minus_force_y_platform,
+            t3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+                + tau_3_leg4,
         ])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
@@ -6888,312 +9051,367 @@ impl DualV {
         parameters: &[::core::primitive::f64; 68],
         preload: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = t17 * t19;
-        let t21 = t2 * twist[2];
-        let t24 = twist[2] * t21 - t6 * acceleration[2];
-        let t25 = acceleration[0] + t24;
-        let t27 = 0.5 * t8;
-        let t29 = t27 - t4 * t14;
-        let t30 = t8 - t29;
-        let t31 = t6 * twist[2];
-        let t34 = twist[2] * t31 + t2 * acceleration[2];
-        let t35 = acceleration[1] - t34;
-        let minus_g2_vx_leg1 = t16 * t19;
-        let t39 = twist[0] - t31;
-        let minus_g2_vy_leg1 = t29 * t19;
-        let t42 = twist[1] - t21;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t39 + minus_g2_vy_leg1 * t42;
-        let t45 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t47 = t17 * t25 + t30 * t35 + 0.0784 * t45;
-        let g1_vy_leg1 = t30 * t19;
-        let rate_1_leg1 = g1_vx_leg1 * t39 + g1_vy_leg1 * t42;
-        let t52 = rate_1_leg1 * rate_1_leg1;
-        let t53 = t11 - 0.1568;
-        let t54 = 0.5 * t53;
-        let rate_dot_1_leg1 = t19 * (t47 + t52 * t54);
-        let t66 = 3.5714285714285716 * t18;
-        let minus_rate_dot_2_leg1 = t19
-            * (t16 * t25 + t29 * t35 + 0.0784 * t52 + t45 * t54);
-        let t78 = 3.5714285714285716 * t47;
-        let t82 = 1.7857142857142858 * t53;
-        let t85 = t52 * t66 + rate_dot_1_leg1 * t82;
-        let t92 = t66
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t45
-                + parameters[8] * t78)
-            + t82
-                * (parameters[8] * t85
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t45));
-        let t94 = rate_1_leg1 + minus_rate_2_leg1;
-        let t98 = parameters[11]
-            - (parameters[9] * t94 + ::overact::math::signed(parameters[10], t94));
-        let t99 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
-            + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t92
-            - t98;
-        let t107 = minus_rate_2_leg1 + twist[2];
-        let t111 = parameters[12] * t107 + ::overact::math::signed(parameters[13], t107)
-            + parameters[14];
-        let t112 = parameters[6] * t85 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t78 + t98 - t111;
-        let t115 = t3 + 0.3950502153918333;
-        let t118 = t115 * t115 + t10;
-        let t120 = 0.0784 / t118 - 0.25;
-        ::overact::guard::reach(t120, "leg2")?;
-        let t121 = ::overact::math::sqrt(t120);
-        let t123 = 0.5 * t115 - t8 * t121;
-        let t124 = t118 * t121;
-        ::overact::guard::leg(t124, 0.07839913810297301, "leg2")?;
-        let t125 = 1.0 / t124;
-        let g2_vx_leg2 = t123 * t125;
-        let t129 = t27 + t115 * t121;
-        let t132 = t115 - t123;
-        let minus_g1_vx_leg2 = t132 * t125;
-        let t135 = t8 - t129;
-        let minus_g1_vy_leg2 = t135 * t125;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
-        let t139 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let g2_vy_leg2 = t129 * t125;
-        let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
-        let t146 = rate_2_leg2 * rate_2_leg2;
-        let t147 = t118 - 0.1568;
-        let t148 = 0.5 * t147;
-        let rate_dot_2_leg2 = t125
-            * (t123 * t25 + t129 * t35 + 0.0784 * t139 + t146 * t148);
-        let t153 = 3.5714285714285716 * t124;
-        let t159 = t132 * t25 + t135 * t35 + 0.0784 * t146;
-        let minus_rate_dot_1_leg2 = t125 * (t159 + t139 * t148);
-        let t163 = 1.7857142857142858 * t147;
-        let t165 = t139 * t153 + minus_rate_dot_1_leg2 * t163;
-        let t168 = 3.5714285714285716 * t159;
-        let t171 = minus_rate_1_leg2 + rate_2_leg2;
-        let t175 = parameters[24] * t171 + ::overact::math::signed(parameters[25], t171)
-            + parameters[26];
-        let t177 = twist[2] - rate_2_leg2;
-        let t181 = parameters[27] * t177 + ::overact::math::signed(parameters[28], t177)
-            + parameters[29];
-        let t182 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t165
-            - parameters[22] * t168 + t175 - t181;
-        let t204 = t163
-            * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t146
-                - parameters[23] * t165)
-            - t153
-                * (parameters[23] * t168
-                    - (parameters[21] * t146 + parameters[22] * rate_dot_2_leg2));
-        let t206 = parameters[19]
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+        let moment1_z_leg1 = parameters[0] * rate_dot_1_leg1;
+        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 + parameters[8] * a2_x_leg1;
+        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
+        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
+            + rate_dot_1_leg1 * v2_by_1_y_leg1;
+        let force2_y_leg1 = parameters[8] * a2_y_leg1
+            - (parameters[6] * minus_rate_dot_2_leg1
+                + parameters[7] * rate_2_squared_leg1);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = parameters[11]
+            - (parameters[9] * minus_qd_2_leg1
+                + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
+        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            - tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1
+            - parameters[5] * minus_rate_dot_2_leg1 - parameters[7] * a2_x_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let tau_3_leg1 = parameters[12] * qd_3_leg1
+            + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let t2_leg2 = 0.5 * t1_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t2_leg2);
+        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
+        let minus_a2_y_leg2 = rate_1_squared_leg2 * minus_v2_by_1_x_leg2
+            + minus_rate_dot_1_leg2 * v2_by_1_y_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let moment2_z_leg2 = parameters[20] * rate_dot_2_leg2
+            - parameters[21] * minus_a2_y_leg2 - parameters[22] * a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let tau_2_leg2 = parameters[24] * qd_2_leg2
+            + ::overact::math::signed(parameters[25], qd_2_leg2) + parameters[26];
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let tau_3_leg2 = parameters[27] * qd_3_leg2
+            + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let tau_1_leg2 = parameters[19]
             - (parameters[16] * minus_rate_dot_1_leg2
                 + parameters[17] * minus_rate_1_leg2
-                + ::overact::math::signed(parameters[18], minus_rate_1_leg2))
-            - parameters[15] * minus_rate_dot_1_leg2 + t204 - t175;
-        let t210 = pose[0] + t2;
-        let t211 = t210 + 0.3950502153918333;
-        let t214 = pose[1] - t6 + 0.10970563941232059;
-        let t216 = t214 * t214;
-        let t217 = t211 * t211 + t216;
-        let t219 = 0.0784 / t217 - 0.25;
-        ::overact::guard::reach(t219, "leg3")?;
-        let t220 = ::overact::math::sqrt(t219);
-        let t222 = 0.5 * t211 + t214 * t220;
-        let t223 = t211 - t222;
-        let t224 = t217 * t220;
-        ::overact::guard::leg(t224, 0.07839913810297301, "leg3")?;
-        let t225 = 1.0 / t224;
-        let g1_vx_leg3 = t223 * t225;
-        let t227 = acceleration[0] - t24;
-        let t229 = 0.5 * t214;
-        let t231 = t229 - t211 * t220;
-        let t232 = t214 - t231;
-        let t233 = acceleration[1] + t34;
-        let minus_g2_vx_leg3 = t222 * t225;
-        let t237 = twist[0] + t31;
-        let minus_g2_vy_leg3 = t231 * t225;
-        let t240 = twist[1] + t21;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vy_leg3 * t240;
-        let t243 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t245 = t223 * t227 + t232 * t233 + 0.0784 * t243;
-        let g1_vy_leg3 = t232 * t225;
-        let rate_1_leg3 = g1_vx_leg3 * t237 + g1_vy_leg3 * t240;
-        let t250 = rate_1_leg3 * rate_1_leg3;
-        let t251 = t217 - 0.1568;
-        let t252 = 0.5 * t251;
-        let rate_dot_1_leg3 = t225 * (t245 + t250 * t252);
-        let t264 = 3.5714285714285716 * t224;
-        let minus_rate_dot_2_leg3 = t225
-            * (t222 * t227 + t231 * t233 + 0.0784 * t250 + t243 * t252);
-        let t276 = 3.5714285714285716 * t245;
-        let t280 = 1.7857142857142858 * t251;
-        let t283 = t250 * t264 + rate_dot_1_leg3 * t280;
-        let t290 = t264
-            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t243
-                + parameters[38] * t276)
-            + t280
-                * (parameters[38] * t283
-                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t243));
-        let t292 = rate_1_leg3 + minus_rate_2_leg3;
-        let t296 = parameters[41]
-            - (parameters[39] * t292 + ::overact::math::signed(parameters[40], t292));
-        let t297 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
-            + parameters[32] * rate_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t290 - t296;
-        let t305 = minus_rate_2_leg3 + twist[2];
-        let t309 = parameters[42] * t305 + ::overact::math::signed(parameters[43], t305)
-            + parameters[44];
-        let t310 = parameters[36] * t283 - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * t276 + t296 - t309;
-        let t313 = g1_vx_leg1 * t99 - minus_g2_vx_leg1 * t112 + g2_vx_leg2 * t182
-            - minus_g1_vx_leg2 * t206 + g1_vx_leg3 * t297 - minus_g2_vx_leg3 * t310;
-        let t314 = t210 - 0.3950502153918333;
-        let t317 = t314 * t314 + t216;
-        let t319 = 0.0784 / t317 - 0.25;
-        ::overact::guard::reach(t319, "leg4")?;
-        let t320 = ::overact::math::sqrt(t319);
-        let t322 = 0.5 * t314 - t214 * t320;
-        let t323 = t317 * t320;
-        ::overact::guard::leg(t323, 0.07839913810297301, "leg4")?;
-        let t324 = 1.0 / t323;
-        let g2_vx_leg4 = t322 * t324;
-        let t328 = t229 + t314 * t320;
-        let t331 = t314 - t322;
-        let minus_g1_vx_leg4 = t331 * t324;
-        let t334 = t214 - t328;
-        let minus_g1_vy_leg4 = t334 * t324;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t237 + minus_g1_vy_leg4 * t240;
-        let t338 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let g2_vy_leg4 = t328 * t324;
-        let rate_2_leg4 = g2_vx_leg4 * t237 + g2_vy_leg4 * t240;
-        let t345 = rate_2_leg4 * rate_2_leg4;
-        let t346 = t317 - 0.1568;
-        let t347 = 0.5 * t346;
-        let rate_dot_2_leg4 = t324
-            * (t322 * t227 + t328 * t233 + 0.0784 * t338 + t345 * t347);
-        let t352 = 3.5714285714285716 * t323;
-        let t358 = t331 * t227 + t334 * t233 + 0.0784 * t345;
-        let minus_rate_dot_1_leg4 = t324 * (t358 + t338 * t347);
-        let t362 = 1.7857142857142858 * t346;
-        let t364 = t338 * t352 + minus_rate_dot_1_leg4 * t362;
-        let t367 = 3.5714285714285716 * t358;
-        let t370 = minus_rate_1_leg4 + rate_2_leg4;
-        let t374 = parameters[54] * t370 + ::overact::math::signed(parameters[55], t370)
-            + parameters[56];
-        let t376 = twist[2] - rate_2_leg4;
-        let t380 = parameters[57] * t376 + ::overact::math::signed(parameters[58], t376)
-            + parameters[59];
-        let t381 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t364
-            - parameters[52] * t367 + t374 - t380;
-        let t403 = t362
-            * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t345
-                - parameters[53] * t364)
-            - t352
-                * (parameters[53] * t367
-                    - (parameters[51] * t345 + parameters[52] * rate_dot_2_leg4));
-        let t405 = parameters[49]
+                + ::overact::math::signed(parameters[18], minus_rate_1_leg2));
+        let minus_moment1_z_leg2 = parameters[15] * minus_rate_dot_1_leg2;
+        let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
+            - parameters[22] * rate_2_squared_leg2 - parameters[23] * minus_a2_y_leg2;
+        let force2_x_leg2 = parameters[23] * a2_x_leg2
+            - (parameters[21] * rate_2_squared_leg2 + parameters[22] * rate_dot_2_leg2);
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + v2_by_1_y_leg2 * force2_y_leg2 - minus_v2_by_1_x_leg2 * force2_x_leg2
+            - tau_2_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
+        let moment1_z_leg3 = parameters[30] * rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
+            - parameters[36] * rate_2_squared_leg3 + parameters[38] * a2_x_leg3;
+        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
+        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
+            + rate_dot_1_leg3 * v2_by_1_y_leg3;
+        let force2_y_leg3 = parameters[38] * a2_y_leg3
+            - (parameters[36] * minus_rate_dot_2_leg3
+                + parameters[37] * rate_2_squared_leg3);
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = parameters[41]
+            - (parameters[39] * minus_qd_2_leg3
+                + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let moment2_z_leg3 = parameters[36] * a2_y_leg3
+            - parameters[35] * minus_rate_dot_2_leg3 - parameters[37] * a2_x_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let tau_3_leg3 = parameters[42] * qd_3_leg3
+            + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
+        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let t2_leg4 = 0.5 * t1_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t2_leg4);
+        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
+        let minus_a2_y_leg4 = rate_1_squared_leg4 * minus_v2_by_1_x_leg4
+            + minus_rate_dot_1_leg4 * v2_by_1_y_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let moment2_z_leg4 = parameters[50] * rate_dot_2_leg4
+            - parameters[51] * minus_a2_y_leg4 - parameters[52] * a2_x_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let tau_2_leg4 = parameters[54] * qd_2_leg4
+            + ::overact::math::signed(parameters[55], qd_2_leg4) + parameters[56];
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let tau_3_leg4 = parameters[57] * qd_3_leg4
+            + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let tau_1_leg4 = parameters[49]
             - (parameters[46] * minus_rate_dot_1_leg4
                 + parameters[47] * minus_rate_1_leg4
-                + ::overact::math::signed(parameters[48], minus_rate_1_leg4))
-            - parameters[45] * minus_rate_dot_1_leg4 + t403 - t374;
-        let t409 = 9.090909090909092 * t24;
-        let t411 = 9.090909090909092 * t34;
-        let t421 = parameters[62] * t409 - parameters[61] * t411
-            + acceleration[0] * parameters[63] - parameters[65] * t411
-            + parameters[66] * t409 + acceleration[0] * parameters[67];
-        let t422 = t313 + g2_vx_leg4 * t381 - minus_g1_vx_leg4 * t405 + t421;
-        let t429 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+                + ::overact::math::signed(parameters[48], minus_rate_1_leg4));
+        let minus_moment1_z_leg4 = parameters[45] * minus_rate_dot_1_leg4;
+        let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
+            - parameters[52] * rate_2_squared_leg4 - parameters[53] * minus_a2_y_leg4;
+        let force2_x_leg4 = parameters[53] * a2_x_leg4
+            - (parameters[51] * rate_2_squared_leg4 + parameters[52] * rate_dot_2_leg4);
+        let force_on_u1_leg4 = tau_1_leg4 - minus_moment1_z_leg4
+            + v2_by_1_y_leg4 * force2_y_leg4 - minus_v2_by_1_x_leg4 * force2_x_leg4
+            - tau_2_leg4;
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let force_x_platform = parameters[62] * inv_r_p_a_arm_x_leg1
+            - parameters[61] * inv_r_p_a_arm_y_leg3 + acceleration[0] * parameters[63]
+            - parameters[65] * inv_r_p_a_arm_y_leg3
+            + parameters[66] * inv_r_p_a_arm_x_leg1 + acceleration[0] * parameters[67];
+        let t2 = t1 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            + force_x_platform;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t429, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t429, 25.429161076750646, "actuators")?;
-        let t430 = 1.0 / t429;
-        let t438 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t439 = t438 * t430;
-        let t448 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t438 * t439;
-        ::overact::guard::platform(t448, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t448, 25.592368899353342, "actuators")?;
-        let t449 = 1.0 / t448;
-        let t460 = g1_vy_leg1 * t99 - minus_g2_vy_leg1 * t112 + g2_vy_leg2 * t182
-            - minus_g1_vy_leg2 * t206 + g1_vy_leg3 * t297 - minus_g2_vy_leg3 * t310;
-        let t475 = acceleration[1] * parameters[63]
-            - (parameters[61] * t409 + parameters[62] * t411) - parameters[65] * t409
-            - parameters[66] * t411 + acceleration[1] * parameters[67];
-        let t478 = t460 + g2_vy_leg4 * t381 - minus_g1_vy_leg4 * t405 + t475
-            - t422 * t439;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t505 = g1_vx_leg3 * g1_wz_leg3
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = acceleration[1] * parameters[63]
+            - (parameters[61] * inv_r_p_a_arm_x_leg1
+                + parameters[62] * inv_r_p_a_arm_y_leg3)
+            - parameters[65] * inv_r_p_a_arm_x_leg1
+            - parameters[66] * inv_r_p_a_arm_y_leg3 + acceleration[1] * parameters[67];
+        let t4 = t3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+            + force_y_platform - t2 * l_2_1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t506 = t505 * t430;
-        let t508 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t438 * t506;
-        let t509 = t508 * t449;
-        let t520 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t505 * t506
-            - t508 * t509;
-        ::overact::guard::platform(t520, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t520, 0.3076928490286828, "actuators")?;
-        let t521 = 1.0 / t520;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t544 = g2_wz_leg1 * t112 - minus_g1_wz_leg1 * t99 + t111 + g1_wz_leg2 * t206
-            - minus_g2_wz_leg2 * t182 + t181 + g1_wz_leg3 * t297
-            - minus_g2_wz_leg3 * t310 + t309;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t556 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t561 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t569 = acceleration[2] * parameters[60] + parameters[61] * t556
-            - parameters[62] * t561 + acceleration[2] * parameters[64]
-            + parameters[65] * t556 - parameters[66] * t561;
-        let t574 = t544 + g2_wz_leg4 * t381 - minus_g1_wz_leg4 * t405 + t380 + t569
-            - t422 * t506 - t509 * t478;
-        let t575 = t521 * t574;
-        let t577 = t449 * t478 - t509 * t575;
-        let t581 = t422 * t430 - t439 * t577 - t506 * t575;
-        let t588 = minus_g1_vx_leg4 * t439 - minus_g1_vy_leg4;
-        let t594 = t521 * (minus_g1_vx_leg4 * t506 - minus_g1_wz_leg4 - t509 * t588);
-        let t596 = t449 * t588 - t509 * t594;
-        let t602 = minus_g1_vx_leg4 * t430 + t439 * t596 + t506 * t594;
-        let t612 = 1.0
-            - (minus_g1_vx_leg4 * t602 - minus_g1_vy_leg4 * t596
-                - minus_g1_wz_leg4 * t594);
-        let t614 = 1.0 / ::overact::math::sqrt(t612);
-        let t617 = g1_vx_leg1 * t581 + g1_vy_leg1 * t577 - minus_g1_wz_leg1 * t575
-            - preload[0]
-                * ((g1_vy_leg1 * t596 - g1_vx_leg1 * t602 - minus_g1_wz_leg1 * t594)
-                    * t614);
-        let t630 = g1_wz_leg2 * t575
-            - (minus_g1_vx_leg2 * t581 + minus_g1_vy_leg2 * t577)
-            - preload[0]
-                * ((minus_g1_vx_leg2 * t602 - minus_g1_vy_leg2 * t596
-                    + g1_wz_leg2 * t594) * t614);
-        let t643 = g1_vx_leg3 * t581 + g1_vy_leg3 * t577 + g1_wz_leg3 * t575
-            - preload[0]
-                * ((g1_vy_leg3 * t596 - g1_vx_leg3 * t602 + g1_wz_leg3 * t594) * t614);
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let inv_pivot_3 = 1.0 / pivot_3;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t5 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
+            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let moment_z_platform = acceleration[2] * parameters[60]
+            + parameters[61] * a_y_platform - parameters[62] * a_x_platform
+            + acceleration[2] * parameters[64] + parameters[65] * a_y_platform
+            - parameters[66] * a_x_platform;
+        let t6 = t5 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+            + tau_3_leg4 + moment_z_platform - t2 * l_3_1 - l_3_2 * t4;
+        let t7 = inv_pivot_3 * t6;
+        let t8 = inv_pivot_2 * t4 - l_3_2 * t7;
+        let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
+        let g1_vy_minus_g1_vx_l_2_1_leg4 = minus_g1_vx_leg4 * l_2_1 - minus_g1_vy_leg4;
+        let t10 = inv_pivot_3
+            * (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
+                - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4);
+        let t11 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t10;
+        let t12 = minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t11 + l_3_1 * t10;
+        let minus_normal_1_1 = g1_vy_leg1 * t11 - g1_vx_leg1 * t12
+            - minus_g1_wz_leg1 * t10;
+        let normal_4_1 = 1.0
+            - (minus_g1_vx_leg4 * t12 - minus_g1_vy_leg4 * t11 - minus_g1_wz_leg4 * t10);
+        let norm_1 = ::overact::math::sqrt(normal_4_1);
+        let inv_norm_1 = 1.0 / norm_1;
+        let minus_normal_2_1 = minus_g1_vx_leg2 * t12 - minus_g1_vy_leg2 * t11
+            + g1_wz_leg2 * t10;
+        let minus_normal_3_1 = g1_vy_leg3 * t11 - g1_vx_leg3 * t12 + g1_wz_leg3 * t10;
         ::core::result::Result::Ok([
-            t617, t630, t643,
-            preload[0] * (t612 * t614)
-                - (minus_g1_vx_leg4 * t581 + minus_g1_vy_leg4 * t577
-                    + minus_g1_wz_leg4 * t575),
+            g1_vx_leg1 * t9 + g1_vy_leg1 * t8 - minus_g1_wz_leg1 * t7
+                - preload[0] * (minus_normal_1_1 * inv_norm_1),
+            g1_wz_leg2 * t7 - (minus_g1_vx_leg2 * t9 + minus_g1_vy_leg2 * t8)
+                - preload[0] * (minus_normal_2_1 * inv_norm_1),
+            g1_vx_leg3 * t9 + g1_vy_leg3 * t8 + g1_wz_leg3 * t7
+                - preload[0] * (minus_normal_3_1 * inv_norm_1),
+            preload[0] * (normal_4_1 * inv_norm_1)
+                - (minus_g1_vx_leg4 * t9 + minus_g1_vy_leg4 * t8 + minus_g1_wz_leg4 * t7),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -7212,100 +9430,117 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t17 = t11 * t14;
-        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
-        let t18 = 1.0 / t17;
-        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
-        let t21 = t3 + 0.3950502153918333;
-        let t24 = t21 * t21 + t10;
-        let t26 = 0.0784 / t24 - 0.25;
-        ::overact::guard::reach(t26, "leg2")?;
-        let t27 = ::overact::math::sqrt(t26);
-        let t30 = t24 * t27;
-        ::overact::guard::leg(t30, 0.07839913810297301, "leg2")?;
-        let t31 = 1.0 / t30;
-        let minus_g1_vx_leg2 = (0.5 * t21 + t8 * t27) * t31;
-        let t35 = pose[0] + t2;
-        let t36 = t35 + 0.3950502153918333;
-        let t39 = pose[1] - t6 + 0.10970563941232059;
-        let t41 = t39 * t39;
-        let t42 = t36 * t36 + t41;
-        let t44 = 0.0784 / t42 - 0.25;
-        ::overact::guard::reach(t44, "leg3")?;
-        let t45 = ::overact::math::sqrt(t44);
-        let t48 = t42 * t45;
-        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
-        let t49 = 1.0 / t48;
-        let g1_vx_leg3 = (0.5 * t36 - t39 * t45) * t49;
-        let t53 = t35 - 0.3950502153918333;
-        let t56 = t53 * t53 + t41;
-        let t58 = 0.0784 / t56 - 0.25;
-        ::overact::guard::reach(t58, "leg4")?;
-        let t59 = ::overact::math::sqrt(t58);
-        let t62 = t56 * t59;
-        ::overact::guard::leg(t62, 0.07839913810297301, "leg4")?;
-        let t63 = 1.0 / t62;
-        let minus_g1_vx_leg4 = (0.5 * t53 + t39 * t59) * t63;
-        let t66 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
             + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
-        let t73 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t73, 25.429161076750646, "actuators")?;
-        let t74 = 1.0 / t73;
-        let t76 = 0.5 * t8;
-        let g1_vy_leg1 = (t76 + t4 * t14) * t18;
-        let minus_g1_vy_leg2 = (t76 - t21 * t27) * t31;
-        let t86 = 0.5 * t39;
-        let g1_vy_leg3 = (t86 + t36 * t45) * t49;
-        let minus_g1_vy_leg4 = (t86 - t53 * t59) * t63;
-        let t96 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t97 = t96 * t74;
-        let t106 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t96 * t97;
-        ::overact::guard::platform(t106, 25.592368899353342, "actuators")?;
-        let t107 = 1.0 / t106;
-        let t116 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - t66 * t97;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t143 = g1_vx_leg3 * g1_wz_leg3
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - t1 * l_2_1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t144 = t143 * t74;
-        let t146 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t96 * t144;
-        let t147 = t146 * t107;
-        let t158 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
-            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - t66 * t144
-            - t147 * t116;
-        let t169 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t143 * t144
-            - t146 * t147;
-        ::overact::guard::platform(t169, 0.3076928490286828, "actuators")?;
-        let t170 = t158 / t169;
-        let t172 = t107 * t116 - t147 * t170;
-        let t176 = t66 * t74 - t97 * t172 - t144 * t170;
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let t3 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
+            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - t1 * l_3_1
+            - l_3_2 * t2;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let t4 = t3 / pivot_3;
+        let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
+        let t6 = t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t176 + g1_vy_leg1 * t172 - minus_g1_wz_leg1 * t170,
-            g1_wz_leg2 * t170 - (minus_g1_vx_leg2 * t176 + minus_g1_vy_leg2 * t172),
-            g1_vx_leg3 * t176 + g1_vy_leg3 * t172 + g1_wz_leg3 * t170,
-            -(minus_g1_vx_leg4 * t176 + minus_g1_vy_leg4 * t172
-                + minus_g1_wz_leg4 * t170),
+            g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
+            g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
+            g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4,
+            -(minus_g1_vx_leg4 * t6 + minus_g1_vy_leg4 * t5 + minus_g1_wz_leg4 * t4),
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -7322,103 +9557,118 @@ impl DualV {
     pub fn null_space(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 4], ::overact::Error> {
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t4 = pose[1] + t2 - 0.10970563941232059;
-        let t5 = 0.5 * t4;
-        let t6 = 0.11 * s_phi;
-        let t7 = pose[0] - t6;
-        let t8 = t7 - 0.3950502153918333;
-        let t10 = t4 * t4;
-        let t11 = t8 * t8 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t17 = t11 * t14;
-        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
-        let t18 = 1.0 / t17;
-        let g1_vy_leg1 = (t5 + t8 * t14) * t18;
-        let t21 = t7 + 0.3950502153918333;
-        let t23 = t21 * t21 + t10;
-        let t25 = 0.0784 / t23 - 0.25;
-        ::overact::guard::reach(t25, "leg2")?;
-        let t26 = ::overact::math::sqrt(t25);
-        let t29 = t23 * t26;
-        ::overact::guard::leg(t29, 0.07839913810297301, "leg2")?;
-        let t30 = 1.0 / t29;
-        let minus_g1_vy_leg2 = (t5 - t21 * t26) * t30;
-        let t35 = pose[1] - t2 + 0.10970563941232059;
-        let t36 = 0.5 * t35;
-        let t37 = pose[0] + t6;
-        let t38 = t37 + 0.3950502153918333;
-        let t40 = t35 * t35;
-        let t41 = t38 * t38 + t40;
-        let t43 = 0.0784 / t41 - 0.25;
-        ::overact::guard::reach(t43, "leg3")?;
-        let t44 = ::overact::math::sqrt(t43);
-        let t47 = t41 * t44;
-        ::overact::guard::leg(t47, 0.07839913810297301, "leg3")?;
-        let t48 = 1.0 / t47;
-        let g1_vy_leg3 = (t36 + t38 * t44) * t48;
-        let t52 = t37 - 0.3950502153918333;
-        let t54 = t52 * t52 + t40;
-        let t56 = 0.0784 / t54 - 0.25;
-        ::overact::guard::reach(t56, "leg4")?;
-        let t57 = ::overact::math::sqrt(t56);
-        let t60 = t54 * t57;
-        ::overact::guard::leg(t60, 0.07839913810297301, "leg4")?;
-        let t61 = 1.0 / t60;
-        let minus_g1_vy_leg4 = (t36 - t52 * t57) * t61;
-        let g1_vx_leg1 = (0.5 * t8 - t4 * t14) * t18;
-        let minus_g1_vx_leg2 = (0.5 * t21 + t4 * t26) * t30;
-        let g1_vx_leg3 = (0.5 * t38 - t35 * t44) * t48;
-        let minus_g1_vx_leg4 = (0.5 * t52 + t35 * t57) * t61;
-        let t87 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        // --- leg1
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        // --- leg3
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t94 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t94, 25.429161076750646, "actuators")?;
-        let t95 = 1.0 / t94;
-        let t96 = t87 * t95;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t87 * t96;
-        ::overact::guard::platform(t98, 25.592368899353342, "actuators")?;
-        let t99 = 1.0 / t98;
-        let t101 = minus_g1_vx_leg4 * t96 - minus_g1_vy_leg4;
-        let g1_wz_leg3 = t6 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = t6 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let g1_wz_leg2 = t6 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = t6 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
-        let t128 = g1_vx_leg3 * g1_wz_leg3
+        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let g1_vy_minus_g1_vx_l_2_1_leg4 = minus_g1_vx_leg4 * l_2_1 - minus_g1_vy_leg4;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t129 = t128 * t95;
-        let t131 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t87 * t129;
-        let t132 = t131 * t99;
-        let t147 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t128 * t129
-            - t131 * t132;
-        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
-        let t148 = (minus_g1_vx_leg4 * t129 - minus_g1_wz_leg4 - t132 * t101) / t147;
-        let t150 = t99 * t101 - t132 * t148;
-        let t156 = minus_g1_vx_leg4 * t95 + t96 * t150 + t129 * t148;
-        let t166 = 1.0
-            - (minus_g1_vx_leg4 * t156 - minus_g1_vy_leg4 * t150
-                - minus_g1_wz_leg4 * t148);
-        let t168 = 1.0 / ::overact::math::sqrt(t166);
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        let t1 = (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
+            - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4) / pivot_3;
+        let t2 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t1;
+        let t3 = minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t2 + l_3_1 * t1;
+        let minus_normal_1_1 = g1_vy_leg1 * t2 - g1_vx_leg1 * t3 - minus_g1_wz_leg1 * t1;
+        let normal_4_1 = 1.0
+            - (minus_g1_vx_leg4 * t3 - minus_g1_vy_leg4 * t2 - minus_g1_wz_leg4 * t1);
+        let norm_1 = ::overact::math::sqrt(normal_4_1);
+        let inv_norm_1 = 1.0 / norm_1;
+        let minus_normal_2_1 = minus_g1_vx_leg2 * t3 - minus_g1_vy_leg2 * t2
+            + g1_wz_leg2 * t1;
+        let minus_normal_3_1 = g1_vy_leg3 * t2 - g1_vx_leg3 * t3 + g1_wz_leg3 * t1;
         ::core::result::Result::Ok([
-            [
-                -((g1_vy_leg1 * t150 - g1_vx_leg1 * t156 - minus_g1_wz_leg1 * t148)
-                    * t168),
-            ],
-            [
-                -((minus_g1_vx_leg2 * t156 - minus_g1_vy_leg2 * t150 + g1_wz_leg2 * t148)
-                    * t168),
-            ],
-            [-((g1_vy_leg3 * t150 - g1_vx_leg3 * t156 + g1_wz_leg3 * t148) * t168)],
-            [t166 * t168],
+            [-(minus_normal_1_1 * inv_norm_1)], [-(minus_normal_2_1 * inv_norm_1)],
+            [-(minus_normal_3_1 * inv_norm_1)], [normal_4_1 * inv_norm_1],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.

@@ -4,6 +4,18 @@
 ///
 /// 1 legs, 1 joints, 1 actuators, 1 degrees of freedom; 5 standard parameters, 4 base parameters.
 /// Source: Janot, Gautier, Brunot, Workshop on Nonlinear System Identification Benchmarks 2019.
+///
+/// # Names
+///
+/// | name | symbol | meaning |
+/// |---|---|---|
+/// | `force1_z_axis` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
+/// | `tau_1_axis` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `force_on_u1_axis` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
+///
+/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
+/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
+/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -262,13 +274,13 @@ impl Emps {
         joint_accelerations: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
     ) -> [::core::primitive::f64; 1] {
-        [
-            joint_accelerations[0] * parameters[0]
-                + joint_accelerations[0] * parameters[1]
-                + joint_velocities[0] * parameters[2]
-                + ::overact::math::signed(parameters[3], joint_velocities[0])
-                + parameters[4],
-        ]
+        let force1_z_axis = joint_accelerations[0] * parameters[0];
+        let tau_1_axis = joint_accelerations[0] * parameters[1]
+            + joint_velocities[0] * parameters[2]
+            + ::overact::math::signed(parameters[3], joint_velocities[0])
+            + parameters[4];
+        let force_on_u1_axis = force1_z_axis + tau_1_axis;
+        [force_on_u1_axis]
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -302,11 +314,10 @@ impl Emps {
         joint_velocities: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
     ) -> [::core::primitive::f64; 1] {
-        [
-            joint_velocities[0] * parameters[2]
-                + ::overact::math::signed(parameters[3], joint_velocities[0])
-                + parameters[4],
-        ]
+        let tau_1_axis = joint_velocities[0] * parameters[2]
+            + ::overact::math::signed(parameters[3], joint_velocities[0])
+            + parameters[4];
+        [tau_1_axis]
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///

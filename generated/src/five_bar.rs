@@ -4,6 +4,52 @@
 ///
 /// 2 legs, 4 joints, 2 actuators, 2 degrees of freedom; 25 standard parameters, 19 base parameters.
 /// Source: Five-bar linkage; dimensions and masses assumed.
+///
+/// # Names
+///
+/// | name | symbol | meaning |
+/// |---|---|---|
+/// | `vx` | v | platform's velocity that fits the actuators' best, eq. (21) |
+/// | `dvx` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
+/// | `c12_left` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
+/// | `s2_left` | sin q | as the cosine |
+/// | `d_x_left` | D | from the leg's first joint to its end, in the leg's plane, m |
+/// | `rho_squared_left` | ρ² | D · D, m² |
+/// | `h_squared_left` | h² | l₁²/ρ² - a², the square of h |
+/// | `h_left` | h | the elbow stands at a D ± h D⊥, eq. (7) solved |
+/// | `l1_x_left` | l₁ e₁ | the proximal link, in the leg's plane, m |
+/// | `l2_x_left` | l₂ e₂ | the distal link, in the leg's plane, m |
+/// | `det_left` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
+/// | `k_left` | k | common factor, but for signs, of the leg's wrenches: the reciprocal of its determinant and a constant |
+/// | `k1_left` | k_i | common factor of one of the leg's wrenches |
+/// | `rate_1_left` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
+/// | `rate_1_squared_left` | u_i² | its square |
+/// | `rate_dot_1_left` | u̇_i | derivative of that rate, eq. (10) |
+/// | `bias_rate_dot_1_right` | u̇_i at v̇ = 0 | what is left of the derivative without the platform's acceleration, eq. (10) |
+/// | `g1_vx_left` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
+/// | `gq2_vx_left` | ∂q̇_i/∂v | the same of the joint's own rate; of an actuated joint a row of J_p^inv, eq. (20) |
+/// | `qd_2_left` | q̇_i | rate of a joint, rad/s or m/s, eq. (9) |
+/// | `qdd_2_right` | q̈_i | acceleration of a joint, eq. (10) |
+/// | `a_on_f1_left` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
+/// | `bias_a_on_f1_left` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
+/// | `a1_x_left` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
+/// | `v2_by_1_x_left` | ∂V_j/∂u_i | partial velocity of the origin of body j |
+/// | `force2_x_left` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
+/// | `moment1_z_left` | m | moment of a body's inertial parameters about its origin |
+/// | `tau_2_left` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `force_on_u1_left` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
+/// | `bias_a1_x_left` | a_j - g at v̇ = 0 | acceleration of the origin of body j, likewise |
+/// | `s_1_1` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
+/// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
+/// | `inv_pivot_1` | 1/d_k | its reciprocal |
+/// | `l_2_1` | L | entry of L |
+/// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
+/// | `vx_by_a1` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
+/// | `g2_a1_left` | ∂u_i/∂q̇_a | the reduced Jacobian on a kept actuator, eq. (36) |
+///
+/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
+/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
+/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -148,19 +194,31 @@ impl FiveBar {
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- sines and cosines
         let [(s1_left, c1_left), (s1_right, c1_right)] = ::overact::math::sin_cos_all([
             actuators[0], actuators[1],
         ]);
-        let t3 = 0.2 * c1_left - 0.1;
-        let t8 = 0.1 + 0.2 * c1_right - t3;
-        let t11 = s1_right - s1_left;
-        let t12 = 0.2 * t11;
-        let t15 = t8 * t8 + t12 * t12;
-        let t18 = (0.0625 - 0.25 * t15) / t15;
-        ::overact::guard::reach(t18, "left")?;
-        let t19 = ::overact::math::sqrt(t18);
+        let l_1_c1_minus_half_left = L_1 * c1_left - HALF;
+        let t1 = HALF + L_1 * c1_right - l_1_c1_minus_half_left;
+        let s1_right_minus_s1_left = s1_right - s1_left;
+        let t2 = L_1 * s1_right_minus_s1_left;
+        let t3 = t1 * t1 + t2 * t2;
+        let t4 = (L_2_SQUARED - L_2 * t3) / t3;
+        ::overact::guard::reach(t4, "left")?;
+        let t5 = ::overact::math::sqrt(t4);
         ::core::result::Result::Ok([
-            t3 + 0.5 * t8 - t12 * t19, 0.2 * s1_left + 0.1 * t11 + t8 * t19,
+            l_1_c1_minus_half_left + TWICE_L_2 * t1 - t2 * t5,
+            L_1 * s1_left + HALF * s1_right_minus_s1_left + t1 * t5,
         ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
@@ -177,45 +235,53 @@ impl FiveBar {
     pub fn joints(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = pose[1] * t6 + t0 * t11;
-        let t17 = t0 * t6 - pose[1] * t11;
-        let t26 = t3 * t11;
-        let t28 = t3 - 0.1025;
-        let t36 = pose[0] - 0.1;
-        let t38 = t36 * t36 + t2;
-        let t39 = 1.0 / t38;
-        let t41 = 0.5 - 0.01125 * t39;
-        let t45 = 0.04 * t39 - t41 * t41;
-        ::overact::guard::reach(t45, "right")?;
-        let t46 = ::overact::math::sqrt(t45);
-        let t48 = pose[1] * t41 - t36 * t46;
-        let t52 = t36 * t41 + pose[1] * t46;
-        let t60 = t38 * t46;
-        let t62 = t38 - 0.1025;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let det_left = rho_squared_left * h_left;
+        let t2_left = rho_squared_left - 0.1025;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let det_right = rho_squared_right * h_right;
+        let t2_right = rho_squared_right - 0.1025;
         ::core::result::Result::Ok([
             ::overact::math::atan2(
-                -(2.7800779418373094 * t13 + 4.155859313945749 * t17),
-                4.155859313945749 * t13 - 2.7800779418373094 * t17,
+                -(2.7800779418373094 * l1_y_left + 4.155859313945749 * l1_x_left),
+                4.155859313945749 * l1_y_left - 2.7800779418373094 * l1_x_left,
             ) + 2.160380669573568,
             ::overact::math::atan2(
-                0.500000000000205 * t26 + 9.9968745115661 * t28,
-                19.9937490231322 * t26 - 0.2500000000001025 * t28,
+                0.500000000000205 * det_left + 9.9968745115661 * t2_left,
+                19.9937490231322 * det_left - 0.2500000000001025 * t2_left,
             ) - 1.595798931694268,
             ::overact::math::atan2(
-                2.7800779418373054 * t48 - 4.155859313945751 * t52,
-                2.7800779418373054 * t52 + 4.155859313945751 * t48,
+                2.7800779418373054 * l1_y_right - 4.155859313945751 * l1_x_right,
+                2.7800779418373054 * l1_x_right + 4.155859313945751 * l1_y_right,
             ) + 0.981211984016226,
             ::overact::math::atan2(
-                -(0.5000000000001916 * t60 + 9.996874511566102 * t62),
-                19.993749023132203 * t60 - 0.2500000000000958 * t62,
+                -(0.5000000000001916 * det_right + 9.996874511566102 * t2_right),
+                19.993749023132203 * det_right - 0.2500000000000958 * t2_right,
             ) + 1.5957989316942673,
         ])
     }
@@ -233,31 +299,41 @@ impl FiveBar {
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t4 = 1.0 / (t0 * t0 + t2);
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = pose[1] * t6 + t0 * t11;
-        let t17 = t0 * t6 - pose[1] * t11;
-        let t26 = pose[0] - 0.1;
-        let t29 = 1.0 / (t26 * t26 + t2);
-        let t31 = 0.5 - 0.01125 * t29;
-        let t35 = 0.04 * t29 - t31 * t31;
-        ::overact::guard::reach(t35, "right")?;
-        let t36 = ::overact::math::sqrt(t35);
-        let t38 = pose[1] * t31 - t26 * t36;
-        let t42 = t26 * t31 + pose[1] * t36;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         ::core::result::Result::Ok([
             ::overact::math::atan2(
-                -(2.7800779418373094 * t13 + 4.155859313945749 * t17),
-                4.155859313945749 * t13 - 2.7800779418373094 * t17,
+                -(2.7800779418373094 * l1_y_left + 4.155859313945749 * l1_x_left),
+                4.155859313945749 * l1_y_left - 2.7800779418373094 * l1_x_left,
             ) + 2.160380669573568,
             ::overact::math::atan2(
-                2.7800779418373054 * t38 - 4.155859313945751 * t42,
-                2.7800779418373054 * t42 + 4.155859313945751 * t38,
+                2.7800779418373054 * l1_y_right - 4.155859313945751 * l1_x_right,
+                2.7800779418373054 * l1_x_right + 4.155859313945751 * l1_y_right,
             ) + 0.981211984016226,
         ])
     }
@@ -275,31 +351,47 @@ impl FiveBar {
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let t16 = 1.0 / t15;
-        let minus_g1_vx_left = (t0 - (t0 * t6 - pose[1] * t11)) * t16;
-        let t18 = pose[0] - 0.1;
-        let t20 = t18 * t18 + t2;
-        let t21 = 1.0 / t20;
-        let t23 = 0.5 - 0.01125 * t21;
-        let t27 = 0.04 * t21 - t23 * t23;
-        ::overact::guard::reach(t27, "right")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t32 = t20 * t28;
-        ::overact::guard::leg(t32, 0.04998437255783052, "right")?;
-        let t33 = 1.0 / t32;
-        let g1_vx_right = (t18 - (t18 * t23 + pose[1] * t28)) * t33;
-        let minus_g1_vy_left = (pose[1] - (pose[1] * t6 + t0 * t11)) * t16;
-        let g1_vy_right = (pose[1] - (pose[1] * t23 - t18 * t28)) * t33;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
         ::core::result::Result::Ok([
             [-minus_g1_vx_left, -minus_g1_vy_left], [g1_vx_right, g1_vy_right],
         ])
@@ -320,18 +412,23 @@ impl FiveBar {
         _pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        let t0 = joints[0] + joints[1];
-        let t6 = joints[2] + joints[3];
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 5.0;
+        let q1_plus_q2_left = joints[0] + joints[1];
+        let q1_plus_q2_right = joints[2] + joints[3];
+        // --- sines and cosines
         let [(s12_left, c12_left), (s2_left, _), (s12_right, c12_right), (s2_right, _),
-        ] = ::overact::math::sin_cos_all([t0, joints[1], t6, joints[3]]);
+        ] = ::overact::math::sin_cos_all([
+            q1_plus_q2_left, joints[1], q1_plus_q2_right, joints[3],
+        ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-        let t4 = 5.0 / s2_left;
-        let g1_vx_left = c12_left * t4;
-        let t10 = 5.0 / s2_right;
-        let g1_vx_right = c12_right * t10;
-        let g1_vy_left = s12_left * t4;
-        let g1_vy_right = s12_right * t10;
+        let k1_left = INV_L_1 / s2_left;
+        let g1_vx_left = c12_left * k1_left;
+        let k1_right = INV_L_1 / s2_right;
+        let g1_vx_right = c12_right * k1_right;
+        let g1_vy_left = s12_left * k1_left;
+        let g1_vy_right = s12_right * k1_right;
         ::core::result::Result::Ok([
             [g1_vx_left, g1_vy_left], [g1_vx_right, g1_vy_right],
         ])
@@ -350,44 +447,64 @@ impl FiveBar {
     pub fn jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let t16 = 1.0 / t15;
-        let minus_g1_vx_left = (t0 - (t0 * t6 - pose[1] * t11)) * t16;
-        let t19 = pose[0] - 0.1;
-        let t21 = t19 * t19 + t2;
-        let t22 = 1.0 / t21;
-        let t24 = 0.5 - 0.01125 * t22;
-        let t28 = 0.04 * t22 - t24 * t24;
-        ::overact::guard::reach(t28, "right")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t33 = t21 * t29;
-        ::overact::guard::leg(t33, 0.04998437255783052, "right")?;
-        let t34 = 1.0 / t33;
-        let g1_vx_right = (t19 - (t19 * t24 + pose[1] * t29)) * t34;
-        let t37 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t37, 35.707722858788905, "actuators")?;
-        let t38 = 1.0 / t37;
-        let minus_g1_vy_left = (pose[1] - (pose[1] * t6 + t0 * t11)) * t16;
-        let g1_vy_right = (pose[1] - (pose[1] * t24 - t19 * t29)) * t34;
-        let t52 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t53 = t52 * t38;
-        let t58 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t52 * t53;
-        ::overact::guard::platform(t58, 14.323546684675748, "actuators")?;
-        let t59 = 1.0 / t58;
-        let t62 = t59 * (minus_g1_vx_left * t53 - minus_g1_vy_left);
-        let t68 = t59 * (g1_vy_right - g1_vx_right * t53);
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t1 = inv_pivot_2 * (minus_g1_vx_left * l_2_1 - minus_g1_vy_left);
+        let t2 = inv_pivot_2 * (g1_vy_right - g1_vx_right * l_2_1);
         ::core::result::Result::Ok([
-            [-(minus_g1_vx_left * t38 + t53 * t62), g1_vx_right * t38 - t53 * t68], [t62, t68],
+            [
+                -(minus_g1_vx_left * inv_pivot_1 + l_2_1 * t1),
+                g1_vx_right * inv_pivot_1 - l_2_1 * t2,
+            ],
+            [t1, t2],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -404,19 +521,26 @@ impl FiveBar {
         _pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> [[::core::primitive::f64; 4]; 4] {
-        let t3 = joints[0] + joints[1];
-        let t14 = joints[2] + joints[3];
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        let q1_plus_q2_left = joints[0] + joints[1];
+        let q1_plus_q2_right = joints[2] + joints[3];
+        // --- sines and cosines
         let [(s1_left, c1_left), (s12_left, c12_left), (s1_right, c1_right),
         (s12_right, c12_right)] = ::overact::math::sin_cos_all([
-            joints[0], t3, joints[2], t14,
+            joints[0], q1_plus_q2_left, joints[2], q1_plus_q2_right,
         ]);
-        let t6 = 0.25 * s12_left;
-        let t9 = 0.25 * c12_left;
-        let t17 = 0.25 * s12_right;
-        let t20 = 0.25 * c12_right;
+        let l_2_s12_left = L_2 * s12_left;
+        let l_2_c12_left = L_2 * c12_left;
+        let l_2_s12_right = L_2 * s12_right;
+        let l_2_c12_right = L_2 * c12_right;
         [
-            [-(0.2 * s1_left + t6), -t6, 0.0, 0.0], [0.2 * c1_left + t9, t9, 0.0, 0.0],
-            [0.0, 0.0, -(0.2 * s1_right + t17), -t17], [0.0, 0.0, 0.2 * c1_right + t20, t20],
+            [-(L_1 * s1_left + l_2_s12_left), -l_2_s12_left, 0.0, 0.0],
+            [L_1 * c1_left + l_2_c12_left, l_2_c12_left, 0.0, 0.0],
+            [0.0, 0.0, -(L_1 * s1_right + l_2_s12_right), -l_2_s12_right],
+            [0.0, 0.0, L_1 * c1_right + l_2_c12_right, l_2_c12_right],
         ]
     }
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
@@ -449,12 +573,15 @@ impl FiveBar {
         _pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> [[::core::primitive::f64; 2]; 2] {
-        let t0 = joints[0] + joints[1];
-        let t4 = joints[2] + joints[3];
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        let q1_plus_q2_left = joints[0] + joints[1];
+        let q1_plus_q2_right = joints[2] + joints[3];
+        // --- sines and cosines
         let [(s12_left, c12_left), (s12_right, c12_right)] = ::overact::math::sin_cos_all([
-            t0, t4,
+            q1_plus_q2_left, q1_plus_q2_right,
         ]);
-        [[0.25 * c12_left, 0.25 * s12_left], [0.25 * c12_right, 0.25 * s12_right]]
+        [[L_2 * c12_left, L_2 * s12_left], [L_2 * c12_right, L_2 * s12_right]]
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
@@ -470,10 +597,13 @@ impl FiveBar {
         _pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> [[::core::primitive::f64; 2]; 2] {
+        /// half / 2
+        const HALF_HALF: ::core::primitive::f64 = 0.05;
+        // --- sines and cosines
         let [(s2_left, _), (s2_right, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[3],
         ]);
-        [[-(0.05 * s2_left), 0.0], [0.0, -(0.05 * s2_right)]]
+        [[-(HALF_HALF * s2_left), 0.0], [0.0, -(HALF_HALF * s2_right)]]
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
@@ -491,48 +621,61 @@ impl FiveBar {
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 - pose[1] * t11;
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let t16 = 1.0 / t15;
-        let minus_g1_vx_left = (t0 - t13) * t16;
-        let t21 = pose[1] * t6 + t0 * t11;
-        let minus_g1_vy_left = (pose[1] - t21) * t16;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let g2_vx_left = t13 * t16;
-        let g2_vy_left = t21 * t16;
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t32 = pose[0] - 0.1;
-        let t34 = t32 * t32 + t2;
-        let t35 = 1.0 / t34;
-        let t37 = 0.5 - 0.01125 * t35;
-        let t41 = 0.04 * t35 - t37 * t37;
-        ::overact::guard::reach(t41, "right")?;
-        let t42 = ::overact::math::sqrt(t41);
-        let t44 = t32 * t37 + pose[1] * t42;
-        let t46 = t34 * t42;
-        ::overact::guard::leg(t46, 0.04998437255783052, "right")?;
-        let t47 = 1.0 / t46;
-        let g1_vx_right = (t32 - t44) * t47;
-        let t52 = pose[1] * t37 - t32 * t42;
-        let g1_vy_right = (pose[1] - t52) * t47;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let minus_g2_vx_right = t44 * t47;
-        let minus_g2_vy_right = t52 * t47;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         ::core::result::Result::Ok([
-            -minus_rate_1_left, minus_rate_1_left + rate_2_left, rate_1_right,
-            -(rate_1_right + minus_rate_2_right),
+            -minus_rate_1_left, qd_2_left, rate_1_right, -minus_qd_2_right,
         ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -553,66 +696,85 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t7 = 0.5 - 0.01125 * t4;
-        let t9 = 0.04 * t4 - t7 * t7;
-        ::overact::guard::reach(t9, "left")?;
-        let t10 = ::overact::math::sqrt(t9);
-        let t11 = t3 * t10;
-        ::overact::guard::leg(t11, 0.04998437255783052, "left")?;
-        let t12 = 1.0 / t11;
-        let t15 = t0 * t7 - pose[1] * t10;
-        let t16 = t0 - t15;
-        let t20 = pose[1] * t7 + t0 * t10;
-        let t21 = pose[1] - t20;
-        let g2_vx_left = t15 * t12;
-        let g2_vy_left = t20 * t12;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t29 = rate_2_left * rate_2_left;
-        let minus_g1_vx_left = t16 * t12;
-        let minus_g1_vy_left = t21 * t12;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let t37 = minus_rate_1_left * minus_rate_1_left;
-        let t39 = 0.5 * (t3 - 0.1025);
-        let minus_rate_dot_1_left = t12
-            * (t16 * acceleration[0] + t21 * acceleration[1] + 0.0625 * t29 + t37 * t39);
-        let rate_dot_2_left = t12
-            * (t15 * acceleration[0] + t20 * acceleration[1] + 0.04 * t37 + t29 * t39);
-        let t52 = pose[0] - 0.1;
-        let t54 = t52 * t52 + t2;
-        let t55 = 1.0 / t54;
-        let t58 = 0.5 - 0.01125 * t55;
-        let t60 = 0.04 * t55 - t58 * t58;
-        ::overact::guard::reach(t60, "right")?;
-        let t61 = ::overact::math::sqrt(t60);
-        let t62 = t54 * t61;
-        ::overact::guard::leg(t62, 0.04998437255783052, "right")?;
-        let t63 = 1.0 / t62;
-        let t66 = t52 * t58 + pose[1] * t61;
-        let t67 = t52 - t66;
-        let t71 = pose[1] * t58 - t52 * t61;
-        let t72 = pose[1] - t71;
-        let minus_g2_vx_right = t66 * t63;
-        let minus_g2_vy_right = t71 * t63;
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let minus_rate_dot_1_left = k_left
+            * (a_on_f1_left + rate_1_squared_left * t2_left);
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+        let qdd_2_left = minus_rate_dot_1_left + rate_dot_2_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t80 = minus_rate_2_right * minus_rate_2_right;
-        let g1_vx_right = t67 * t63;
-        let g1_vy_right = t72 * t63;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t88 = rate_1_right * rate_1_right;
-        let t90 = 0.5 * (t54 - 0.1025);
-        let rate_dot_1_right = t63
-            * (t67 * acceleration[0] + t72 * acceleration[1] + 0.0625 * t80 + t88 * t90);
-        let minus_rate_dot_2_right = t63
-            * (t66 * acceleration[0] + t71 * acceleration[1] + 0.04 * t88 + t80 * t90);
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let rate_dot_1_right = k_right
+            * (a_on_f1_right + rate_1_squared_right * t2_right);
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
+        let minus_qdd_2_right = rate_dot_1_right + minus_rate_dot_2_right;
         ::core::result::Result::Ok([
-            -minus_rate_dot_1_left, minus_rate_dot_1_left + rate_dot_2_left, rate_dot_1_right,
-            -(rate_dot_1_right + minus_rate_dot_2_right),
+            -minus_rate_dot_1_left, qdd_2_left, rate_dot_1_right, -minus_qdd_2_right,
         ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -631,44 +793,60 @@ impl FiveBar {
         pose: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t0 = pose[0] - 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "right")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "right")?;
-        let t16 = 1.0 / t15;
-        let g1_vx_right = (t0 - (t0 * t6 + pose[1] * t11)) * t16;
-        let t19 = pose[0] + 0.1;
-        let t21 = t19 * t19 + t2;
-        let t22 = 1.0 / t21;
-        let t24 = 0.5 - 0.01125 * t22;
-        let t28 = 0.04 * t22 - t24 * t24;
-        ::overact::guard::reach(t28, "left")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t33 = t21 * t29;
-        ::overact::guard::leg(t33, 0.04998437255783052, "left")?;
-        let t34 = 1.0 / t33;
-        let minus_g1_vx_left = (t19 - (t19 * t24 - pose[1] * t29)) * t34;
-        let t37 = g1_vx_right * actuator_velocities[1]
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let t1 = g1_vx_right * actuator_velocities[1]
             - minus_g1_vx_left * actuator_velocities[0];
-        let t40 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t40, 35.707722858788905, "actuators")?;
-        let t41 = 1.0 / t40;
-        let minus_g1_vy_left = (pose[1] - (pose[1] * t24 + t19 * t29)) * t34;
-        let g1_vy_right = (pose[1] - (pose[1] * t6 - t0 * t11)) * t16;
-        let t55 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t56 = t55 * t41;
-        let t66 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t55 * t56;
-        ::overact::guard::platform(t66, 14.323546684675748, "actuators")?;
-        let t67 = (g1_vy_right * actuator_velocities[1]
-            - minus_g1_vy_left * actuator_velocities[0] - t37 * t56) / t66;
-        ::core::result::Result::Ok([t37 * t41 - t56 * t67, t67])
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        let t2 = (g1_vy_right * actuator_velocities[1]
+            - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -688,64 +866,88 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t0 = pose[0] - 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "right")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 + pose[1] * t11;
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "right")?;
-        let t16 = 1.0 / t15;
-        let g1_vx_right = (t0 - t13) * t16;
-        let minus_g2_vx_right = t13 * t16;
-        let t22 = pose[1] * t6 - t0 * t11;
-        let minus_g2_vy_right = t22 * t16;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let g1_vy_right = (pose[1] - t22) * t16;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_dot_1_right = t16
-            * (0.0625 * (minus_rate_2_right * minus_rate_2_right)
-                + rate_1_right * rate_1_right * (0.5 * (t3 - 0.1025)));
-        let t39 = actuator_accelerations[1] - rate_dot_1_right;
-        let t41 = pose[0] + 0.1;
-        let t43 = t41 * t41 + t2;
-        let t44 = 1.0 / t43;
-        let t46 = 0.5 - 0.01125 * t44;
-        let t50 = 0.04 * t44 - t46 * t46;
-        ::overact::guard::reach(t50, "left")?;
-        let t51 = ::overact::math::sqrt(t50);
-        let t53 = t41 * t46 - pose[1] * t51;
-        let t55 = t43 * t51;
-        ::overact::guard::leg(t55, 0.04998437255783052, "left")?;
-        let t56 = 1.0 / t55;
-        let minus_g1_vx_left = (t41 - t53) * t56;
-        let g2_vx_left = t53 * t56;
-        let t62 = pose[1] * t46 + t41 * t51;
-        let g2_vy_left = t62 * t56;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right
+                + rate_1_squared_right * (TWICE_L_2 * (rho_squared_right - 0.1025)));
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let minus_g1_vy_left = (pose[1] - t62) * t56;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let minus_rate_dot_1_left = t56
-            * (0.0625 * (rate_2_left * rate_2_left)
-                + minus_rate_1_left * minus_rate_1_left * (0.5 * (t43 - 0.1025)));
-        let t79 = actuator_accelerations[0] + minus_rate_dot_1_left;
-        let t81 = g1_vx_right * t39 - minus_g1_vx_left * t79;
-        let t84 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t84, 35.707722858788905, "actuators")?;
-        let t85 = 1.0 / t84;
-        let t89 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t90 = t89 * t85;
-        let t100 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t89 * t90;
-        ::overact::guard::platform(t100, 14.323546684675748, "actuators")?;
-        let t101 = (g1_vy_right * t39 - minus_g1_vy_left * t79 - t81 * t90) / t100;
-        ::core::result::Result::Ok([t81 * t85 - t90 * t101, t101])
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left
+                + rate_1_squared_left * (TWICE_L_2 * (rho_squared_left - 0.1025)));
+        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_left;
+        let t1 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        let t2 = (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - t1 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -766,121 +968,190 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t5 = 0.5 - 0.01125 / t3;
-        let t9 = 0.04 / t3 - t5 * t5;
-        ::overact::guard::reach(t9, "left")?;
-        let t10 = ::overact::math::sqrt(t9);
-        let t12 = t0 * t5 - pose[1] * t10;
-        let t13 = t0 - t12;
-        let t14 = t3 * t10;
-        ::overact::guard::leg(t14, 0.04998437255783052, "left")?;
-        let t15 = 1.0 / t14;
-        let minus_g1_vx_left = t13 * t15;
-        let t20 = pose[1] * t5 + t0 * t10;
-        let t21 = pose[1] - t20;
-        let g2_vx_left = t12 * t15;
-        let g2_vy_left = t20 * t15;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / l_1²
+        const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_1² / l_2
+        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t29 = rate_2_left * rate_2_left;
-        let minus_g1_vy_left = t21 * t15;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let t36 = minus_rate_1_left * minus_rate_1_left;
-        let t38 = 0.5 * (t3 - 0.1025);
-        let minus_rate_dot_1_left = t15
-            * (t13 * acceleration[0] + t21 * acceleration[1] + 0.0625 * t29 + t36 * t38);
-        let t42 = minus_g1_vx_left * minus_rate_dot_1_left;
-        let t43 = minus_g1_vy_left * minus_rate_dot_1_left;
-        let t44 = 49.05 * t12;
-        let t47 = 49.05 * t20;
-        let t58 = t12 * acceleration[0] + t20 * acceleration[1] + 0.04 * t36;
-        let rate_dot_2_left = t15 * (t58 + t29 * t38);
-        let t62 = g2_vx_left * rate_dot_2_left;
-        let t63 = g2_vy_left * rate_dot_2_left;
-        let t64 = 4.0 * acceleration[0];
-        let t67 = t44 - 0.2 * minus_rate_dot_1_left;
-        let t68 = 0.2 * t67;
-        let t69 = minus_g1_vx_left * t68;
-        let t74 = acceleration[1] + 9.81;
-        let t75 = 4.0 * t74;
-        let t77 = minus_g1_vy_left * t68;
-        let t82 = 4.0 * t58;
-        let c2_left = t38 * 20.0;
-        let minus_s2_left = 20.0 * t14;
-        let t90 = c2_left * (t47 - 0.2 * t36) - minus_s2_left * t67;
-        let t97 = minus_rate_1_left + rate_2_left;
-        let t101 = pose[0] - 0.1;
-        let t103 = t101 * t101 + t2;
-        let t105 = 0.5 - 0.01125 / t103;
-        let t109 = 0.04 / t103 - t105 * t105;
-        ::overact::guard::reach(t109, "right")?;
-        let t110 = ::overact::math::sqrt(t109);
-        let t112 = t101 * t105 + pose[1] * t110;
-        let t113 = t101 - t112;
-        let t114 = t103 * t110;
-        ::overact::guard::leg(t114, 0.04998437255783052, "right")?;
-        let t115 = 1.0 / t114;
-        let g1_vx_right = t113 * t115;
-        let t120 = pose[1] * t105 - t101 * t110;
-        let t121 = pose[1] - t120;
-        let minus_g2_vx_right = t112 * t115;
-        let minus_g2_vy_right = t120 * t115;
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let minus_rate_dot_1_left = k_left
+            * (a_on_f1_left + rate_1_squared_left * t2_left);
+        let zz_1_left_on_vx = minus_g1_vx_left * minus_rate_dot_1_left;
+        let zz_1_left_on_vy = minus_g1_vy_left * minus_rate_dot_1_left;
+        let a1_y_left = 49.05 * l1_x_left;
+        let a1_x_left = 49.05 * l1_y_left;
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+        let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
+        let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
+        let inv_l_2_dvx = INV_L_2 * acceleration[0];
+        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left - L_1 * minus_rate_dot_1_left;
+        let t3_left = L_1 * a1_y_plus_l_1_rate_dot_1_left;
+        let minus_m_2_left_on_vx = minus_g1_vx_left * t3_left;
+        let m_platform_on_vy = acceleration[1] + 9.81;
+        let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
+        let minus_m_2_left_on_vy = minus_g1_vy_left * t3_left;
+        let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let gq2_vx_left = minus_g1_vx_left + g2_vx_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let gq2_vy_left = minus_g1_vy_left + g2_vy_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t129 = minus_rate_2_right * minus_rate_2_right;
-        let g1_vy_right = t121 * t115;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_right;
+        let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t136 = rate_1_right * rate_1_right;
-        let t138 = 0.5 * (t103 - 0.1025);
-        let rate_dot_1_right = t115
-            * (t113 * acceleration[0] + t121 * acceleration[1] + 0.0625 * t129
-                + t136 * t138);
-        let t142 = g1_vx_right * rate_dot_1_right;
-        let t143 = g1_vy_right * rate_dot_1_right;
-        let t144 = 49.05 * t112;
-        let t147 = 49.05 * t120;
-        let t158 = t112 * acceleration[0] + t120 * acceleration[1] + 0.04 * t136;
-        let minus_rate_dot_2_right = t115 * (t158 + t129 * t138);
-        let t162 = minus_g2_vx_right * minus_rate_dot_2_right;
-        let t163 = minus_g2_vy_right * minus_rate_dot_2_right;
-        let t165 = t144 + 0.2 * rate_dot_1_right;
-        let t166 = 0.2 * t165;
-        let t167 = g1_vx_right * t166;
-        let t173 = g1_vy_right * t166;
-        let t179 = 4.0 * t158;
-        let c2_right = 20.0 * t138;
-        let s2_right = 20.0 * t114;
-        let t187 = c2_right * (t147 - 0.2 * t136) + s2_right * t165;
-        let t194 = rate_1_right + minus_rate_2_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let rate_dot_1_right = k_right
+            * (a_on_f1_right + rate_1_squared_right * t2_right);
+        let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
+        let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
+        let a1_y_right = 49.05 * l1_x_right;
+        let a1_x_right = 49.05 * l1_y_right;
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
+        let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
+        let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
+        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+        let t3_right = L_1 * a1_y_plus_l_1_rate_dot_1_right;
+        let m_2_right_on_vx = g1_vx_right * t3_right;
+        let m_2_right_on_vy = g1_vy_right * t3_right;
+        let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+        let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
         ::core::result::Result::Ok([
             [
-                t42, -(minus_g1_vx_left * t44), minus_g1_vx_left * t47, t42,
-                minus_g1_vx_left * minus_rate_1_left,
+                zz_1_left_on_vx, -(minus_g1_vx_left * a1_y_left), minus_g1_vx_left * a1_x_left,
+                zz_1_left_on_vx, minus_g1_vx_left * minus_rate_1_left,
                 ::overact::math::signed(minus_g1_vx_left, minus_rate_1_left), -minus_g1_vx_left,
-                t62, t64 - 0.16 * (1.5625 * t62 - 25.0 * t69),
-                -(minus_g1_vx_left * t82 + g2_vx_left * t90), -t69,
-                ::overact::math::signed(minus_g1_vx_left + g2_vx_left, t97), t142,
-                g1_vx_right * t144, -(g1_vx_right * t147), t142, g1_vx_right * rate_1_right,
-                ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_right, t162,
-                t64 - 0.16 * (25.0 * t167 + 1.5625 * t162),
-                g1_vx_right * t179 + minus_g2_vx_right * t187, t167,
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t194), acceleration[0],
+                zz_2_left_on_vx,
+                inv_l_2_dvx
+                    - L_1_SQUARED_PER_L_2
+                        * (1.5625 * zz_2_left_on_vx
+                            - INV_L_1_SQUARED * minus_m_2_left_on_vx),
+                -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                    + g2_vx_left * a2_x_left),
+                -minus_m_2_left_on_vx,
+                ::overact::math::signed(gq2_vx_left, qd_2_left),
+                zz_1_right_on_vx,
+                g1_vx_right * a1_y_right,
+                -(g1_vx_right * a1_x_right),
+                zz_1_right_on_vx,
+                g1_vx_right * rate_1_right,
+                ::overact::math::signed(g1_vx_right, rate_1_right),
+                g1_vx_right,
+                zz_2_right_on_vx,
+                inv_l_2_dvx
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1_SQUARED * m_2_right_on_vx
+                            + 1.5625 * zz_2_right_on_vx),
+                g1_vx_right * minus_inv_l_2_a_on_f2_right
+                    + minus_g2_vx_right * a2_x_right,
+                m_2_right_on_vx,
+                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
+                acceleration[0],
             ],
             [
-                t43, -(minus_g1_vy_left * t44), minus_g1_vy_left * t47, t43,
-                minus_g1_vy_left * minus_rate_1_left,
+                zz_1_left_on_vy, -(minus_g1_vy_left * a1_y_left), minus_g1_vy_left * a1_x_left,
+                zz_1_left_on_vy, minus_g1_vy_left * minus_rate_1_left,
                 ::overact::math::signed(minus_g1_vy_left, minus_rate_1_left), -minus_g1_vy_left,
-                t63, t75 - 0.16 * (1.5625 * t63 - 25.0 * t77),
-                -(minus_g1_vy_left * t82 + g2_vy_left * t90), -t77,
-                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t97), t143,
-                g1_vy_right * t144, -(g1_vy_right * t147), t143, g1_vy_right * rate_1_right,
-                ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_right, t163,
-                t75 - 0.16 * (25.0 * t173 + 1.5625 * t163),
-                g1_vy_right * t179 + minus_g2_vy_right * t187, t173,
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t194), t74,
+                zz_2_left_on_vy,
+                inv_l_2_m_platform_on_vy
+                    - L_1_SQUARED_PER_L_2
+                        * (1.5625 * zz_2_left_on_vy
+                            - INV_L_1_SQUARED * minus_m_2_left_on_vy),
+                -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                    + g2_vy_left * a2_x_left),
+                -minus_m_2_left_on_vy,
+                ::overact::math::signed(gq2_vy_left, qd_2_left),
+                zz_1_right_on_vy,
+                g1_vy_right * a1_y_right,
+                -(g1_vy_right * a1_x_right),
+                zz_1_right_on_vy,
+                g1_vy_right * rate_1_right,
+                ::overact::math::signed(g1_vy_right, rate_1_right),
+                g1_vy_right,
+                zz_2_right_on_vy,
+                inv_l_2_m_platform_on_vy
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1_SQUARED * m_2_right_on_vy
+                            + 1.5625 * zz_2_right_on_vy),
+                g1_vy_right * minus_inv_l_2_a_on_f2_right
+                    + minus_g2_vy_right * a2_x_right,
+                m_2_right_on_vy,
+                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
+                m_platform_on_vy,
             ],
         ])
     }
@@ -905,95 +1176,164 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 5.0;
+        /// 1 / l_1²
+        const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / l_2
+        const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+        /// l_1² / l_2
+        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        // --- sines and cosines
         let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3],
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let t10 = 5.0 / s2_left;
-        let g1_vx_left = c12_left * t10;
-        let t15 = t10 * 0.8;
-        let minus_g2_vx_left = c1_left * t15;
-        let minus_g2_vy_left = s1_left * t15;
+        let k1_left = INV_L_1 / s2_left;
+        let g1_vx_left = c12_left * k1_left;
+        let k2_left = k1_left * L_1_PER_L_2;
+        let minus_g2_vx_left = c1_left * k2_left;
+        let minus_g2_vy_left = s1_left * k2_left;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t22 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
-        let t23 = c12_left * acceleration[0] + s12_left * acceleration[1] + t22;
-        let g1_vy_left = s12_left * t10;
+        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
+        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
+            + l_2_rate_2_squared_left;
+        let g1_vy_left = s12_left * k1_left;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t29 = 0.2 * (rate_1_left * rate_1_left);
-        let rate_dot_1_left = t10 * (t23 + c2_left * t29);
-        let t33 = g1_vx_left * rate_dot_1_left;
-        let t34 = g1_vy_left * rate_dot_1_left;
-        let t35 = 9.81 * c1_left;
-        let t38 = 9.81 * s1_left;
-        let t48 = c1_left * acceleration[0] + s1_left * acceleration[1] + t29;
-        let minus_rate_dot_2_left = t15 * (t48 + t22 * c2_left);
-        let t52 = minus_g2_vx_left * minus_rate_dot_2_left;
-        let t53 = minus_g2_vy_left * minus_rate_dot_2_left;
-        let t54 = 4.0 * acceleration[0];
-        let t57 = 0.2 * (t35 + 0.2 * rate_dot_1_left);
-        let t58 = g1_vx_left * t57;
-        let t64 = acceleration[1] + 9.81;
-        let t65 = 4.0 * t64;
-        let t66 = g1_vy_left * t57;
-        let t72 = 0.8 * t48;
-        let t75 = t23 + s12_left * 9.81;
-        let t82 = rate_1_left + minus_rate_2_left;
+        let rate_1_squared_left = rate_1_left * rate_1_left;
+        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+        let rate_dot_1_left = k1_left
+            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+        let zz_1_left_on_vx = g1_vx_left * rate_dot_1_left;
+        let zz_1_left_on_vy = g1_vy_left * rate_dot_1_left;
+        let a1_y_left = 9.81 * c1_left;
+        let a1_x_left = 9.81 * s1_left;
+        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
+            + l_1_rate_1_squared_left;
+        let minus_rate_dot_2_left = k2_left
+            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+        let zz_2_left_on_vx = minus_g2_vx_left * minus_rate_dot_2_left;
+        let zz_2_left_on_vy = minus_g2_vy_left * minus_rate_dot_2_left;
+        let inv_l_2_dvx = INV_L_2 * acceleration[0];
+        let t1_left = L_1 * (a1_y_left + L_1 * rate_dot_1_left);
+        let m_2_left_on_vx = g1_vx_left * t1_left;
+        let m_platform_on_vy = acceleration[1] + 9.81;
+        let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
+        let m_2_left_on_vy = g1_vy_left * t1_left;
+        let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
+        let a2_x_left = a_on_f1_left + s12_left * 9.81;
+        let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
+        // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let t96 = 5.0 / s2_right;
-        let g1_vx_right = c12_right * t96;
-        let t101 = 0.8 * t96;
-        let minus_g2_vx_right = c1_right * t101;
-        let minus_g2_vy_right = s1_right * t101;
+        let k1_right = INV_L_1 / s2_right;
+        let g1_vx_right = c12_right * k1_right;
+        let k2_right = L_1_PER_L_2 * k1_right;
+        let minus_g2_vx_right = c1_right * k2_right;
+        let minus_g2_vy_right = s1_right * k2_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t108 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
-        let t109 = c12_right * acceleration[0] + s12_right * acceleration[1] + t108;
-        let g1_vy_right = s12_right * t96;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
+        let g1_vy_right = s12_right * k1_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t115 = 0.2 * (rate_1_right * rate_1_right);
-        let rate_dot_1_right = t96 * (t109 + c2_right * t115);
-        let t119 = g1_vx_right * rate_dot_1_right;
-        let t120 = g1_vy_right * rate_dot_1_right;
-        let t121 = 9.81 * c1_right;
-        let t124 = 9.81 * s1_right;
-        let t134 = c1_right * acceleration[0] + s1_right * acceleration[1] + t115;
-        let minus_rate_dot_2_right = t101 * (t134 + t108 * c2_right);
-        let t138 = minus_g2_vx_right * minus_rate_dot_2_right;
-        let t139 = minus_g2_vy_right * minus_rate_dot_2_right;
-        let t142 = 0.2 * (t121 + 0.2 * rate_dot_1_right);
-        let t143 = g1_vx_right * t142;
-        let t149 = g1_vy_right * t142;
-        let t155 = 0.8 * t134;
-        let t158 = t109 + 9.81 * s12_right;
-        let t165 = rate_1_right + minus_rate_2_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let rate_dot_1_right = k1_right
+            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
+        let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
+        let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
+        let a1_y_right = 9.81 * c1_right;
+        let a1_x_right = 9.81 * s1_right;
+        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
+            + l_1_rate_1_squared_right;
+        let minus_rate_dot_2_right = k2_right
+            * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
+        let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
+        let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
+        let t1_right = L_1 * (a1_y_right + L_1 * rate_dot_1_right);
+        let m_2_right_on_vx = g1_vx_right * t1_right;
+        let m_2_right_on_vy = g1_vy_right * t1_right;
+        let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
+        let a2_x_right = a_on_f1_right + 9.81 * s12_right;
+        let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
         ::core::result::Result::Ok([
             [
-                t33, g1_vx_left * t35, -(g1_vx_left * t38), t33, g1_vx_left * rate_1_left,
-                ::overact::math::signed(g1_vx_left, rate_1_left), g1_vx_left, t52,
-                t54 - 0.16 * (25.0 * t58 + 1.5625 * t52), g1_vx_left * t72 + minus_g2_vx_left * t75,
-                t58, ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t82), t119,
-                g1_vx_right * t121, -(g1_vx_right * t124), t119, g1_vx_right * rate_1_right,
-                ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_right, t138,
-                t54 - 0.16 * (25.0 * t143 + 1.5625 * t138),
-                g1_vx_right * t155 + minus_g2_vx_right * t158, t143,
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t165), acceleration[0],
+                zz_1_left_on_vx, g1_vx_left * a1_y_left, -(g1_vx_left * a1_x_left), zz_1_left_on_vx,
+                g1_vx_left * rate_1_left, ::overact::math::signed(g1_vx_left, rate_1_left),
+                g1_vx_left, zz_2_left_on_vx,
+                inv_l_2_dvx
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1_SQUARED * m_2_left_on_vx + 1.5625 * zz_2_left_on_vx),
+                g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
+                    + minus_g2_vx_left * a2_x_left,
+                m_2_left_on_vx,
+                ::overact::math::signed(minus_gq2_vx_left, minus_qd_2_left),
+                zz_1_right_on_vx,
+                g1_vx_right * a1_y_right,
+                -(g1_vx_right * a1_x_right),
+                zz_1_right_on_vx,
+                g1_vx_right * rate_1_right,
+                ::overact::math::signed(g1_vx_right, rate_1_right),
+                g1_vx_right,
+                zz_2_right_on_vx,
+                inv_l_2_dvx
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1_SQUARED * m_2_right_on_vx
+                            + 1.5625 * zz_2_right_on_vx),
+                g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
+                    + minus_g2_vx_right * a2_x_right,
+                m_2_right_on_vx,
+                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
+                acceleration[0],
             ],
             [
-                t34, g1_vy_left * t35, -(g1_vy_left * t38), t34, g1_vy_left * rate_1_left,
-                ::overact::math::signed(g1_vy_left, rate_1_left), g1_vy_left, t53,
-                t65 - 0.16 * (25.0 * t66 + 1.5625 * t53), g1_vy_left * t72 + minus_g2_vy_left * t75,
-                t66, ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t82), t120,
-                g1_vy_right * t121, -(g1_vy_right * t124), t120, g1_vy_right * rate_1_right,
-                ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_right, t139,
-                t65 - 0.16 * (25.0 * t149 + 1.5625 * t139),
-                g1_vy_right * t155 + minus_g2_vy_right * t158, t149,
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t165), t64,
+                zz_1_left_on_vy, g1_vy_left * a1_y_left, -(g1_vy_left * a1_x_left), zz_1_left_on_vy,
+                g1_vy_left * rate_1_left, ::overact::math::signed(g1_vy_left, rate_1_left),
+                g1_vy_left, zz_2_left_on_vy,
+                inv_l_2_m_platform_on_vy
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1_SQUARED * m_2_left_on_vy + 1.5625 * zz_2_left_on_vy),
+                g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
+                    + minus_g2_vy_left * a2_x_left,
+                m_2_left_on_vy,
+                ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left),
+                zz_1_right_on_vy,
+                g1_vy_right * a1_y_right,
+                -(g1_vy_right * a1_x_right),
+                zz_1_right_on_vy,
+                g1_vy_right * rate_1_right,
+                ::overact::math::signed(g1_vy_right, rate_1_right),
+                g1_vy_right,
+                zz_2_right_on_vy,
+                inv_l_2_m_platform_on_vy
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1_SQUARED * m_2_right_on_vy
+                            + 1.5625 * zz_2_right_on_vy),
+                g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
+                    + minus_g2_vy_right * a2_x_right,
+                m_2_right_on_vy,
+                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
+                m_platform_on_vy,
             ],
         ])
     }
@@ -1019,131 +1359,213 @@ impl FiveBar {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t5 = 0.5 - 0.01125 / t3;
-        let t9 = 0.04 / t3 - t5 * t5;
-        ::overact::guard::reach(t9, "left")?;
-        let t10 = ::overact::math::sqrt(t9);
-        let t12 = t0 * t5 - pose[1] * t10;
-        let t13 = t3 * t10;
-        ::overact::guard::leg(t13, 0.04998437255783052, "left")?;
-        let g2_vx_left = t12 / t13;
-        let t15 = t0 / t13;
-        let minus_g1_vx_left = t15 - g2_vx_left;
-        let t17 = minus_g1_vx_left * actuator_accelerations[0];
-        let t20 = pose[1] * t5 + t0 * t10;
-        let g2_vy_left = t20 / t13;
-        let t22 = pose[1] / t13;
-        let minus_g1_vy_left = t22 - g2_vy_left;
-        let t24 = minus_g1_vy_left * actuator_accelerations[0];
-        let t25 = 49.05 * t12;
-        let t28 = 49.05 * t20;
-        let t31 = minus_g1_vx_left * actuator_velocities[0];
-        let t32 = minus_g1_vy_left * actuator_velocities[0];
-        let t35 = pose[0] - 0.1;
-        let t37 = t35 * t35 + t2;
-        let t39 = 0.5 - 0.01125 / t37;
-        let t43 = 0.04 / t37 - t39 * t39;
-        ::overact::guard::reach(t43, "right")?;
-        let t44 = ::overact::math::sqrt(t43);
-        let t46 = t35 * t39 + pose[1] * t44;
-        let t47 = t37 * t44;
-        ::overact::guard::leg(t47, 0.04998437255783052, "right")?;
-        let minus_g2_vx_right = t46 / t47;
-        let t49 = t35 / t47;
-        let g1_vx_right = t49 - minus_g2_vx_right;
-        let t51 = g1_vx_right * actuator_velocities[1];
-        let t52 = t51 - t31;
-        let t55 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t55, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(t55, 35.707722858788905, "actuators")?;
-        let t60 = pose[1] * t39 - t35 * t44;
-        let minus_g2_vy_right = t60 / t47;
-        let t62 = pose[1] / t47;
-        let g1_vy_right = t62 - minus_g2_vy_right;
-        let t65 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t66 = t65 / t55;
-        let t67 = g1_vy_right * actuator_velocities[1];
-        let t75 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t65 * t66;
-        ::overact::guard::platform(t75, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(t75, 14.323546684675748, "actuators")?;
-        let t76 = (t67 - t32 - t52 * t66) / t75;
-        let t78 = t52 / t55 - t66 * t76;
-        let minus_rate_2_right = minus_g2_vx_right * t78 + minus_g2_vy_right * t76;
-        let t82 = minus_rate_2_right * minus_rate_2_right;
-        let t84 = actuator_velocities[1] * actuator_velocities[1];
-        let t85 = t37 - 0.1025;
-        let t86 = 0.5 * t85;
-        let rate_dot_1_right = (0.0625 * t82 + t84 * t86) / t47;
-        let t90 = actuator_accelerations[1] - rate_dot_1_right;
-        let rate_2_left = g2_vx_left * t78 + g2_vy_left * t76;
-        let t95 = rate_2_left * rate_2_left;
-        let t97 = actuator_velocities[0] * actuator_velocities[0];
-        let t98 = t3 - 0.1025;
-        let t99 = 0.5 * t98;
-        let minus_rate_dot_1_left = (0.0625 * t95 + t97 * t99) / t13;
-        let t103 = actuator_accelerations[0] + minus_rate_dot_1_left;
-        let t105 = g1_vx_right * t90 - minus_g1_vx_left * t103;
-        let t112 = (g1_vy_right * t90 - minus_g1_vy_left * t103 - t66 * t105) / t75;
-        let t114 = t105 / t55 - t66 * t112;
-        let t119 = t12 * t114 + t20 * t112 + 0.04 * t97;
-        let rate_dot_2_left = (t119 + t95 * t99) / t13;
-        let t123 = g2_vx_left * rate_dot_2_left;
-        let t124 = g2_vy_left * rate_dot_2_left;
-        let t125 = 4.0 * t114;
-        let t128 = t25 + 0.2 * actuator_accelerations[0];
-        let t129 = 0.2 * t128;
-        let t130 = minus_g1_vx_left * t129;
-        let t135 = t112 + 9.81;
-        let t136 = 4.0 * t135;
-        let t138 = minus_g1_vy_left * t129;
-        let t143 = 4.0 * t119;
-        let c2_left = 10.0 * t98;
-        let minus_s2_left = 20.0 * t13;
-        let t151 = c2_left * (t28 - 0.2 * t97) - minus_s2_left * t128;
-        let t157 = rate_2_left - actuator_velocities[0];
-        let t160 = g1_vx_right * actuator_accelerations[1];
-        let t161 = g1_vy_right * actuator_accelerations[1];
-        let t162 = 49.05 * t46;
-        let t165 = 49.05 * t60;
-        let t174 = t46 * t114 + t60 * t112 + 0.04 * t84;
-        let minus_rate_dot_2_right = (t174 + t82 * t86) / t47;
-        let t178 = minus_g2_vx_right * minus_rate_dot_2_right;
-        let t179 = minus_g2_vy_right * minus_rate_dot_2_right;
-        let t181 = t162 + 0.2 * actuator_accelerations[1];
-        let t182 = 0.2 * t181;
-        let t183 = g1_vx_right * t182;
-        let t189 = g1_vy_right * t182;
-        let t195 = 4.0 * t174;
-        let c2_right = 10.0 * t85;
-        let s2_right = 20.0 * t47;
-        let t203 = c2_right * (t165 - 0.2 * t84) + s2_right * t181;
-        let t209 = actuator_velocities[1] + minus_rate_2_right;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_1²
+        const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_1² / l_2
+        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let g2_vx_left = l1_x_left / det_left;
+        let gq2_vx_left = d_x_left / det_left;
+        let minus_g1_vx_left = gq2_vx_left - g2_vx_left;
+        let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let g2_vy_left = l1_y_left / det_left;
+        let gq2_vy_left = pose[1] / det_left;
+        let minus_g1_vy_left = gq2_vy_left - g2_vy_left;
+        let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let minus_fv_1_left_on_vx = minus_g1_vx_left * actuator_velocities[0];
+        let minus_fv_1_left_on_vy = minus_g1_vy_left * actuator_velocities[0];
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let minus_g2_vx_right = l1_x_right / det_right;
+        let minus_gq2_vx_right = d_x_right / det_right;
+        let g1_vx_right = minus_gq2_vx_right - minus_g2_vx_right;
+        let fv_1_right_on_vx = g1_vx_right * actuator_velocities[1];
+        let t1 = fv_1_right_on_vx - minus_fv_1_left_on_vx;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let minus_g2_vy_right = l1_y_right / det_right;
+        let minus_gq2_vy_right = pose[1] / det_right;
+        let g1_vy_right = minus_gq2_vy_right - minus_g2_vy_right;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 / s_1_1;
+        let fv_1_right_on_vy = g1_vy_right * actuator_velocities[1];
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        let vy = (fv_1_right_on_vy - minus_fv_1_left_on_vy - t1 * l_2_1) / pivot_2;
+        let vx = t1 / s_1_1 - l_2_1 * vy;
+        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = (bias_a_on_f1_right
+            + rate_1_squared_right * t3_right) / det_right;
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        // --- left
+        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
+            + rate_1_squared_left * t3_left) / det_left;
+        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_left;
+        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
+        let dvy = (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2) / pivot_2;
+        let dvx = t2 / s_1_1 - l_2_1 * dvy;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
+            + minus_bias_a_on_f2_left;
+        let rate_dot_2_left = (minus_a_on_f2_left + rate_2_squared_left * t3_left)
+            / det_left;
+        let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
+        let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
+        let inv_l_2_dvx = INV_L_2 * dvx;
+        let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+            + L_1 * actuator_accelerations[0];
+        let t4_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
+        let minus_m_2_left_on_vx = minus_g1_vx_left * t4_left;
+        let m_platform_on_vy = dvy + 9.81;
+        let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
+        let minus_m_2_left_on_vy = minus_g1_vy_left * t4_left;
+        let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
+        let c2_left = INV_HALF * t2_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
+        let qd_2_left = rate_2_left - actuator_velocities[0];
+        // --- right
+        let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
+        let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
+            + minus_bias_a_on_f2_right;
+        let minus_rate_dot_2_right = (minus_a_on_f2_right
+            + rate_2_squared_right * t3_right) / det_right;
+        let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
+        let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
+        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+            + L_1 * actuator_accelerations[1];
+        let t4_right = L_1 * bias_a1_y_plus_l_1_qdd1_right;
+        let m_2_right_on_vx = g1_vx_right * t4_right;
+        let m_2_right_on_vy = g1_vy_right * t4_right;
+        let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
+        let c2_right = INV_HALF * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * bias_a1_y_plus_l_1_qdd1_right;
+        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
-                -t17, -(minus_g1_vx_left * t25), minus_g1_vx_left * t28, -t17, -t31,
+                -minus_zz_1_left_on_vx, -(minus_g1_vx_left * bias_a1_y_left),
+                minus_g1_vx_left * bias_a1_x_left, -minus_zz_1_left_on_vx, -minus_fv_1_left_on_vx,
                 -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
-                -minus_g1_vx_left, t123, t125 - 0.16 * (1.5625 * t123 - 25.0 * t130),
-                -(minus_g1_vx_left * t143 + g2_vx_left * t151), -t130,
-                ::overact::math::signed(t15, t157), t160, g1_vx_right * t162, -(g1_vx_right * t165),
-                t160, t51, ::overact::math::signed(g1_vx_right, actuator_velocities[1]),
-                g1_vx_right, t178, t125 - 0.16 * (25.0 * t183 + 1.5625 * t178),
-                g1_vx_right * t195 + minus_g2_vx_right * t203, t183,
-                ::overact::math::signed(t49, t209), t114,
+                -minus_g1_vx_left, zz_2_left_on_vx,
+                inv_l_2_dvx
+                    - L_1_SQUARED_PER_L_2
+                        * (1.5625 * zz_2_left_on_vx
+                            - INV_L_1_SQUARED * minus_m_2_left_on_vx),
+                -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                    + g2_vx_left * a2_x_left),
+                -minus_m_2_left_on_vx,
+                ::overact::math::signed(gq2_vx_left, qd_2_left),
+                zz_1_right_on_vx,
+                g1_vx_right * bias_a1_y_right,
+                -(g1_vx_right * bias_a1_x_right),
+                zz_1_right_on_vx,
+                fv_1_right_on_vx,
+                ::overact::math::signed(g1_vx_right, actuator_velocities[1]),
+                g1_vx_right,
+                zz_2_right_on_vx,
+                inv_l_2_dvx
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1_SQUARED * m_2_right_on_vx
+                            + 1.5625 * zz_2_right_on_vx),
+                g1_vx_right * minus_inv_l_2_a_on_f2_right
+                    + minus_g2_vx_right * a2_x_right,
+                m_2_right_on_vx,
+                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
+                dvx,
             ],
             [
-                -t24, -(minus_g1_vy_left * t25), minus_g1_vy_left * t28, -t24, -t32,
+                -minus_zz_1_left_on_vy, -(minus_g1_vy_left * bias_a1_y_left),
+                minus_g1_vy_left * bias_a1_x_left, -minus_zz_1_left_on_vy, -minus_fv_1_left_on_vy,
                 -::overact::math::signed(minus_g1_vy_left, actuator_velocities[0]),
-                -minus_g1_vy_left, t124, t136 - 0.16 * (1.5625 * t124 - 25.0 * t138),
-                -(minus_g1_vy_left * t143 + g2_vy_left * t151), -t138,
-                ::overact::math::signed(t22, t157), t161, g1_vy_right * t162, -(g1_vy_right * t165),
-                t161, t67, ::overact::math::signed(g1_vy_right, actuator_velocities[1]),
-                g1_vy_right, t179, t136 - 0.16 * (25.0 * t189 + 1.5625 * t179),
-                g1_vy_right * t195 + minus_g2_vy_right * t203, t189,
-                ::overact::math::signed(t62, t209), t135,
+                -minus_g1_vy_left, zz_2_left_on_vy,
+                inv_l_2_m_platform_on_vy
+                    - L_1_SQUARED_PER_L_2
+                        * (1.5625 * zz_2_left_on_vy
+                            - INV_L_1_SQUARED * minus_m_2_left_on_vy),
+                -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                    + g2_vy_left * a2_x_left),
+                -minus_m_2_left_on_vy,
+                ::overact::math::signed(gq2_vy_left, qd_2_left),
+                zz_1_right_on_vy,
+                g1_vy_right * bias_a1_y_right,
+                -(g1_vy_right * bias_a1_x_right),
+                zz_1_right_on_vy,
+                fv_1_right_on_vy,
+                ::overact::math::signed(g1_vy_right, actuator_velocities[1]),
+                g1_vy_right,
+                zz_2_right_on_vy,
+                inv_l_2_m_platform_on_vy
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1_SQUARED * m_2_right_on_vy
+                            + 1.5625 * zz_2_right_on_vy),
+                g1_vy_right * minus_inv_l_2_a_on_f2_right
+                    + minus_g2_vy_right * a2_x_right,
+                m_2_right_on_vy,
+                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
+                m_platform_on_vy,
             ],
         ])
     }
@@ -1166,115 +1588,179 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t7 = 0.5 - 0.01125 * t4;
-        let t9 = 0.04 * t4 - t7 * t7;
-        ::overact::guard::reach(t9, "left")?;
-        let t10 = ::overact::math::sqrt(t9);
-        let t11 = t3 * t10;
-        ::overact::guard::leg(t11, 0.04998437255783052, "left")?;
-        let t12 = 1.0 / t11;
-        let t15 = t0 * t7 - pose[1] * t10;
-        let t16 = t0 - t15;
-        let t20 = pose[1] * t7 + t0 * t10;
-        let t21 = pose[1] - t20;
-        let g2_vx_left = t15 * t12;
-        let g2_vy_left = t20 * t12;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 5.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_1² / l_2
+        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t29 = rate_2_left * rate_2_left;
-        let minus_g1_vx_left = t16 * t12;
-        let minus_g1_vy_left = t21 * t12;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let t37 = minus_rate_1_left * minus_rate_1_left;
-        let t38 = t3 - 0.1025;
-        let t39 = 0.5 * t38;
-        let minus_rate_dot_1_left = t12
-            * (t16 * acceleration[0] + t21 * acceleration[1] + 0.0625 * t29 + t37 * t39);
-        let t43 = 49.05 * t15;
-        let t44 = 49.05 * t20;
-        let t46 = pose[0] - 0.1;
-        let t48 = t46 * t46 + t2;
-        let t49 = 1.0 / t48;
-        let t51 = 0.5 - 0.01125 * t49;
-        let t55 = 0.04 * t49 - t51 * t51;
-        ::overact::guard::reach(t55, "right")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = t46 * t51 + pose[1] * t56;
-        let t59 = t46 - t58;
-        let t60 = t48 * t56;
-        ::overact::guard::leg(t60, 0.04998437255783052, "right")?;
-        let t61 = 1.0 / t60;
-        let g1_vx_right = t59 * t61;
-        let t65 = pose[1] * t51 - t46 * t56;
-        let t66 = pose[1] - t65;
-        let g1_vy_right = t66 * t61;
-        let t70 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(t70, 22.615508735629323, "kept actuators")?;
-        ::overact::guard::platform(t70, 22.615508735629323, "kept actuators")?;
-        let t71 = 1.0 / t70;
-        let t72 = g1_vx_right * t71;
-        let t74 = g1_vy_right * t71;
-        let t76 = g2_vy_left * t72 - g2_vx_left * t74;
-        let t81 = t15 * acceleration[0] + t20 * acceleration[1] + 0.04 * t37;
-        let rate_dot_2_left = t12 * (t81 + t29 * t39);
-        let t85 = t76 * rate_dot_2_left;
-        let t86 = t12 * t71;
-        let t87 = t86 * rate_dot_2_left;
-        let t88 = acceleration[1] + 9.81;
-        let t91 = t72 * t88 - t74 * acceleration[0];
-        let t92 = 4.0 * t91;
-        let t94 = t43 - 0.2 * minus_rate_dot_1_left;
-        let t100 = minus_g1_vx_left * t71;
-        let t102 = minus_g1_vy_left * t71;
-        let t104 = t100 * t88 - t102 * acceleration[0];
-        let t105 = 4.0 * t104;
-        let c2_left = 10.0 * t38;
-        let minus_s2_left = 20.0 * t11;
-        let t115 = c2_left * (t44 - 0.2 * t37) - minus_s2_left * t94;
-        let t121 = minus_rate_1_left + rate_2_left;
-        let minus_g2_vx_right = t58 * t61;
-        let minus_g2_vy_right = t65 * t61;
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let minus_rate_dot_1_left = k_left
+            * (a_on_f1_left + rate_1_squared_left * t3_left);
+        let a1_y_left = 49.05 * l1_x_left;
+        let a1_x_left = 49.05 * l1_y_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let vy_by_a1 = g1_vx_right * inv_det_ja;
+        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+        let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
+        let g2_a2_left = k_left * inv_det_ja;
+        let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
+        let t1_platform = acceleration[1] + 9.81;
+        let m_platform_on_q1_left = vy_by_a1 * t1_platform
+            - minus_vx_by_a1 * acceleration[0];
+        let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
+        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left - L_1 * minus_rate_dot_1_left;
+        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+        let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+        let m_platform_on_q1_right = vy_by_a2 * t1_platform
+            - minus_vx_by_a2 * acceleration[0];
+        let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
+        // --- left
+        let c2_left = INV_HALF * t2_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t132 = minus_rate_2_right * minus_rate_2_right;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t138 = rate_1_right * rate_1_right;
-        let t139 = t48 - 0.1025;
-        let t140 = 0.5 * t139;
-        let rate_dot_1_right = t61
-            * (t59 * acceleration[0] + t66 * acceleration[1] + 0.0625 * t132
-                + t138 * t140);
-        let t144 = 49.05 * t58;
-        let t145 = 49.05 * t65;
-        let t147 = t61 * t71;
-        let t152 = t58 * acceleration[0] + t65 * acceleration[1] + 0.04 * t138;
-        let minus_rate_dot_2_right = t61 * (t152 + t132 * t140);
-        let t156 = t147 * minus_rate_dot_2_right;
-        let t159 = minus_g2_vx_right * t102 - minus_g2_vy_right * t100;
-        let t160 = t159 * minus_rate_dot_2_right;
-        let t164 = t144 + 0.2 * rate_dot_1_right;
-        let c2_right = 10.0 * t139;
-        let s2_right = 20.0 * t60;
-        let t176 = c2_right * (t145 - 0.2 * t138) + s2_right * t164;
-        let t182 = rate_1_right + minus_rate_2_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let rate_dot_1_right = k_right
+            * (a_on_f1_right + rate_1_squared_right * t3_right);
+        let a1_y_right = 49.05 * l1_x_right;
+        let a1_x_right = 49.05 * l1_y_right;
+        let g2_a1_right = k_right * inv_det_ja;
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
+        let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
+            - minus_g2_vy_right * vy_by_a2;
+        let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
+        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+        let c2_right = INV_HALF * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
-                -minus_rate_dot_1_left, t43, -t44, -minus_rate_dot_1_left, -minus_rate_1_left,
-                -::overact::math::sign(minus_rate_1_left), 1.0, t85,
-                t92 - 0.16 * (5.0 * t94 + 1.5625 * t85), 4.0 * t81 - t76 * t115, 0.2 * t94,
-                ::overact::math::signed(t76 - 1.0, t121), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t156,
-                t92 + 0.25 * t156, -(t147 * t176), 0.0, -::overact::math::signed(t147, t182), t91,
+                -minus_rate_dot_1_left, a1_y_left, -a1_x_left, -minus_rate_dot_1_left,
+                -minus_rate_1_left, -::overact::math::sign(minus_rate_1_left), 1.0,
+                zz_2_left_on_q1_left,
+                inv_l_2_m_platform_on_q1_left
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
+                            + 1.5625 * zz_2_left_on_q1_left),
+                INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
+                L_1 * a1_y_plus_l_1_rate_dot_1_left,
+                ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -minus_zz_2_right_on_q1_left,
+                inv_l_2_m_platform_on_q1_left + L_2 * minus_zz_2_right_on_q1_left,
+                -(g2_a1_right * a2_x_right),
+                0.0,
+                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
+                m_platform_on_q1_left,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t87, t105 - 0.25 * t87, -(t86 * t115), 0.0,
-                ::overact::math::signed(t86, t121), rate_dot_1_right, t144, -t145, rate_dot_1_right,
-                rate_1_right, ::overact::math::sign(rate_1_right), 1.0, -t160,
-                t105 - 0.16 * (5.0 * t164 - 1.5625 * t160), 4.0 * t152 - t159 * t176, 0.2 * t164,
-                -::overact::math::signed(t159 - 1.0, t182), t104,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
+                inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
+                -(g2_a2_left * a2_x_left), 0.0, ::overact::math::signed(g2_a2_left, qd_2_left),
+                rate_dot_1_right, a1_y_right, -a1_x_right, rate_dot_1_right, rate_1_right,
+                ::overact::math::sign(rate_1_right), 1.0, -minus_zz_2_right_on_q1_right,
+                inv_l_2_m_platform_on_q1_right
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
+                            - 1.5625 * minus_zz_2_right_on_q1_right),
+                INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                L_1 * a1_y_plus_l_1_rate_dot_1_right,
+                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
+                m_platform_on_q1_right,
             ],
         ])
     }
@@ -1299,95 +1785,152 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 5.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / l_2
+        const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+        /// l_1² / l_2
+        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        // --- sines and cosines
         let [(s2_left, c2_left), (s1_left, c1_left), (s1_right, c1_right),
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
             joints[1], joints[0], joints[2], joints[3],
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
-        let t2 = 1.0 / s2_left;
-        let t3 = 5.0 * t2;
+        // --- left
+        let inv_s2_left = 1.0 / s2_left;
+        let k1_left = INV_L_1 * inv_s2_left;
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let t15 = 4.0 * t2;
-        let minus_g2_vx_left = c1_left * t15;
-        let minus_g2_vy_left = s1_left * t15;
+        let k2_left = INV_L_2 * inv_s2_left;
+        let minus_g2_vx_left = c1_left * k2_left;
+        let minus_g2_vy_left = s1_left * k2_left;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t22 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
-        let g1_vx_left = c12_left * t3;
-        let g1_vy_left = s12_left * t3;
+        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
+        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
+            + l_2_rate_2_squared_left;
+        let g1_vx_left = c12_left * k1_left;
+        let g1_vy_left = s12_left * k1_left;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t30 = 0.2 * (rate_1_left * rate_1_left);
-        let rate_dot_1_left = t3
-            * (c12_left * acceleration[0] + s12_left * acceleration[1] + t22
-                + c2_left * t30);
-        let t34 = 9.81 * c1_left;
-        let t35 = 9.81 * s1_left;
+        let rate_1_squared_left = rate_1_left * rate_1_left;
+        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+        let rate_dot_1_left = k1_left
+            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+        let a1_y_left = 9.81 * c1_left;
+        let a1_x_left = 9.81 * s1_left;
+        // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let t47 = 1.0 / s2_right;
-        let t48 = 5.0 * t47;
-        let g1_vy_right = s12_right * t48;
-        let g1_vx_right = c12_right * t48;
-        let t53 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-        ::overact::guard::platform(t53, 22.615508735629227, "kept actuators")?;
-        ::overact::guard::platform(t53, 22.615508735629227, "kept actuators")?;
-        let t54 = 1.0 / t53;
-        let t55 = g1_vy_right * t54;
-        let t57 = g1_vx_right * t54;
-        let t59 = minus_g2_vx_left * t55 - minus_g2_vy_left * t57;
-        let t63 = c1_left * acceleration[0] + s1_left * acceleration[1] + t30;
-        let minus_rate_dot_2_left = t15 * (t63 + t22 * c2_left);
-        let t67 = t59 * minus_rate_dot_2_left;
-        let t68 = g1_vx_left * t54;
-        let t70 = g1_vy_left * t54;
-        let t72 = minus_g2_vy_left * t68 - minus_g2_vx_left * t70;
-        let t73 = t72 * minus_rate_dot_2_left;
-        let t74 = acceleration[1] + 9.81;
-        let t77 = t57 * t74 - t55 * acceleration[0];
-        let t78 = 4.0 * t77;
-        let t80 = t34 + 0.2 * rate_dot_1_left;
-        let t88 = t70 * acceleration[0] - t68 * t74;
-        let t89 = 4.0 * t88;
-        let t96 = c2_left * (t35 - t30) + s2_left * t80;
-        let t102 = rate_1_left + minus_rate_2_left;
-        let t108 = 4.0 * t47;
-        let minus_g2_vx_right = c1_right * t108;
-        let minus_g2_vy_right = s1_right * t108;
+        let inv_s2_right = 1.0 / s2_right;
+        let k1_right = INV_L_1 * inv_s2_right;
+        let g1_vy_right = s12_right * k1_right;
+        let g1_vx_right = c12_right * k1_right;
+        let det_ja = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
+        ::overact::guard::platform(det_ja, 22.615508735629227, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 22.615508735629227, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+        let vy_by_a1 = g1_vx_right * inv_det_ja;
+        let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1 - minus_g2_vy_left * vy_by_a1;
+        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
+            + l_1_rate_1_squared_left;
+        let minus_rate_dot_2_left = k2_left
+            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+        let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
+        let minus_vy_by_a2 = g1_vx_left * inv_det_ja;
+        let vx_by_a2 = g1_vy_left * inv_det_ja;
+        let g2_a2_left = minus_g2_vy_left * minus_vy_by_a2 - minus_g2_vx_left * vx_by_a2;
+        let minus_zz_2_left_on_q1_right = g2_a2_left * minus_rate_dot_2_left;
+        let t1_platform = acceleration[1] + 9.81;
+        let m_platform_on_q1_left = vy_by_a1 * t1_platform
+            - minus_vx_by_a1 * acceleration[0];
+        let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
+        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left + L_1 * rate_dot_1_left;
+        let m_platform_on_q1_right = vx_by_a2 * acceleration[0]
+            - minus_vy_by_a2 * t1_platform;
+        let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
+        let a2_x_left = c2_left * (a1_x_left - l_1_rate_1_squared_left)
+            + s2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        let k2_right = INV_L_2 * inv_s2_right;
+        let minus_g2_vx_right = c1_right * k2_right;
+        let minus_g2_vy_right = s1_right * k2_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t115 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t121 = 0.2 * (rate_1_right * rate_1_right);
-        let rate_dot_1_right = t48
-            * (c12_right * acceleration[0] + s12_right * acceleration[1] + t115
-                + t121 * c2_right);
-        let t125 = 9.81 * c1_right;
-        let t126 = 9.81 * s1_right;
-        let t130 = minus_g2_vx_right * t55 - minus_g2_vy_right * t57;
-        let t134 = c1_right * acceleration[0] + s1_right * acceleration[1] + t121;
-        let minus_rate_dot_2_right = t108 * (t134 + c2_right * t115);
-        let t138 = t130 * minus_rate_dot_2_right;
-        let t141 = minus_g2_vy_right * t68 - minus_g2_vx_right * t70;
-        let t142 = t141 * minus_rate_dot_2_right;
-        let t146 = t125 + 0.2 * rate_dot_1_right;
-        let t155 = c2_right * (t126 - t121) + s2_right * t146;
-        let t161 = rate_1_right + minus_rate_2_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let rate_dot_1_right = k1_right
+            * (a_on_f1_right + l_1_rate_1_squared_right * c2_right);
+        let a1_y_right = 9.81 * c1_right;
+        let a1_x_right = 9.81 * s1_right;
+        let g2_a1_right = minus_g2_vx_right * minus_vx_by_a1
+            - minus_g2_vy_right * vy_by_a1;
+        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
+            + l_1_rate_1_squared_right;
+        let minus_rate_dot_2_right = k2_right
+            * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
+        let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
+        let g2_a2_right = minus_g2_vy_right * minus_vy_by_a2
+            - minus_g2_vx_right * vx_by_a2;
+        let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
+        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+        let a2_x_right = c2_right * (a1_x_right - l_1_rate_1_squared_right)
+            + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
-                rate_dot_1_left, t34, -t35, rate_dot_1_left, rate_1_left,
-                ::overact::math::sign(rate_1_left), 1.0, -t67,
-                t78 - 0.16 * (5.0 * t80 - 1.5625 * t67), 0.8 * t63 - t59 * t96, 0.2 * t80,
-                -::overact::math::signed(t59 - 1.0, t102), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t138,
-                t78 + 0.25 * t138, -(t130 * t155), 0.0, -::overact::math::signed(t130, t161), t77,
+                rate_dot_1_left, a1_y_left, -a1_x_left, rate_dot_1_left, rate_1_left,
+                ::overact::math::sign(rate_1_left), 1.0, -minus_zz_2_left_on_q1_left,
+                inv_l_2_m_platform_on_q1_left
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_left
+                            - 1.5625 * minus_zz_2_left_on_q1_left),
+                L_1_PER_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
+                L_1 * a1_y_plus_l_1_rate_dot_1_left,
+                -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left),
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -minus_zz_2_right_on_q1_left,
+                inv_l_2_m_platform_on_q1_left + L_2 * minus_zz_2_right_on_q1_left,
+                -(g2_a1_right * a2_x_right),
+                0.0,
+                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
+                m_platform_on_q1_left,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t73, t89 + 0.25 * t73, -(t72 * t96), 0.0,
-                -::overact::math::signed(t72, t102), rate_dot_1_right, t125, -t126,
-                rate_dot_1_right, rate_1_right, ::overact::math::sign(rate_1_right), 1.0, -t142,
-                t89 - 0.16 * (5.0 * t146 - 1.5625 * t142), 0.8 * t134 - t141 * t155, 0.2 * t146,
-                -::overact::math::signed(t141 - 1.0, t161), t88,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_left_on_q1_right,
+                inv_l_2_m_platform_on_q1_right + L_2 * minus_zz_2_left_on_q1_right,
+                -(g2_a2_left * a2_x_left), 0.0,
+                -::overact::math::signed(g2_a2_left, minus_qd_2_left), rate_dot_1_right, a1_y_right,
+                -a1_x_right, rate_dot_1_right, rate_1_right, ::overact::math::sign(rate_1_right),
+                1.0, -minus_zz_2_right_on_q1_right,
+                inv_l_2_m_platform_on_q1_right
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1 * a1_y_plus_l_1_rate_dot_1_right
+                            - 1.5625 * minus_zz_2_right_on_q1_right),
+                L_1_PER_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                L_1 * a1_y_plus_l_1_rate_dot_1_right,
+                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
+                m_platform_on_q1_right,
             ],
         ])
     }
@@ -1413,127 +1956,203 @@ impl FiveBar {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 - pose[1] * t11;
-        let t14 = 49.05 * t13;
-        let t17 = pose[1] * t6 + t0 * t11;
-        let t18 = 49.05 * t17;
-        let t20 = t3 * t11;
-        ::overact::guard::leg(t20, 0.04998437255783052, "left")?;
-        let t21 = 1.0 / t20;
-        let g2_vy_left = t17 * t21;
-        let t23 = pose[0] - 0.1;
-        let t25 = t23 * t23 + t2;
-        let t26 = 1.0 / t25;
-        let t28 = 0.5 - 0.01125 * t26;
-        let t32 = 0.04 * t26 - t28 * t28;
-        ::overact::guard::reach(t32, "right")?;
-        let t33 = ::overact::math::sqrt(t32);
-        let t35 = t23 * t28 + pose[1] * t33;
-        let t37 = t25 * t33;
-        ::overact::guard::leg(t37, 0.04998437255783052, "right")?;
-        let t38 = 1.0 / t37;
-        let g1_vx_right = (t23 - t35) * t38;
-        let minus_g1_vx_left = (t0 - t13) * t21;
-        let t44 = pose[1] * t28 - t23 * t33;
-        let g1_vy_right = (pose[1] - t44) * t38;
-        let minus_g1_vy_left = (pose[1] - t17) * t21;
-        let t51 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(t51, 22.615508735629323, "kept actuators")?;
-        ::overact::guard::platform(t51, 22.615508735629323, "kept actuators")?;
-        let t52 = 1.0 / t51;
-        let t53 = g1_vx_right * t52;
-        let g2_vx_left = t13 * t21;
-        let t56 = g1_vy_right * t52;
-        let t58 = g2_vy_left * t53 - g2_vx_left * t56;
-        let t61 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t61, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(t61, 35.707722858788905, "actuators")?;
-        let t62 = 1.0 / t61;
-        let minus_g2_vx_right = t35 * t38;
-        let t66 = g1_vx_right * actuator_velocities[1]
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 5.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_1² / l_2
+        const L_1_SQUARED_PER_L_2: ::core::primitive::f64 = 0.16;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let g2_vy_left = l1_y_left * k_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l2_x_left = d_x_left - l1_x_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let vy_by_a1 = g1_vx_right * inv_det_ja;
+        let g2_vx_left = l1_x_left * k_left;
+        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+        let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let t1 = g1_vx_right * actuator_velocities[1]
             - minus_g1_vx_left * actuator_velocities[0];
-        let t70 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t71 = t70 * t62;
-        let t76 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t70 * t71;
-        ::overact::guard::platform(t76, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(t76, 14.323546684675748, "actuators")?;
-        let t77 = 1.0 / t76;
-        let t83 = t77
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let vy = inv_pivot_2
             * (g1_vy_right * actuator_velocities[1]
-                - minus_g1_vy_left * actuator_velocities[0] - t66 * t71);
-        let t85 = t66 * t62 - t71 * t83;
-        let minus_g2_vy_right = t44 * t38;
-        let minus_rate_2_right = minus_g2_vx_right * t85 + minus_g2_vy_right * t83;
-        let t90 = minus_rate_2_right * minus_rate_2_right;
-        let t92 = actuator_velocities[1] * actuator_velocities[1];
-        let t93 = t25 - 0.1025;
-        let t94 = 0.5 * t93;
-        let rate_dot_1_right = t38 * (0.0625 * t90 + t92 * t94);
-        let t98 = actuator_accelerations[1] - rate_dot_1_right;
-        let rate_2_left = g2_vx_left * t85 + g2_vy_left * t83;
-        let t103 = rate_2_left * rate_2_left;
-        let t105 = actuator_velocities[0] * actuator_velocities[0];
-        let t106 = t3 - 0.1025;
-        let t107 = 0.5 * t106;
-        let minus_rate_dot_1_left = t21 * (0.0625 * t103 + t105 * t107);
-        let t111 = actuator_accelerations[0] + minus_rate_dot_1_left;
-        let t113 = g1_vx_right * t98 - minus_g1_vx_left * t111;
-        let t120 = t77 * (g1_vy_right * t98 - minus_g1_vy_left * t111 - t71 * t113);
-        let t122 = t62 * t113 - t71 * t120;
-        let t127 = t13 * t122 + t17 * t120 + 0.04 * t105;
-        let rate_dot_2_left = t21 * (t127 + t103 * t107);
-        let t131 = t58 * rate_dot_2_left;
-        let t132 = t21 * t52;
-        let t133 = t132 * rate_dot_2_left;
-        let t134 = t120 + 9.81;
-        let t137 = t53 * t134 - t56 * t122;
-        let t138 = 4.0 * t137;
-        let t140 = t14 + 0.2 * actuator_accelerations[0];
-        let t146 = minus_g1_vx_left * t52;
-        let t148 = minus_g1_vy_left * t52;
-        let t150 = t146 * t134 - t148 * t122;
-        let t151 = 4.0 * t150;
-        let c2_left = 10.0 * t106;
-        let minus_s2_left = 20.0 * t20;
-        let t161 = c2_left * (t18 - 0.2 * t105) - minus_s2_left * t140;
-        let t167 = rate_2_left - actuator_velocities[0];
-        let t170 = 49.05 * t35;
-        let t171 = 49.05 * t44;
-        let t173 = t38 * t52;
-        let t178 = t35 * t122 + t44 * t120 + 0.04 * t92;
-        let minus_rate_dot_2_right = t38 * (t178 + t90 * t94);
-        let t182 = t173 * minus_rate_dot_2_right;
-        let t185 = minus_g2_vx_right * t148 - minus_g2_vy_right * t146;
-        let t186 = t185 * minus_rate_dot_2_right;
-        let t190 = t170 + 0.2 * actuator_accelerations[1];
-        let c2_right = 10.0 * t93;
-        let s2_right = 20.0 * t37;
-        let t202 = c2_right * (t171 - 0.2 * t92) + s2_right * t190;
-        let t208 = actuator_velocities[1] + minus_rate_2_right;
+                - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1);
+        let vx = t1 * inv_pivot_1 - l_2_1 * vy;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        // --- left
+        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_left;
+        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
+        let dvy = inv_pivot_2
+            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
+                - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2);
+        let dvx = inv_pivot_1 * t2 - l_2_1 * dvy;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
+            + minus_bias_a_on_f2_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
+        let g2_a2_left = k_left * inv_det_ja;
+        let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
+        let t1_platform = dvy + 9.81;
+        let m_platform_on_q1_left = vy_by_a1 * t1_platform - minus_vx_by_a1 * dvx;
+        let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
+        let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+            + L_1 * actuator_accelerations[0];
+        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+        let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+        let m_platform_on_q1_right = vy_by_a2 * t1_platform - minus_vx_by_a2 * dvx;
+        let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
+        let c2_left = INV_HALF * t2_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
+        let qd_2_left = rate_2_left - actuator_velocities[0];
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let g2_a1_right = k_right * inv_det_ja;
+        // --- right
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
+            + minus_bias_a_on_f2_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
+        let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
+            - minus_g2_vy_right * vy_by_a2;
+        let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
+        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+            + L_1 * actuator_accelerations[1];
+        let c2_right = INV_HALF * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * bias_a1_y_plus_l_1_qdd1_right;
+        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
-                actuator_accelerations[0], t14, -t18, actuator_accelerations[0],
-                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, t131,
-                t138 - 0.16 * (5.0 * t140 + 1.5625 * t131), 4.0 * t127 - t58 * t161, 0.2 * t140,
-                ::overact::math::signed(t58 - 1.0, t167), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t182,
-                t138 + 0.25 * t182, -(t173 * t202), 0.0, -::overact::math::signed(t173, t208), t137,
+                actuator_accelerations[0], bias_a1_y_left, -bias_a1_x_left,
+                actuator_accelerations[0], actuator_velocities[0],
+                ::overact::math::sign(actuator_velocities[0]), 1.0, zz_2_left_on_q1_left,
+                inv_l_2_m_platform_on_q1_left
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_left
+                            + 1.5625 * zz_2_left_on_q1_left),
+                INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
+                L_1 * bias_a1_y_plus_l_1_qdd1_left,
+                ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -minus_zz_2_right_on_q1_left,
+                inv_l_2_m_platform_on_q1_left + L_2 * minus_zz_2_right_on_q1_left,
+                -(g2_a1_right * a2_x_right),
+                0.0,
+                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
+                m_platform_on_q1_left,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t133, t151 - 0.25 * t133, -(t132 * t161), 0.0,
-                ::overact::math::signed(t132, t167), actuator_accelerations[1], t170, -t171,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
+                inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
+                -(g2_a2_left * a2_x_left), 0.0, ::overact::math::signed(g2_a2_left, qd_2_left),
+                actuator_accelerations[1], bias_a1_y_right, -bias_a1_x_right,
                 actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -t186,
-                t151 - 0.16 * (5.0 * t190 - 1.5625 * t186), 4.0 * t178 - t185 * t202, 0.2 * t190,
-                -::overact::math::signed(t185 - 1.0, t208), t150,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -minus_zz_2_right_on_q1_right,
+                inv_l_2_m_platform_on_q1_right
+                    - L_1_SQUARED_PER_L_2
+                        * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_right
+                            - 1.5625 * minus_zz_2_right_on_q1_right),
+                INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                L_1 * bias_a1_y_plus_l_1_qdd1_right,
+                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
+                m_platform_on_q1_right,
             ],
         ])
     }
@@ -1556,105 +2175,141 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        let t1 = pose[0] + 0.1;
-        let t3 = pose[1] * pose[1];
-        let t4 = t1 * t1 + t3;
-        let t6 = 0.5 - 0.01125 / t4;
-        let t10 = 0.04 / t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t1 * t6 - pose[1] * t11;
-        let t14 = t1 - t13;
-        let t15 = t4 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let t16 = 1.0 / t15;
-        let minus_g1_vx_left = t14 * t16;
-        let t21 = pose[1] * t6 + t1 * t11;
-        let t22 = pose[1] - t21;
-        let g2_vx_left = t13 * t16;
-        let g2_vy_left = t21 * t16;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t30 = rate_2_left * rate_2_left;
-        let minus_g1_vy_left = t22 * t16;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let t37 = minus_rate_1_left * minus_rate_1_left;
-        let t38 = t4 - 0.1025;
-        let t39 = 0.5 * t38;
-        let minus_rate_dot_1_left = t16
-            * (t14 * acceleration[0] + t22 * acceleration[1] + 0.0625 * t30 + t37 * t39);
-        let t45 = pose[0] - 0.1;
-        let t47 = t45 * t45 + t3;
-        let t49 = 0.5 - 0.01125 / t47;
-        let t53 = 0.04 / t47 - t49 * t49;
-        ::overact::guard::reach(t53, "right")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let t56 = t45 * t49 + pose[1] * t54;
-        let t57 = t45 - t56;
-        let t58 = t47 * t54;
-        ::overact::guard::leg(t58, 0.04998437255783052, "right")?;
-        let t59 = 1.0 / t58;
-        let g1_vx_right = t57 * t59;
-        let t64 = pose[1] * t49 - t45 * t54;
-        let t65 = pose[1] - t64;
-        let minus_g2_vx_right = t56 * t59;
-        let minus_g2_vy_right = t64 * t59;
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let minus_rate_dot_1_left = k_left
+            * (a_on_f1_left + rate_1_squared_left * t3_left);
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t73 = minus_rate_2_right * minus_rate_2_right;
-        let g1_vy_right = t65 * t59;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_right;
+        let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t80 = rate_1_right * rate_1_right;
-        let t81 = t47 - 0.1025;
-        let t82 = 0.5 * t81;
-        let rate_dot_1_right = t59
-            * (t57 * acceleration[0] + t65 * acceleration[1] + 0.0625 * t73 + t80 * t82);
-        let t88 = 49.05 * t13;
-        let t91 = 49.05 * t56;
-        let t94 = 49.05 * t21;
-        let t97 = 49.05 * t64;
-        let t112 = t13 * acceleration[0] + t21 * acceleration[1] + 0.04 * t37;
-        let rate_dot_2_left = t16 * (t112 + t30 * t39);
-        let t122 = t56 * acceleration[0] + t64 * acceleration[1] + 0.04 * t80;
-        let minus_rate_dot_2_right = t59 * (t122 + t73 * t82);
-        let t128 = 4.0 * t112;
-        let c2_left = 10.0 * t38;
-        let minus_s2_left = 20.0 * t15;
-        let t138 = c2_left * (t94 - 0.2 * t37)
-            - minus_s2_left * (t88 - 0.2 * minus_rate_dot_1_left);
-        let t144 = 4.0 * t122;
-        let c2_right = 10.0 * t81;
-        let s2_right = 20.0 * t58;
-        let t154 = c2_right * (t97 - 0.2 * t80)
-            + s2_right * (t91 + 0.2 * rate_dot_1_right);
-        let t161 = minus_rate_1_left + rate_2_left;
-        let t166 = rate_1_right + minus_rate_2_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let rate_dot_1_right = k_right
+            * (a_on_f1_right + rate_1_squared_right * t3_right);
+        let a1_y_left = 49.05 * l1_x_left;
+        let a1_y_right = 49.05 * l1_x_right;
+        let a1_x_left = 49.05 * l1_y_left;
+        let a1_x_right = 49.05 * l1_y_right;
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        // --- left
+        let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
+        let c2_left = INV_HALF * t2_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+        // --- right
+        let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
+        let c2_right = INV_HALF * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+        let gq2_vx_left = minus_g1_vx_left + g2_vx_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let gq2_vy_left = minus_g1_vy_left + g2_vy_left;
+        let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
         ::core::result::Result::Ok([
             [
                 acceleration[0], minus_g1_vx_left * minus_rate_dot_1_left,
-                g1_vx_right * rate_dot_1_right, -(minus_g1_vx_left * t88), g1_vx_right * t91,
-                minus_g1_vx_left * t94, -(g1_vx_right * t97), minus_g1_vx_left * minus_rate_1_left,
-                g1_vx_right * rate_1_right,
+                g1_vx_right * rate_dot_1_right, -(minus_g1_vx_left * a1_y_left),
+                g1_vx_right * a1_y_right, minus_g1_vx_left * a1_x_left, -(g1_vx_right * a1_x_right),
+                minus_g1_vx_left * minus_rate_1_left, g1_vx_right * rate_1_right,
                 ::overact::math::signed(minus_g1_vx_left, minus_rate_1_left),
                 ::overact::math::signed(g1_vx_right, rate_1_right), -minus_g1_vx_left, g1_vx_right,
                 g2_vx_left * rate_dot_2_left, minus_g2_vx_right * minus_rate_dot_2_right,
-                -(minus_g1_vx_left * t128 + g2_vx_left * t138),
-                g1_vx_right * t144 + minus_g2_vx_right * t154,
-                ::overact::math::signed(minus_g1_vx_left + g2_vx_left, t161),
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t166),
+                -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                    + g2_vx_left * a2_x_left),
+                g1_vx_right * minus_inv_l_2_a_on_f2_right
+                    + minus_g2_vx_right * a2_x_right,
+                ::overact::math::signed(gq2_vx_left, qd_2_left),
+                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
             ],
             [
                 acceleration[1] + 9.81, minus_g1_vy_left * minus_rate_dot_1_left,
-                g1_vy_right * rate_dot_1_right, -(minus_g1_vy_left * t88), g1_vy_right * t91,
-                minus_g1_vy_left * t94, -(g1_vy_right * t97), minus_g1_vy_left * minus_rate_1_left,
-                g1_vy_right * rate_1_right,
+                g1_vy_right * rate_dot_1_right, -(minus_g1_vy_left * a1_y_left),
+                g1_vy_right * a1_y_right, minus_g1_vy_left * a1_x_left, -(g1_vy_right * a1_x_right),
+                minus_g1_vy_left * minus_rate_1_left, g1_vy_right * rate_1_right,
                 ::overact::math::signed(minus_g1_vy_left, minus_rate_1_left),
                 ::overact::math::signed(g1_vy_right, rate_1_right), -minus_g1_vy_left, g1_vy_right,
                 g2_vy_left * rate_dot_2_left, minus_g2_vy_right * minus_rate_dot_2_right,
-                -(minus_g1_vy_left * t128 + g2_vy_left * t138),
-                g1_vy_right * t144 + minus_g2_vy_right * t154,
-                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t161),
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t166),
+                -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                    + g2_vy_left * a2_x_left),
+                g1_vy_right * minus_inv_l_2_a_on_f2_right
+                    + minus_g2_vy_right * a2_x_right,
+                ::overact::math::signed(gq2_vy_left, qd_2_left),
+                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
             ],
         ])
     }
@@ -1679,82 +2334,113 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 5.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / l_2
+        const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        // --- sines and cosines
         let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3],
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let t11 = 5.0 / s2_left;
-        let g1_vx_left = c12_left * t11;
-        let t16 = t11 * 0.8;
-        let minus_g2_vx_left = c1_left * t16;
-        let minus_g2_vy_left = s1_left * t16;
+        let k1_left = INV_L_1 / s2_left;
+        let g1_vx_left = c12_left * k1_left;
+        let k2_left = k1_left * L_1_PER_L_2;
+        let minus_g2_vx_left = c1_left * k2_left;
+        let minus_g2_vy_left = s1_left * k2_left;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t23 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
-        let t24 = c12_left * acceleration[0] + s12_left * acceleration[1] + t23;
-        let g1_vy_left = s12_left * t11;
+        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
+        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
+            + l_2_rate_2_squared_left;
+        let g1_vy_left = s12_left * k1_left;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t30 = 0.2 * (rate_1_left * rate_1_left);
-        let rate_dot_1_left = t11 * (t24 + c2_left * t30);
+        let rate_1_squared_left = rate_1_left * rate_1_left;
+        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+        let rate_dot_1_left = k1_left
+            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+        // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let t46 = 5.0 / s2_right;
-        let g1_vx_right = c12_right * t46;
-        let t51 = t46 * 0.8;
-        let minus_g2_vx_right = c1_right * t51;
-        let minus_g2_vy_right = s1_right * t51;
+        let k1_right = INV_L_1 / s2_right;
+        let g1_vx_right = c12_right * k1_right;
+        let k2_right = k1_right * L_1_PER_L_2;
+        let minus_g2_vx_right = c1_right * k2_right;
+        let minus_g2_vy_right = s1_right * k2_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t58 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
-        let t59 = c12_right * acceleration[0] + s12_right * acceleration[1] + t58;
-        let g1_vy_right = s12_right * t46;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
+        let g1_vy_right = s12_right * k1_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t65 = 0.2 * (rate_1_right * rate_1_right);
-        let rate_dot_1_right = t46 * (t59 + c2_right * t65);
-        let t71 = 9.81 * c1_left;
-        let t74 = 9.81 * c1_right;
-        let t77 = 9.81 * s1_left;
-        let t80 = 9.81 * s1_right;
-        let t94 = c1_left * acceleration[0] + s1_left * acceleration[1] + t30;
-        let minus_rate_dot_2_left = t16 * (t94 + t23 * c2_left);
-        let t103 = c1_right * acceleration[0] + s1_right * acceleration[1] + t65;
-        let minus_rate_dot_2_right = t51 * (t103 + t58 * c2_right);
-        let t109 = 0.8 * t94;
-        let t112 = t24 + s12_left * 9.81;
-        let t118 = 0.8 * t103;
-        let t121 = t59 + s12_right * 9.81;
-        let t128 = rate_1_left + minus_rate_2_left;
-        let t133 = rate_1_right + minus_rate_2_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let rate_dot_1_right = k1_right
+            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
+        let a1_y_left = 9.81 * c1_left;
+        let a1_y_right = 9.81 * c1_right;
+        let a1_x_left = 9.81 * s1_left;
+        let a1_x_right = 9.81 * s1_right;
+        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
+            + l_1_rate_1_squared_left;
+        let minus_rate_dot_2_left = k2_left
+            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
+            + l_1_rate_1_squared_right;
+        let minus_rate_dot_2_right = k2_right
+            * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
+        let minus_l_1_per_l_2_a_on_f2_left = L_1_PER_L_2 * minus_a_on_f2_left;
+        let a2_x_left = a_on_f1_left + s12_left * 9.81;
+        let minus_l_1_per_l_2_a_on_f2_right = L_1_PER_L_2 * minus_a_on_f2_right;
+        let a2_x_right = a_on_f1_right + s12_right * 9.81;
+        let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
+        let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
         ::core::result::Result::Ok([
             [
                 acceleration[0], g1_vx_left * rate_dot_1_left, g1_vx_right * rate_dot_1_right,
-                g1_vx_left * t71, g1_vx_right * t74, -(g1_vx_left * t77), -(g1_vx_right * t80),
-                g1_vx_left * rate_1_left, g1_vx_right * rate_1_right,
+                g1_vx_left * a1_y_left, g1_vx_right * a1_y_right, -(g1_vx_left * a1_x_left),
+                -(g1_vx_right * a1_x_right), g1_vx_left * rate_1_left, g1_vx_right * rate_1_right,
                 ::overact::math::signed(g1_vx_left, rate_1_left),
                 ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_left, g1_vx_right,
                 minus_g2_vx_left * minus_rate_dot_2_left,
                 minus_g2_vx_right * minus_rate_dot_2_right,
-                g1_vx_left * t109 + minus_g2_vx_left * t112,
-                g1_vx_right * t118 + minus_g2_vx_right * t121,
-                ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t128),
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t133),
+                g1_vx_left * minus_l_1_per_l_2_a_on_f2_left
+                    + minus_g2_vx_left * a2_x_left,
+                g1_vx_right * minus_l_1_per_l_2_a_on_f2_right
+                    + minus_g2_vx_right * a2_x_right,
+                ::overact::math::signed(minus_gq2_vx_left, minus_qd_2_left),
+                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
             ],
             [
                 acceleration[1] + 9.81, g1_vy_left * rate_dot_1_left,
-                g1_vy_right * rate_dot_1_right, g1_vy_left * t71, g1_vy_right * t74,
-                -(g1_vy_left * t77), -(g1_vy_right * t80), g1_vy_left * rate_1_left,
+                g1_vy_right * rate_dot_1_right, g1_vy_left * a1_y_left, g1_vy_right * a1_y_right,
+                -(g1_vy_left * a1_x_left), -(g1_vy_right * a1_x_right), g1_vy_left * rate_1_left,
                 g1_vy_right * rate_1_right, ::overact::math::signed(g1_vy_left, rate_1_left),
                 ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_left, g1_vy_right,
                 minus_g2_vy_left * minus_rate_dot_2_left,
                 minus_g2_vy_right * minus_rate_dot_2_right,
-                g1_vy_left * t109 + minus_g2_vy_left * t112,
-                g1_vy_right * t118 + minus_g2_vy_right * t121,
-                ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t128),
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t133),
+                g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
+                    + minus_g2_vy_left * a2_x_left,
+                g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
+                    + minus_g2_vy_right * a2_x_right,
+                ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left),
+                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
             ],
         ])
     }
@@ -1780,116 +2466,157 @@ impl FiveBar {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] - 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t5 = 0.5 - 0.01125 / t3;
-        let t9 = 0.04 / t3 - t5 * t5;
-        ::overact::guard::reach(t9, "right")?;
-        let t10 = ::overact::math::sqrt(t9);
-        let t12 = t0 * t5 + pose[1] * t10;
-        let t13 = t3 * t10;
-        ::overact::guard::leg(t13, 0.04998437255783052, "right")?;
-        let t14 = 1.0 / t13;
-        let minus_g2_vx_right = t12 * t14;
-        let t16 = t0 * t14;
-        let g1_vx_right = t16 - minus_g2_vx_right;
-        let t18 = g1_vx_right * actuator_velocities[1];
-        let t19 = pose[0] + 0.1;
-        let t21 = t19 * t19 + t2;
-        let t23 = 0.5 - 0.01125 / t21;
-        let t27 = 0.04 / t21 - t23 * t23;
-        ::overact::guard::reach(t27, "left")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t30 = t19 * t23 - pose[1] * t28;
-        let t31 = t21 * t28;
-        ::overact::guard::leg(t31, 0.04998437255783052, "left")?;
-        let t32 = 1.0 / t31;
-        let g2_vx_left = t30 * t32;
-        let t34 = t19 * t32;
-        let minus_g1_vx_left = t34 - g2_vx_left;
-        let t36 = minus_g1_vx_left * actuator_velocities[0];
-        let t37 = t18 - t36;
-        let t40 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t40, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(t40, 35.707722858788905, "actuators")?;
-        let t44 = pose[1] * t23 + t19 * t28;
-        let g2_vy_left = t44 * t32;
-        let t46 = pose[1] * t32;
-        let minus_g1_vy_left = t46 - g2_vy_left;
-        let t51 = pose[1] * t5 - t0 * t10;
-        let minus_g2_vy_right = t51 * t14;
-        let t53 = pose[1] / t13;
-        let g1_vy_right = t53 - minus_g2_vy_right;
-        let t56 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t57 = t56 / t40;
-        let t58 = g1_vy_right * actuator_velocities[1];
-        let t59 = minus_g1_vy_left * actuator_velocities[0];
-        let t67 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t56 * t57;
-        ::overact::guard::platform(t67, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(t67, 14.323546684675748, "actuators")?;
-        let t68 = (t58 - t59 - t37 * t57) / t67;
-        let t70 = t37 / t40 - t57 * t68;
-        let minus_rate_2_right = minus_g2_vx_right * t70 + minus_g2_vy_right * t68;
-        let t74 = minus_rate_2_right * minus_rate_2_right;
-        let t76 = actuator_velocities[1] * actuator_velocities[1];
-        let t78 = 0.5 * (t3 - 0.1025);
-        let rate_dot_1_right = t14 * (0.0625 * t74 + t76 * t78);
-        let t82 = actuator_accelerations[1] - rate_dot_1_right;
-        let rate_2_left = g2_vx_left * t70 + g2_vy_left * t68;
-        let t87 = rate_2_left * rate_2_left;
-        let t89 = actuator_velocities[0] * actuator_velocities[0];
-        let t91 = 0.5 * (t21 - 0.1025);
-        let minus_rate_dot_1_left = t32 * (0.0625 * t87 + t89 * t91);
-        let t95 = actuator_accelerations[0] + minus_rate_dot_1_left;
-        let t97 = g1_vx_right * t82 - minus_g1_vx_left * t95;
-        let t104 = (g1_vy_right * t82 - minus_g1_vy_left * t95 - t57 * t97) / t67;
-        let t106 = t97 / t40 - t57 * t104;
-        let t112 = 49.05 * t30;
-        let t115 = 49.05 * t12;
-        let t118 = 49.05 * t44;
-        let t121 = 49.05 * t51;
-        let t132 = t30 * t106 + t44 * t104 + 0.04 * t89;
-        let rate_dot_2_left = t32 * (t132 + t87 * t91);
-        let t142 = t12 * t106 + t51 * t104 + 0.04 * t76;
-        let minus_rate_dot_2_right = t14 * (t142 + t74 * t78);
-        let t148 = 4.0 * t132;
-        let c2_left = t91 * 20.0;
-        let minus_s2_left = 20.0 * t31;
-        let t158 = c2_left * (t118 - 0.2 * t89)
-            - minus_s2_left * (t112 + 0.2 * actuator_accelerations[0]);
-        let t164 = 4.0 * t142;
-        let c2_right = t78 * 20.0;
-        let s2_right = 20.0 * t13;
-        let t174 = c2_right * (t121 - 0.2 * t76)
-            + s2_right * (t115 + 0.2 * actuator_accelerations[1]);
-        let t180 = rate_2_left - actuator_velocities[0];
-        let t183 = actuator_velocities[1] + minus_rate_2_right;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_gq2_vx_right = d_x_right * k_right;
+        let g1_vx_right = minus_gq2_vx_right - minus_g2_vx_right;
+        let fv_1_right_on_vx = g1_vx_right * actuator_velocities[1];
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let gq2_vx_left = d_x_left * k_left;
+        let minus_g1_vx_left = gq2_vx_left - g2_vx_left;
+        let minus_fv_1_left_on_vx = minus_g1_vx_left * actuator_velocities[0];
+        let t1 = fv_1_right_on_vx - minus_fv_1_left_on_vx;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let gq2_vy_left = pose[1] * k_left;
+        let minus_g1_vy_left = gq2_vy_left - g2_vy_left;
+        // --- right
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_gq2_vy_right = pose[1] / det_right;
+        let g1_vy_right = minus_gq2_vy_right - minus_g2_vy_right;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 / s_1_1;
+        let fv_1_right_on_vy = g1_vy_right * actuator_velocities[1];
+        let minus_fv_1_left_on_vy = minus_g1_vy_left * actuator_velocities[0];
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        let vy = (fv_1_right_on_vy - minus_fv_1_left_on_vy - t1 * l_2_1) / pivot_2;
+        let vx = t1 / s_1_1 - l_2_1 * vy;
+        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        // --- left
+        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_left;
+        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
+        let dvy = (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2) / pivot_2;
+        let dvx = t2 / s_1_1 - l_2_1 * dvy;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
+            + minus_bias_a_on_f2_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
+            + minus_bias_a_on_f2_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
+        let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+        // --- right
+        let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
+        let c2_right = t2_right * L_1_PER_HALF_SQUARED;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+        let qd_2_left = rate_2_left - actuator_velocities[0];
+        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
-                t106, -(minus_g1_vx_left * actuator_accelerations[0]),
-                g1_vx_right * actuator_accelerations[1], -(minus_g1_vx_left * t112),
-                g1_vx_right * t115, minus_g1_vx_left * t118, -(g1_vx_right * t121), -t36, t18,
+                dvx, -(minus_g1_vx_left * actuator_accelerations[0]),
+                g1_vx_right * actuator_accelerations[1], -(minus_g1_vx_left * bias_a1_y_left),
+                g1_vx_right * bias_a1_y_right, minus_g1_vx_left * bias_a1_x_left,
+                -(g1_vx_right * bias_a1_x_right), -minus_fv_1_left_on_vx, fv_1_right_on_vx,
                 -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
                 ::overact::math::signed(g1_vx_right, actuator_velocities[1]), -minus_g1_vx_left,
                 g1_vx_right, g2_vx_left * rate_dot_2_left,
                 minus_g2_vx_right * minus_rate_dot_2_right,
-                -(minus_g1_vx_left * t148 + g2_vx_left * t158),
-                g1_vx_right * t164 + minus_g2_vx_right * t174, ::overact::math::signed(t34, t180),
-                ::overact::math::signed(t16, t183),
+                -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
+                    + g2_vx_left * a2_x_left),
+                g1_vx_right * minus_inv_l_2_a_on_f2_right
+                    + minus_g2_vx_right * a2_x_right,
+                ::overact::math::signed(gq2_vx_left, qd_2_left),
+                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
             ],
             [
-                t104 + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
-                g1_vy_right * actuator_accelerations[1], -(minus_g1_vy_left * t112),
-                g1_vy_right * t115, minus_g1_vy_left * t118, -(g1_vy_right * t121), -t59, t58,
+                dvy + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
+                g1_vy_right * actuator_accelerations[1], -(minus_g1_vy_left * bias_a1_y_left),
+                g1_vy_right * bias_a1_y_right, minus_g1_vy_left * bias_a1_x_left,
+                -(g1_vy_right * bias_a1_x_right), -minus_fv_1_left_on_vy, fv_1_right_on_vy,
                 -::overact::math::signed(minus_g1_vy_left, actuator_velocities[0]),
                 ::overact::math::signed(g1_vy_right, actuator_velocities[1]), -minus_g1_vy_left,
                 g1_vy_right, g2_vy_left * rate_dot_2_left,
                 minus_g2_vy_right * minus_rate_dot_2_right,
-                -(minus_g1_vy_left * t148 + g2_vy_left * t158),
-                g1_vy_right * t164 + minus_g2_vy_right * t174, ::overact::math::signed(t46, t180),
-                ::overact::math::signed(t53, t183),
+                -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
+                    + g2_vy_left * a2_x_left),
+                g1_vy_right * minus_inv_l_2_a_on_f2_right
+                    + minus_g2_vy_right * a2_x_right,
+                ::overact::math::signed(gq2_vy_left, qd_2_left),
+                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
             ],
         ])
     }
@@ -1912,106 +2639,138 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        let t0 = pose[0] - 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "right")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 + pose[1] * t11;
-        let t14 = t0 - t13;
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "right")?;
-        let t16 = 1.0 / t15;
-        let g1_vx_right = t14 * t16;
-        let t18 = pose[0] + 0.1;
-        let t20 = t18 * t18 + t2;
-        let t21 = 1.0 / t20;
-        let t23 = 0.5 - 0.01125 * t21;
-        let t27 = 0.04 * t21 - t23 * t23;
-        ::overact::guard::reach(t27, "left")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t30 = t18 * t23 - pose[1] * t28;
-        let t31 = t18 - t30;
-        let t32 = t20 * t28;
-        ::overact::guard::leg(t32, 0.04998437255783052, "left")?;
-        let t33 = 1.0 / t32;
-        let minus_g1_vx_left = t31 * t33;
-        let t37 = pose[1] * t6 - t0 * t11;
-        let t38 = pose[1] - t37;
-        let g1_vy_right = t38 * t16;
-        let t43 = pose[1] * t23 + t18 * t28;
-        let t44 = pose[1] - t43;
-        let minus_g1_vy_left = t44 * t33;
-        let t47 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(t47, 22.615508735629323, "kept actuators")?;
-        ::overact::guard::platform(t47, 22.615508735629323, "kept actuators")?;
-        let t48 = 1.0 / t47;
-        let t49 = g1_vx_right * t48;
-        let t50 = acceleration[1] + 9.81;
-        let t52 = g1_vy_right * t48;
-        let t55 = minus_g1_vx_left * t48;
-        let t57 = minus_g1_vy_left * t48;
-        let g2_vx_left = t30 * t33;
-        let g2_vy_left = t43 * t33;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let vy_by_a1 = g1_vx_right * inv_det_ja;
+        let t1_platform = acceleration[1] + 9.81;
+        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+        let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t68 = rate_2_left * rate_2_left;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let t74 = minus_rate_1_left * minus_rate_1_left;
-        let t75 = t20 - 0.1025;
-        let t76 = 0.5 * t75;
-        let minus_rate_dot_1_left = t33
-            * (t31 * acceleration[0] + t44 * acceleration[1] + 0.0625 * t68 + t74 * t76);
-        let minus_g2_vx_right = t13 * t16;
-        let minus_g2_vy_right = t37 * t16;
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let minus_rate_dot_1_left = k_left
+            * (a_on_f1_left + rate_1_squared_left * t3_left);
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t88 = minus_rate_2_right * minus_rate_2_right;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t94 = rate_1_right * rate_1_right;
-        let t95 = t3 - 0.1025;
-        let t96 = 0.5 * t95;
-        let rate_dot_1_right = t16
-            * (t14 * acceleration[0] + t38 * acceleration[1] + 0.0625 * t88 + t94 * t96);
-        let t100 = 49.05 * t30;
-        let t101 = 49.05 * t13;
-        let t102 = 49.05 * t43;
-        let t103 = 49.05 * t37;
-        let t108 = g2_vy_left * t49 - g2_vx_left * t52;
-        let t113 = t30 * acceleration[0] + t43 * acceleration[1] + 0.04 * t74;
-        let rate_dot_2_left = t33 * (t113 + t68 * t76);
-        let t118 = t33 * t48;
-        let t120 = t16 * t48;
-        let t125 = t13 * acceleration[0] + t37 * acceleration[1] + 0.04 * t94;
-        let minus_rate_dot_2_right = t16 * (t125 + t88 * t96);
-        let t132 = minus_g2_vx_right * t57 - minus_g2_vy_right * t55;
-        let c2_left = 10.0 * t75;
-        let minus_s2_left = 20.0 * t32;
-        let t143 = c2_left * (t102 - 0.2 * t74)
-            - minus_s2_left * (t100 - 0.2 * minus_rate_dot_1_left);
-        let c2_right = 10.0 * t95;
-        let s2_right = 20.0 * t15;
-        let t155 = c2_right * (t103 - 0.2 * t94)
-            + s2_right * (t101 + 0.2 * rate_dot_1_right);
-        let t161 = minus_rate_1_left + rate_2_left;
-        let t164 = rate_1_right + minus_rate_2_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let rate_dot_1_right = k_right
+            * (a_on_f1_right + rate_1_squared_right * t3_right);
+        let a1_y_left = 49.05 * l1_x_left;
+        let a1_y_right = 49.05 * l1_x_right;
+        let a1_x_left = 49.05 * l1_y_left;
+        let a1_x_right = 49.05 * l1_y_right;
+        let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let g2_a2_left = k_left * inv_det_ja;
+        let g2_a1_right = k_right * inv_det_ja;
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
+            - minus_g2_vy_right * vy_by_a2;
+        let c2_left = INV_HALF * t2_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+        let c2_right = INV_HALF * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
-                t49 * t50 - t52 * acceleration[0], -minus_rate_dot_1_left, 0.0, t100, 0.0, -t102,
-                0.0, -minus_rate_1_left, 0.0, -::overact::math::sign(minus_rate_1_left), 0.0, 1.0,
-                0.0, t108 * rate_dot_2_left, -(t120 * minus_rate_dot_2_right),
-                4.0 * t113 - t108 * t143, -(t120 * t155), ::overact::math::signed(t108 - 1.0, t161),
-                -::overact::math::signed(t120, t164),
+                vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0], -minus_rate_dot_1_left,
+                0.0, a1_y_left, 0.0, -a1_x_left, 0.0, -minus_rate_1_left, 0.0,
+                -::overact::math::sign(minus_rate_1_left), 0.0, 1.0, 0.0,
+                g2_a1_left * rate_dot_2_left, -(g2_a1_right * minus_rate_dot_2_right),
+                INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left, -(g2_a1_right * a2_x_right),
+                ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
+                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
             ],
             [
-                t55 * t50 - t57 * acceleration[0], 0.0, rate_dot_1_right, 0.0, t101, 0.0, -t103,
-                0.0, rate_1_right, 0.0, ::overact::math::sign(rate_1_right), 0.0, 1.0,
-                t118 * rate_dot_2_left, -(t132 * minus_rate_dot_2_right), -(t118 * t143),
-                4.0 * t125 - t132 * t155, ::overact::math::signed(t118, t161),
-                -::overact::math::signed(t132 - 1.0, t164),
+                vy_by_a2 * t1_platform - minus_vx_by_a2 * acceleration[0], 0.0, rate_dot_1_right,
+                0.0, a1_y_right, 0.0, -a1_x_right, 0.0, rate_1_right, 0.0,
+                ::overact::math::sign(rate_1_right), 0.0, 1.0, g2_a2_left * rate_dot_2_left,
+                -(g2_a2_right * minus_rate_dot_2_right), -(g2_a2_left * a2_x_left),
+                INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                ::overact::math::signed(g2_a2_left, qd_2_left),
+                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
             ],
         ])
     }
@@ -2036,85 +2795,119 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 5.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / l_2
+        const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        // --- sines and cosines
         let [(s1_right, c1_right), (s2_right, c2_right), (s1_left, c1_left),
         (s2_left, c2_left)] = ::overact::math::sin_cos_all([
             joints[2], joints[3], joints[0], joints[1],
         ]);
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+        // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let t10 = 1.0 / s2_right;
-        let t11 = 5.0 * t10;
-        let g1_vx_right = c12_right * t11;
+        let inv_s2_right = 1.0 / s2_right;
+        let k1_right = INV_L_1 * inv_s2_right;
+        let g1_vx_right = c12_right * k1_right;
+        // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let t23 = 1.0 / s2_left;
-        let t24 = 5.0 * t23;
-        let g1_vy_left = s12_left * t24;
-        let g1_vx_left = c12_left * t24;
-        let g1_vy_right = s12_right * t11;
-        let t30 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-        ::overact::guard::platform(t30, 22.615508735629227, "kept actuators")?;
-        ::overact::guard::platform(t30, 22.615508735629227, "kept actuators")?;
-        let t31 = 1.0 / t30;
-        let t32 = g1_vx_right * t31;
-        let t33 = acceleration[1] + 9.81;
-        let t35 = g1_vy_right * t31;
-        let t38 = g1_vy_left * t31;
-        let t40 = g1_vx_left * t31;
-        let t46 = 4.0 * t23;
-        let minus_g2_vx_left = c1_left * t46;
-        let minus_g2_vy_left = s1_left * t46;
+        let inv_s2_left = 1.0 / s2_left;
+        let k1_left = INV_L_1 * inv_s2_left;
+        let g1_vy_left = s12_left * k1_left;
+        let g1_vx_left = c12_left * k1_left;
+        let g1_vy_right = s12_right * k1_right;
+        let det_ja = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
+        ::overact::guard::platform(det_ja, 22.615508735629227, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 22.615508735629227, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let vy_by_a1 = g1_vx_right * inv_det_ja;
+        let t1_platform = acceleration[1] + 9.81;
+        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+        let vx_by_a2 = g1_vy_left * inv_det_ja;
+        let minus_vy_by_a2 = g1_vx_left * inv_det_ja;
+        let k2_left = INV_L_2 * inv_s2_left;
+        let minus_g2_vx_left = c1_left * k2_left;
+        let minus_g2_vy_left = s1_left * k2_left;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t53 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
+        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
+        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
+            + l_2_rate_2_squared_left;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t59 = 0.2 * (rate_1_left * rate_1_left);
-        let rate_dot_1_left = t24
-            * (c12_left * acceleration[0] + s12_left * acceleration[1] + t53
-                + c2_left * t59);
-        let t66 = 4.0 * t10;
-        let minus_g2_vx_right = c1_right * t66;
-        let minus_g2_vy_right = s1_right * t66;
+        let rate_1_squared_left = rate_1_left * rate_1_left;
+        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+        let rate_dot_1_left = k1_left
+            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+        // --- right
+        let k2_right = INV_L_2 * inv_s2_right;
+        let minus_g2_vx_right = c1_right * k2_right;
+        let minus_g2_vy_right = s1_right * k2_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t73 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t79 = 0.2 * (rate_1_right * rate_1_right);
-        let rate_dot_1_right = t11
-            * (c12_right * acceleration[0] + s12_right * acceleration[1] + t73
-                + t79 * c2_right);
-        let t83 = 9.81 * c1_left;
-        let t84 = 9.81 * c1_right;
-        let t85 = 9.81 * s1_left;
-        let t86 = 9.81 * s1_right;
-        let t91 = minus_g2_vx_left * t35 - minus_g2_vy_left * t32;
-        let t95 = c1_left * acceleration[0] + s1_left * acceleration[1] + t59;
-        let minus_rate_dot_2_left = t46 * (t95 + t53 * c2_left);
-        let t102 = minus_g2_vy_left * t40 - minus_g2_vx_left * t38;
-        let t106 = minus_g2_vx_right * t35 - minus_g2_vy_right * t32;
-        let t110 = c1_right * acceleration[0] + s1_right * acceleration[1] + t79;
-        let minus_rate_dot_2_right = t66 * (t110 + c2_right * t73);
-        let t117 = minus_g2_vy_right * t40 - minus_g2_vx_right * t38;
-        let t125 = c2_left * (t85 - t59) + s2_left * (t83 + 0.2 * rate_dot_1_left);
-        let t134 = c2_right * (t86 - t79) + s2_right * (t84 + 0.2 * rate_dot_1_right);
-        let t140 = rate_1_left + minus_rate_2_left;
-        let t143 = rate_1_right + minus_rate_2_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let rate_dot_1_right = k1_right
+            * (a_on_f1_right + l_1_rate_1_squared_right * c2_right);
+        let a1_y_left = 9.81 * c1_left;
+        let a1_y_right = 9.81 * c1_right;
+        let a1_x_left = 9.81 * s1_left;
+        let a1_x_right = 9.81 * s1_right;
+        let g2_a1_left = minus_g2_vx_left * minus_vx_by_a1 - minus_g2_vy_left * vy_by_a1;
+        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
+            + l_1_rate_1_squared_left;
+        let minus_rate_dot_2_left = k2_left
+            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+        let g2_a2_left = minus_g2_vy_left * minus_vy_by_a2 - minus_g2_vx_left * vx_by_a2;
+        let g2_a1_right = minus_g2_vx_right * minus_vx_by_a1
+            - minus_g2_vy_right * vy_by_a1;
+        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
+            + l_1_rate_1_squared_right;
+        let minus_rate_dot_2_right = k2_right
+            * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
+        let g2_a2_right = minus_g2_vy_right * minus_vy_by_a2
+            - minus_g2_vx_right * vx_by_a2;
+        let a2_x_left = c2_left * (a1_x_left - l_1_rate_1_squared_left)
+            + s2_left * (a1_y_left + L_1 * rate_dot_1_left);
+        let a2_x_right = c2_right * (a1_x_right - l_1_rate_1_squared_right)
+            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
-                t32 * t33 - t35 * acceleration[0], rate_dot_1_left, 0.0, t83, 0.0, -t85, 0.0,
-                rate_1_left, 0.0, ::overact::math::sign(rate_1_left), 0.0, 1.0, 0.0,
-                -(t91 * minus_rate_dot_2_left), -(t106 * minus_rate_dot_2_right),
-                0.8 * t95 - t91 * t125, -(t106 * t134), -::overact::math::signed(t91 - 1.0, t140),
-                -::overact::math::signed(t106, t143),
+                vy_by_a1 * t1_platform - minus_vx_by_a1 * acceleration[0], rate_dot_1_left, 0.0,
+                a1_y_left, 0.0, -a1_x_left, 0.0, rate_1_left, 0.0,
+                ::overact::math::sign(rate_1_left), 0.0, 1.0, 0.0,
+                -(g2_a1_left * minus_rate_dot_2_left), -(g2_a1_right * minus_rate_dot_2_right),
+                L_1_PER_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
+                -(g2_a1_right * a2_x_right),
+                -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left),
+                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
             ],
             [
-                t38 * acceleration[0] - t40 * t33, 0.0, rate_dot_1_right, 0.0, t84, 0.0, -t86, 0.0,
-                rate_1_right, 0.0, ::overact::math::sign(rate_1_right), 0.0, 1.0,
-                -(t102 * minus_rate_dot_2_left), -(t117 * minus_rate_dot_2_right), -(t102 * t125),
-                0.8 * t110 - t117 * t134, -::overact::math::signed(t102, t140),
-                -::overact::math::signed(t117 - 1.0, t143),
+                vx_by_a2 * acceleration[0] - minus_vy_by_a2 * t1_platform, 0.0, rate_dot_1_right,
+                0.0, a1_y_right, 0.0, -a1_x_right, 0.0, rate_1_right, 0.0,
+                ::overact::math::sign(rate_1_right), 0.0, 1.0,
+                -(g2_a2_left * minus_rate_dot_2_left), -(g2_a2_right * minus_rate_dot_2_right),
+                -(g2_a2_left * a2_x_left),
+                L_1_PER_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                -::overact::math::signed(g2_a2_left, minus_qd_2_left),
+                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
             ],
         ])
     }
@@ -2140,118 +2933,162 @@ impl FiveBar {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] - 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "right")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 + pose[1] * t11;
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "right")?;
-        let t16 = 1.0 / t15;
-        let g1_vx_right = (t0 - t13) * t16;
-        let t18 = pose[0] + 0.1;
-        let t20 = t18 * t18 + t2;
-        let t21 = 1.0 / t20;
-        let t23 = 0.5 - 0.01125 * t21;
-        let t27 = 0.04 * t21 - t23 * t23;
-        ::overact::guard::reach(t27, "left")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t30 = t18 * t23 - pose[1] * t28;
-        let t32 = t20 * t28;
-        ::overact::guard::leg(t32, 0.04998437255783052, "left")?;
-        let t33 = 1.0 / t32;
-        let minus_g1_vx_left = (t18 - t30) * t33;
-        let t37 = pose[1] * t6 - t0 * t11;
-        let g1_vy_right = (pose[1] - t37) * t16;
-        let t43 = pose[1] * t23 + t18 * t28;
-        let minus_g1_vy_left = (pose[1] - t43) * t33;
-        let t47 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(t47, 22.615508735629323, "kept actuators")?;
-        ::overact::guard::platform(t47, 22.615508735629323, "kept actuators")?;
-        let t48 = 1.0 / t47;
-        let t49 = g1_vx_right * t48;
-        let t55 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t58 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t58, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(t58, 35.707722858788905, "actuators")?;
-        let t59 = 1.0 / t58;
-        let t60 = t55 * t59;
-        let t62 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t55 * t60;
-        ::overact::guard::platform(t62, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(t62, 14.323546684675748, "actuators")?;
-        let t63 = 1.0 / t62;
-        let minus_g2_vx_right = t13 * t16;
-        let t67 = g1_vx_right * actuator_velocities[1]
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let vy_by_a1 = g1_vx_right * inv_det_ja;
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let t1 = g1_vx_right * actuator_velocities[1]
             - minus_g1_vx_left * actuator_velocities[0];
-        let t74 = t63
+        let vy = inv_pivot_2
             * (g1_vy_right * actuator_velocities[1]
-                - minus_g1_vy_left * actuator_velocities[0] - t67 * t60);
-        let t76 = t67 * t59 - t60 * t74;
-        let minus_g2_vy_right = t37 * t16;
-        let minus_rate_2_right = minus_g2_vx_right * t76 + minus_g2_vy_right * t74;
-        let t81 = minus_rate_2_right * minus_rate_2_right;
-        let t83 = actuator_velocities[1] * actuator_velocities[1];
-        let t84 = t3 - 0.1025;
-        let t85 = 0.5 * t84;
-        let rate_dot_1_right = t16 * (0.0625 * t81 + t83 * t85);
-        let t89 = actuator_accelerations[1] - rate_dot_1_right;
-        let g2_vx_left = t30 * t33;
-        let g2_vy_left = t43 * t33;
-        let rate_2_left = g2_vx_left * t76 + g2_vy_left * t74;
-        let t96 = rate_2_left * rate_2_left;
-        let t98 = actuator_velocities[0] * actuator_velocities[0];
-        let t99 = t20 - 0.1025;
-        let t100 = 0.5 * t99;
-        let minus_rate_dot_1_left = t33 * (0.0625 * t96 + t98 * t100);
-        let t104 = actuator_accelerations[0] + minus_rate_dot_1_left;
-        let t109 = g1_vx_right * t89 - minus_g1_vx_left * t104;
-        let t112 = t63 * (g1_vy_right * t89 - minus_g1_vy_left * t104 - t60 * t109);
-        let t113 = t112 + 9.81;
-        let t115 = g1_vy_right * t48;
-        let t118 = t59 * t109 - t60 * t112;
-        let t121 = minus_g1_vx_left * t48;
-        let t123 = minus_g1_vy_left * t48;
-        let t126 = 49.05 * t30;
-        let t127 = 49.05 * t13;
-        let t128 = 49.05 * t43;
-        let t129 = 49.05 * t37;
-        let t134 = g2_vy_left * t49 - g2_vx_left * t115;
-        let t139 = t30 * t118 + t43 * t112 + 0.04 * t98;
-        let rate_dot_2_left = t33 * (t139 + t96 * t100);
-        let t144 = t33 * t48;
-        let t146 = t16 * t48;
-        let t151 = t13 * t118 + t37 * t112 + 0.04 * t83;
-        let minus_rate_dot_2_right = t16 * (t151 + t81 * t85);
-        let t158 = minus_g2_vx_right * t123 - minus_g2_vy_right * t121;
-        let c2_left = 10.0 * t99;
-        let minus_s2_left = 20.0 * t32;
-        let t169 = c2_left * (t128 - 0.2 * t98)
-            - minus_s2_left * (t126 + 0.2 * actuator_accelerations[0]);
-        let c2_right = 10.0 * t84;
-        let s2_right = 20.0 * t15;
-        let t181 = c2_right * (t129 - 0.2 * t83)
-            + s2_right * (t127 + 0.2 * actuator_accelerations[1]);
-        let t187 = rate_2_left - actuator_velocities[0];
-        let t190 = actuator_velocities[1] + minus_rate_2_right;
+                - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1);
+        let vx = t1 * inv_pivot_1 - l_2_1 * vy;
+        // --- right
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        // --- left
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_left;
+        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
+        let dvy = inv_pivot_2
+            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
+                - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2);
+        let t1_platform = dvy + 9.81;
+        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
+        let dvx = inv_pivot_1 * t2 - l_2_1 * dvy;
+        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+        let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
+            + minus_bias_a_on_f2_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let g2_a2_left = k_left * inv_det_ja;
+        let g2_a1_right = k_right * inv_det_ja;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
+            + minus_bias_a_on_f2_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
+            - minus_g2_vy_right * vy_by_a2;
+        let c2_left = INV_HALF * t2_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+        let c2_right = INV_HALF * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+        let qd_2_left = rate_2_left - actuator_velocities[0];
+        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
         ::core::result::Result::Ok([
             [
-                t49 * t113 - t115 * t118, actuator_accelerations[0], 0.0, t126, 0.0, -t128, 0.0,
-                actuator_velocities[0], 0.0, ::overact::math::sign(actuator_velocities[0]), 0.0,
-                1.0, 0.0, t134 * rate_dot_2_left, -(t146 * minus_rate_dot_2_right),
-                4.0 * t139 - t134 * t169, -(t146 * t181), ::overact::math::signed(t134 - 1.0, t187),
-                -::overact::math::signed(t146, t190),
+                vy_by_a1 * t1_platform - minus_vx_by_a1 * dvx, actuator_accelerations[0], 0.0,
+                bias_a1_y_left, 0.0, -bias_a1_x_left, 0.0, actuator_velocities[0], 0.0,
+                ::overact::math::sign(actuator_velocities[0]), 0.0, 1.0, 0.0,
+                g2_a1_left * rate_dot_2_left, -(g2_a1_right * minus_rate_dot_2_right),
+                INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left, -(g2_a1_right * a2_x_right),
+                ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
+                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
             ],
             [
-                t121 * t113 - t123 * t118, 0.0, actuator_accelerations[1], 0.0, t127, 0.0, -t129,
-                0.0, actuator_velocities[1], 0.0, ::overact::math::sign(actuator_velocities[1]),
-                0.0, 1.0, t144 * rate_dot_2_left, -(t158 * minus_rate_dot_2_right), -(t144 * t169),
-                4.0 * t151 - t158 * t181, ::overact::math::signed(t144, t187),
-                -::overact::math::signed(t158 - 1.0, t190),
+                vy_by_a2 * t1_platform - minus_vx_by_a2 * dvx, 0.0, actuator_accelerations[1], 0.0,
+                bias_a1_y_right, 0.0, -bias_a1_x_right, 0.0, actuator_velocities[1], 0.0,
+                ::overact::math::sign(actuator_velocities[1]), 0.0, 1.0,
+                g2_a2_left * rate_dot_2_left, -(g2_a2_right * minus_rate_dot_2_right),
+                -(g2_a2_left * a2_x_left), INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                ::overact::math::signed(g2_a2_left, qd_2_left),
+                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
             ],
         ])
     }
@@ -2271,31 +3108,47 @@ impl FiveBar {
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t0 = pose[0] - 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "right")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "right")?;
-        let t16 = 1.0 / t15;
-        let g1_vx_right = (t0 - (t0 * t6 + pose[1] * t11)) * t16;
-        let t19 = pose[0] + 0.1;
-        let t21 = t19 * t19 + t2;
-        let t22 = 1.0 / t21;
-        let t24 = 0.5 - 0.01125 * t22;
-        let t28 = 0.04 * t22 - t24 * t24;
-        ::overact::guard::reach(t28, "left")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t33 = t21 * t29;
-        ::overact::guard::leg(t33, 0.04998437255783052, "left")?;
-        let t34 = 1.0 / t33;
-        let minus_g1_vx_left = (t19 - (t19 * t24 - pose[1] * t29)) * t34;
-        let g1_vy_right = (pose[1] - (pose[1] * t6 - t0 * t11)) * t16;
-        let minus_g1_vy_left = (pose[1] - (pose[1] * t24 + t19 * t29)) * t34;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         ::core::result::Result::Ok([
             g1_vx_right * torques[1] - minus_g1_vx_left * torques[0],
             g1_vy_right * torques[1] - minus_g1_vy_left * torques[0],
@@ -2337,134 +3190,173 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 - pose[1] * t11;
-        let t14 = t0 - t13;
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let t16 = 1.0 / t15;
-        let minus_g1_vx_left = t14 * t16;
-        let g2_vx_left = t13 * t16;
-        let t22 = pose[1] * t6 + t0 * t11;
-        let t26 = pose[1] - t22;
-        let minus_g1_vy_left = t26 * t16;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half
+        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let t30 = minus_rate_1_left * minus_rate_1_left;
-        let g2_vy_left = t22 * t16;
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t37 = rate_2_left * rate_2_left;
-        let t38 = t3 - 0.1025;
-        let t39 = 0.5 * t38;
-        let rate_dot_2_left = t16
-            * (t13 * acceleration[0] + t22 * acceleration[1] + 0.04 * t30 + t37 * t39);
-        let minus_s2_left = 20.0 * t15;
-        let t45 = 49.05 * t22;
-        let t47 = t45 - 0.2 * t30;
-        let c2_left = 10.0 * t38;
-        let t50 = 49.05 * t13;
-        let minus_rate_dot_1_left = t16
-            * (t14 * acceleration[0] + t26 * acceleration[1] + 0.0625 * t37 + t30 * t39);
-        let t60 = t50 - 0.2 * minus_rate_dot_1_left;
-        let t62 = minus_s2_left * t47 + c2_left * t60;
-        let t67 = c2_left * t47 - minus_s2_left * t60;
-        let t71 = ::overact::math::signed(
-            parameters[11],
-            minus_rate_1_left + rate_2_left,
-        );
-        let t72 = parameters[7] * rate_dot_2_left + parameters[8] * t62
-            - parameters[9] * t67 + t71;
-        let t85 = parameters[1] * t50 - parameters[0] * minus_rate_dot_1_left
-            - parameters[2] * t45 + parameters[6]
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a1_x_left = 49.05 * l1_y_left;
+        let a1_x_minus_l_1_rate_1_squared_left = a1_x_left - L_1 * rate_1_squared_left;
+        let c2_left = INV_HALF * t2_left;
+        let a1_y_left = 49.05 * l1_x_left;
+        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_left;
+        let minus_rate_dot_1_left = k_left
+            * (a_on_f1_left + rate_1_squared_left * t3_left);
+        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left - L_1 * minus_rate_dot_1_left;
+        let a2_y_left = minus_s2_left * a1_x_minus_l_1_rate_1_squared_left
+            + c2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let a2_x_left = c2_left * a1_x_minus_l_1_rate_1_squared_left
+            - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let moment2_z_left = parameters[7] * rate_dot_2_left + parameters[8] * a2_y_left
+            - parameters[9] * a2_x_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let moment1_z_left = parameters[1] * a1_y_left
+            - parameters[0] * minus_rate_dot_1_left - parameters[2] * a1_x_left;
+        let tau_1_left = parameters[6]
             - (parameters[3] * minus_rate_dot_1_left + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let t100 = 2.0 * t38
-            * (parameters[8] * rate_dot_2_left - parameters[9] * t37
-                + parameters[10] * t62)
-            - 4.0 * t15
-                * (parameters[10] * t67
-                    - (parameters[8] * t37 + parameters[9] * rate_dot_2_left));
-        let t102 = t85 + t100 - t71;
-        let t105 = pose[0] - 0.1;
-        let t107 = t105 * t105 + t2;
-        let t108 = 1.0 / t107;
-        let t110 = 0.5 - 0.01125 * t108;
-        let t114 = 0.04 * t108 - t110 * t110;
-        ::overact::guard::reach(t114, "right")?;
-        let t115 = ::overact::math::sqrt(t114);
-        let t117 = t105 * t110 + pose[1] * t115;
-        let t118 = t105 - t117;
-        let t119 = t107 * t115;
-        ::overact::guard::leg(t119, 0.04998437255783052, "right")?;
-        let t120 = 1.0 / t119;
-        let g1_vx_right = t118 * t120;
-        let t125 = pose[1] * t110 - t105 * t115;
-        let t126 = pose[1] - t125;
-        let minus_g2_vx_right = t117 * t120;
-        let minus_g2_vy_right = t125 * t120;
+        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
+        let force2_y_left = parameters[8] * rate_dot_2_left
+            - parameters[9] * rate_2_squared_left + parameters[10] * a2_y_left;
+        let minus_v2_by_1_x_left = INV_L_2 * det_left;
+        let force2_x_left = parameters[10] * a2_x_left
+            - (parameters[8] * rate_2_squared_left + parameters[9] * rate_dot_2_left);
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
+            - tau_2_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t134 = minus_rate_2_right * minus_rate_2_right;
-        let g1_vy_right = t126 * t120;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_right;
+        let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t141 = rate_1_right * rate_1_right;
-        let t142 = t107 - 0.1025;
-        let t143 = 0.5 * t142;
-        let rate_dot_1_right = t120
-            * (t118 * acceleration[0] + t126 * acceleration[1] + 0.0625 * t134
-                + t141 * t143);
-        let t148 = 49.05 * t117;
-        let t151 = 49.05 * t125;
-        let t160 = parameters[12] * rate_dot_1_right + parameters[13] * t148
-            - parameters[14] * t151 + parameters[15] * rate_dot_1_right
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let rate_dot_1_right = k_right
+            * (a_on_f1_right + rate_1_squared_right * t3_right);
+        let a1_y_right = 49.05 * l1_x_right;
+        let a1_x_right = 49.05 * l1_y_right;
+        let moment1_z_right = parameters[12] * rate_dot_1_right
+            + parameters[13] * a1_y_right - parameters[14] * a1_x_right;
+        let tau_1_right = parameters[15] * rate_dot_1_right
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let minus_rate_dot_2_right = t120
-            * (t117 * acceleration[0] + t125 * acceleration[1] + 0.04 * t141
-                + t134 * t143);
-        let c2_right = 10.0 * t142;
-        let t175 = t151 - 0.2 * t141;
-        let s2_right = 20.0 * t119;
-        let t179 = t148 + 0.2 * rate_dot_1_right;
-        let t181 = c2_right * t175 + s2_right * t179;
-        let t188 = c2_right * t179 - s2_right * t175;
-        let t195 = 4.0 * t119
-            * (parameters[21] * minus_rate_dot_2_right - parameters[20] * t134
-                + parameters[22] * t181)
-            + 2.0 * t142
-                * (parameters[22] * t188
-                    - (parameters[20] * minus_rate_dot_2_right + parameters[21] * t134));
-        let t198 = ::overact::math::signed(
+        let v2_by_1_x_right = INV_L_2 * det_right;
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
+        let t4_right = a1_x_right - L_1 * rate_1_squared_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+        let a2_x_right = c2_right * t4_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+        let force2_x_right = parameters[21] * minus_rate_dot_2_right
+            - parameters[20] * rate_2_squared_right + parameters[22] * a2_x_right;
+        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
+        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t4_right;
+        let force2_y_right = parameters[22] * a2_y_right
+            - (parameters[20] * minus_rate_dot_2_right
+                + parameters[21] * rate_2_squared_right);
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
-            rate_1_right + minus_rate_2_right,
+            minus_qd_2_right,
         );
-        let t199 = t160 + t195 + t198;
-        let t206 = parameters[20] * t188 - parameters[19] * minus_rate_dot_2_right
-            - parameters[21] * t181 - t198;
-        let t211 = g2_vx_left * t72 - minus_g1_vx_left * t102 + g1_vx_right * t199
-            - minus_g2_vx_right * t206 + acceleration[0] * parameters[24];
-        let t214 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t214, 35.707722858788905, "actuators")?;
-        let t215 = 1.0 / t214;
-        let t219 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t220 = t219 * t215;
-        let t230 = g2_vy_left * t72 - minus_g1_vy_left * t102 + g1_vy_right * t199
-            - minus_g2_vy_right * t206 + parameters[24] * (acceleration[1] + 9.81);
-        let t237 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t219 * t220;
-        ::overact::guard::platform(t237, 14.323546684675748, "actuators")?;
-        let t238 = (t230 - t211 * t220) / t237;
-        let t240 = t211 * t215 - t220 * t238;
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
+            + minus_tau_2_right;
+        let moment2_z_right = parameters[20] * a2_y_right
+            - parameters[19] * minus_rate_dot_2_right - parameters[21] * a2_x_right;
+        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
+        let force_x_platform = acceleration[0] * parameters[24];
+        let t1 = g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
+            + g1_vx_right * force_on_u1_right - minus_g2_vx_right * force_on_u2_right
+            + force_x_platform;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
+        let t2 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+            + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
+            + force_y_platform - t1 * l_2_1;
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        let t3 = t2 / pivot_2;
+        let t4 = t1 * inv_pivot_1 - l_2_1 * t3;
         ::core::result::Result::Ok([
-            -(minus_g1_vx_left * t240 + minus_g1_vy_left * t238),
-            g1_vx_right * t240 + g1_vy_right * t238,
+            -(minus_g1_vx_left * t4 + minus_g1_vy_left * t3), g1_vx_right * t4 + g1_vy_right * t3,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -2489,119 +3381,147 @@ impl FiveBar {
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 5.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        // --- sines and cosines
         let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3],
         ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let t10 = 1.0 / s2_left;
-        let t11 = 5.0 * t10;
-        let g1_vx_left = c12_left * t11;
-        let t16 = 4.0 * t10;
-        let minus_g2_vx_left = c1_left * t16;
-        let minus_g2_vy_left = s1_left * t16;
+        let inv_s2_left = 1.0 / s2_left;
+        let k1_left = INV_L_1 * inv_s2_left;
+        let g1_vx_left = c12_left * k1_left;
+        let k2_left = INV_L_2 * inv_s2_left;
+        let minus_g2_vx_left = c1_left * k2_left;
+        let minus_g2_vy_left = s1_left * k2_left;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t22 = minus_rate_2_left * minus_rate_2_left;
-        let t23 = 0.25 * t22;
-        let g1_vy_left = s12_left * t11;
+        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
+        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
+            + l_2_rate_2_squared_left;
+        let g1_vy_left = s12_left * k1_left;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t29 = rate_1_left * rate_1_left;
-        let t30 = 0.2 * c2_left;
-        let rate_dot_1_left = t11
-            * (c12_left * acceleration[0] + s12_left * acceleration[1] + t23
-                + t29 * t30);
-        let t35 = 9.81 * c1_left;
-        let t38 = 9.81 * s1_left;
-        let t47 = parameters[0] * rate_dot_1_left + parameters[1] * t35
-            - parameters[2] * t38 + parameters[3] * rate_dot_1_left
-            + parameters[4] * rate_1_left
+        let rate_1_squared_left = rate_1_left * rate_1_left;
+        let v2_by_1_y_left = L_1 * c2_left;
+        let rate_dot_1_left = k1_left
+            * (a_on_f1_left + rate_1_squared_left * v2_by_1_y_left);
+        let a1_y_left = 9.81 * c1_left;
+        let a1_x_left = 9.81 * s1_left;
+        let moment1_z_left = parameters[0] * rate_dot_1_left + parameters[1] * a1_y_left
+            - parameters[2] * a1_x_left;
+        let tau_1_left = parameters[3] * rate_dot_1_left + parameters[4] * rate_1_left
             + ::overact::math::signed(parameters[5], rate_1_left) + parameters[6];
-        let t52 = 0.2 * t29;
-        let minus_rate_dot_2_left = t16
-            * (c1_left * acceleration[0] + s1_left * acceleration[1] + t52
-                + t23 * c2_left);
-        let t60 = t38 - t52;
-        let t63 = t35 + 0.2 * rate_dot_1_left;
-        let t65 = c2_left * t60 + s2_left * t63;
-        let t71 = c2_left * t63 - s2_left * t60;
-        let t78 = 0.2 * s2_left
-            * (parameters[9] * minus_rate_dot_2_left - parameters[8] * t22
-                + parameters[10] * t65)
-            + t30
-                * (parameters[10] * t71
-                    - (parameters[8] * minus_rate_dot_2_left + parameters[9] * t22));
-        let t81 = ::overact::math::signed(
-            parameters[11],
-            rate_1_left + minus_rate_2_left,
-        );
-        let t82 = t47 + t78 + t81;
-        let t89 = parameters[8] * t71 - parameters[7] * minus_rate_dot_2_left
-            - parameters[9] * t65 - t81;
+        let v2_by_1_x_left = L_1 * s2_left;
+        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
+            + l_1_rate_1_squared_left;
+        let minus_rate_dot_2_left = k2_left
+            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+        let a1_x_minus_l_1_rate_1_squared_left = a1_x_left - l_1_rate_1_squared_left;
+        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left + L_1 * rate_dot_1_left;
+        let a2_x_left = c2_left * a1_x_minus_l_1_rate_1_squared_left
+            + s2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let force2_x_left = parameters[9] * minus_rate_dot_2_left
+            - parameters[8] * rate_2_squared_left + parameters[10] * a2_x_left;
+        let a2_y_left = c2_left * a1_y_plus_l_1_rate_dot_1_left
+            - s2_left * a1_x_minus_l_1_rate_1_squared_left;
+        let force2_y_left = parameters[10] * a2_y_left
+            - (parameters[8] * minus_rate_dot_2_left
+                + parameters[9] * rate_2_squared_left);
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        let minus_tau_2_left = ::overact::math::signed(parameters[11], minus_qd_2_left);
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            + v2_by_1_x_left * force2_x_left + v2_by_1_y_left * force2_y_left
+            + minus_tau_2_left;
+        let moment2_z_left = parameters[8] * a2_y_left
+            - parameters[7] * minus_rate_dot_2_left - parameters[9] * a2_x_left;
+        let force_on_u2_left = moment2_z_left - minus_tau_2_left;
+        // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let t102 = 1.0 / s2_right;
-        let t103 = 5.0 * t102;
-        let g1_vx_right = c12_right * t103;
-        let t108 = 4.0 * t102;
-        let minus_g2_vx_right = c1_right * t108;
-        let minus_g2_vy_right = s1_right * t108;
+        let inv_s2_right = 1.0 / s2_right;
+        let k1_right = INV_L_1 * inv_s2_right;
+        let g1_vx_right = c12_right * k1_right;
+        let k2_right = INV_L_2 * inv_s2_right;
+        let minus_g2_vx_right = c1_right * k2_right;
+        let minus_g2_vy_right = s1_right * k2_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t114 = minus_rate_2_right * minus_rate_2_right;
-        let t115 = 0.25 * t114;
-        let g1_vy_right = s12_right * t103;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
+        let g1_vy_right = s12_right * k1_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t121 = rate_1_right * rate_1_right;
-        let t122 = 0.2 * c2_right;
-        let rate_dot_1_right = t103
-            * (c12_right * acceleration[0] + s12_right * acceleration[1] + t115
-                + t121 * t122);
-        let t127 = 9.81 * c1_right;
-        let t130 = 9.81 * s1_right;
-        let t139 = parameters[12] * rate_dot_1_right + parameters[13] * t127
-            - parameters[14] * t130 + parameters[15] * rate_dot_1_right
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let v2_by_1_y_right = L_1 * c2_right;
+        let rate_dot_1_right = k1_right
+            * (a_on_f1_right + rate_1_squared_right * v2_by_1_y_right);
+        let a1_y_right = 9.81 * c1_right;
+        let a1_x_right = 9.81 * s1_right;
+        let moment1_z_right = parameters[12] * rate_dot_1_right
+            + parameters[13] * a1_y_right - parameters[14] * a1_x_right;
+        let tau_1_right = parameters[15] * rate_dot_1_right
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let t144 = 0.2 * t121;
-        let minus_rate_dot_2_right = t108
-            * (c1_right * acceleration[0] + s1_right * acceleration[1] + t144
-                + t115 * c2_right);
-        let t152 = t130 - t144;
-        let t155 = t127 + 0.2 * rate_dot_1_right;
-        let t157 = c2_right * t152 + s2_right * t155;
-        let t163 = c2_right * t155 - s2_right * t152;
-        let t170 = 0.2 * s2_right
-            * (parameters[21] * minus_rate_dot_2_right - parameters[20] * t114
-                + parameters[22] * t157)
-            + t122
-                * (parameters[22] * t163
-                    - (parameters[20] * minus_rate_dot_2_right + parameters[21] * t114));
-        let t173 = ::overact::math::signed(
+        let v2_by_1_x_right = L_1 * s2_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
+            + l_1_rate_1_squared_right;
+        let minus_rate_dot_2_right = k2_right
+            * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
+        let t1_right = a1_x_right - l_1_rate_1_squared_right;
+        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+        let a2_x_right = c2_right * t1_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+        let force2_x_right = parameters[21] * minus_rate_dot_2_right
+            - parameters[20] * rate_2_squared_right + parameters[22] * a2_x_right;
+        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t1_right;
+        let force2_y_right = parameters[22] * a2_y_right
+            - (parameters[20] * minus_rate_dot_2_right
+                + parameters[21] * rate_2_squared_right);
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
-            rate_1_right + minus_rate_2_right,
+            minus_qd_2_right,
         );
-        let t174 = t139 + t170 + t173;
-        let t181 = parameters[20] * t163 - parameters[19] * minus_rate_dot_2_right
-            - parameters[21] * t157 - t173;
-        let t186 = g1_vx_left * t82 - minus_g2_vx_left * t89 + g1_vx_right * t174
-            - minus_g2_vx_right * t181 + acceleration[0] * parameters[24];
-        let t189 = g1_vx_left * g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t189, 35.70772285878917, "actuators")?;
-        let t190 = 1.0 / t189;
-        let t194 = g1_vx_left * g1_vy_left + g1_vx_right * g1_vy_right;
-        let t195 = t194 * t190;
-        let t205 = g1_vy_left * t82 - minus_g2_vy_left * t89 + g1_vy_right * t174
-            - minus_g2_vy_right * t181 + parameters[24] * (acceleration[1] + 9.81);
-        let t212 = g1_vy_left * g1_vy_left + g1_vy_right * g1_vy_right - t194 * t195;
-        ::overact::guard::platform(t212, 14.32354668467552, "actuators")?;
-        let t213 = (t205 - t186 * t195) / t212;
-        let t215 = t186 * t190 - t195 * t213;
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
+            + minus_tau_2_right;
+        let moment2_z_right = parameters[20] * a2_y_right
+            - parameters[19] * minus_rate_dot_2_right - parameters[21] * a2_x_right;
+        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
+        let force_x_platform = acceleration[0] * parameters[24];
+        let t1 = g1_vx_left * force_on_u1_left - minus_g2_vx_left * force_on_u2_left
+            + g1_vx_right * force_on_u1_right - minus_g2_vx_right * force_on_u2_right
+            + force_x_platform;
+        let s_1_1 = g1_vx_left * g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.70772285878917, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = g1_vx_left * g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
+        let t2 = g1_vy_left * force_on_u1_left - minus_g2_vy_left * force_on_u2_left
+            + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
+            + force_y_platform - t1 * l_2_1;
+        let s_2_2 = g1_vy_left * g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.32354668467552, "actuators")?;
+        let t3 = t2 / pivot_2;
+        let t4 = t1 * inv_pivot_1 - l_2_1 * t3;
         ::core::result::Result::Ok([
-            g1_vx_left * t215 + g1_vy_left * t213, g1_vx_right * t215 + g1_vy_right * t213,
+            g1_vx_left * t4 + g1_vy_left * t3, g1_vx_right * t4 + g1_vy_right * t3,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -2627,139 +3547,194 @@ impl FiveBar {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 - pose[1] * t11;
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let t16 = 1.0 / t15;
-        let minus_g1_vx_left = (t0 - t13) * t16;
-        let t19 = pose[0] - 0.1;
-        let t21 = t19 * t19 + t2;
-        let t22 = 1.0 / t21;
-        let t24 = 0.5 - 0.01125 * t22;
-        let t28 = 0.04 * t22 - t24 * t24;
-        ::overact::guard::reach(t28, "right")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t31 = t19 * t24 + pose[1] * t29;
-        let t33 = t21 * t29;
-        ::overact::guard::leg(t33, 0.04998437255783052, "right")?;
-        let t34 = 1.0 / t33;
-        let g1_vx_right = (t19 - t31) * t34;
-        let t37 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t37, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(t37, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(t37, 35.707722858788905, "actuators")?;
-        let t38 = 1.0 / t37;
-        let g2_vx_left = t13 * t16;
-        let minus_g2_vx_right = t31 * t34;
-        let t43 = g1_vx_right * actuator_velocities[1]
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half
+        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let g2_vx_left = l1_x_left * k_left;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let t1 = g1_vx_right * actuator_velocities[1]
             - minus_g1_vx_left * actuator_velocities[0];
-        let t47 = pose[1] * t6 + t0 * t11;
-        let minus_g1_vy_left = (pose[1] - t47) * t16;
-        let t53 = pose[1] * t24 - t19 * t29;
-        let g1_vy_right = (pose[1] - t53) * t34;
-        let t57 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t58 = t57 * t38;
-        let t63 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t57 * t58;
-        ::overact::guard::platform(t63, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(t63, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(t63, 14.323546684675748, "actuators")?;
-        let t64 = 1.0 / t63;
-        let t70 = t64
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let vy = inv_pivot_2
             * (g1_vy_right * actuator_velocities[1]
-                - minus_g1_vy_left * actuator_velocities[0] - t43 * t58);
-        let t72 = t43 * t38 - t58 * t70;
-        let minus_g2_vy_right = t53 * t34;
-        let minus_rate_2_right = minus_g2_vx_right * t72 + minus_g2_vy_right * t70;
-        let t77 = minus_rate_2_right * minus_rate_2_right;
-        let t79 = actuator_velocities[1] * actuator_velocities[1];
-        let t80 = t21 - 0.1025;
-        let t81 = 0.5 * t80;
-        let rate_dot_1_right = t34 * (0.0625 * t77 + t79 * t81);
-        let t85 = actuator_accelerations[1] - rate_dot_1_right;
-        let g2_vy_left = t47 * t16;
-        let rate_2_left = g2_vx_left * t72 + g2_vy_left * t70;
-        let t91 = rate_2_left * rate_2_left;
-        let t93 = actuator_velocities[0] * actuator_velocities[0];
-        let t94 = t3 - 0.1025;
-        let t95 = 0.5 * t94;
-        let minus_rate_dot_1_left = t16 * (0.0625 * t91 + t93 * t95);
-        let t99 = actuator_accelerations[0] + minus_rate_dot_1_left;
-        let t101 = g1_vx_right * t85 - minus_g1_vx_left * t99;
-        let t108 = t64 * (g1_vy_right * t85 - minus_g1_vy_left * t99 - t58 * t101);
-        let t110 = t38 * t101 - t58 * t108;
-        let rate_dot_2_left = t16 * (t13 * t110 + t47 * t108 + 0.04 * t93 + t91 * t95);
-        let minus_s2_left = 20.0 * t15;
-        let t121 = 49.05 * t47;
-        let t123 = t121 - 0.2 * t93;
-        let c2_left = 10.0 * t94;
-        let t126 = 49.05 * t13;
-        let t128 = t126 + 0.2 * actuator_accelerations[0];
-        let t130 = minus_s2_left * t123 + c2_left * t128;
-        let t135 = c2_left * t123 - minus_s2_left * t128;
-        let t139 = ::overact::math::signed(
-            parameters[11],
-            rate_2_left - actuator_velocities[0],
-        );
-        let t140 = parameters[7] * rate_dot_2_left + parameters[8] * t130
-            - parameters[9] * t135 + t139;
-        let t153 = actuator_accelerations[0] * parameters[0] + t126 * parameters[1]
-            - t121 * parameters[2] + actuator_accelerations[0] * parameters[3]
+                - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1);
+        let vx = t1 * inv_pivot_1 - l_2_1 * vy;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        // --- left
+        let g2_vy_left = l1_y_left * k_left;
+        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_left;
+        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
+        let dvy = inv_pivot_2
+            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
+                - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2);
+        let dvx = inv_pivot_1 * t2 - l_2_1 * dvy;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
+            + minus_bias_a_on_f2_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let t4_left = bias_a1_x_left - L_1 * rate_1_squared_left;
+        let c2_left = INV_HALF * t2_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+            + L_1 * actuator_accelerations[0];
+        let a2_y_left = minus_s2_left * t4_left + c2_left * bias_a1_y_plus_l_1_qdd1_left;
+        let a2_x_left = c2_left * t4_left - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
+        let moment2_z_left = parameters[7] * rate_dot_2_left + parameters[8] * a2_y_left
+            - parameters[9] * a2_x_left;
+        let qd_2_left = rate_2_left - actuator_velocities[0];
+        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let moment1_z_left = actuator_accelerations[0] * parameters[0]
+            + bias_a1_y_left * parameters[1] - bias_a1_x_left * parameters[2];
+        let tau_1_left = actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let t168 = 2.0 * t94
-            * (parameters[8] * rate_dot_2_left - t91 * parameters[9]
-                + parameters[10] * t130)
-            - 4.0 * t15
-                * (parameters[10] * t135
-                    - (t91 * parameters[8] + parameters[9] * rate_dot_2_left));
-        let t170 = t153 + t168 - t139;
-        let t174 = 49.05 * t31;
-        let t177 = 49.05 * t53;
-        let t186 = actuator_accelerations[1] * parameters[12] + t174 * parameters[13]
-            - t177 * parameters[14] + actuator_accelerations[1] * parameters[15]
+        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
+        let force2_y_left = parameters[8] * rate_dot_2_left
+            - rate_2_squared_left * parameters[9] + parameters[10] * a2_y_left;
+        let minus_v2_by_1_x_left = INV_L_2 * det_left;
+        let force2_x_left = parameters[10] * a2_x_left
+            - (rate_2_squared_left * parameters[8] + parameters[9] * rate_dot_2_left);
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
+            - tau_2_left;
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let moment1_z_right = actuator_accelerations[1] * parameters[12]
+            + bias_a1_y_right * parameters[13] - bias_a1_x_right * parameters[14];
+        let tau_1_right = actuator_accelerations[1] * parameters[15]
             + actuator_velocities[1] * parameters[16]
             + ::overact::math::signed(parameters[17], actuator_velocities[1])
             + parameters[18];
-        let minus_rate_dot_2_right = t34
-            * (t31 * t110 + t53 * t108 + 0.04 * t79 + t77 * t81);
-        let c2_right = 10.0 * t80;
-        let t201 = t177 - 0.2 * t79;
-        let s2_right = 20.0 * t33;
-        let t205 = t174 + 0.2 * actuator_accelerations[1];
-        let t207 = c2_right * t201 + s2_right * t205;
-        let t214 = c2_right * t205 - s2_right * t201;
-        let t221 = 4.0 * t33
-            * (parameters[21] * minus_rate_dot_2_right - t77 * parameters[20]
-                + parameters[22] * t207)
-            + 2.0 * t80
-                * (parameters[22] * t214
-                    - (parameters[20] * minus_rate_dot_2_right + t77 * parameters[21]));
-        let t224 = ::overact::math::signed(
+        // --- right
+        let v2_by_1_x_right = INV_L_2 * det_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
+            + minus_bias_a_on_f2_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
+        let t4_right = bias_a1_x_right - L_1 * rate_1_squared_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+            + L_1 * actuator_accelerations[1];
+        let a2_x_right = c2_right * t4_right + s2_right * bias_a1_y_plus_l_1_qdd1_right;
+        let force2_x_right = parameters[21] * minus_rate_dot_2_right
+            - rate_2_squared_right * parameters[20] + parameters[22] * a2_x_right;
+        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
+        let a2_y_right = c2_right * bias_a1_y_plus_l_1_qdd1_right - s2_right * t4_right;
+        let force2_y_right = parameters[22] * a2_y_right
+            - (parameters[20] * minus_rate_dot_2_right
+                + rate_2_squared_right * parameters[21]);
+        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
-            actuator_velocities[1] + minus_rate_2_right,
+            minus_qd_2_right,
         );
-        let t225 = t186 + t221 + t224;
-        let t232 = parameters[20] * t214 - parameters[19] * minus_rate_dot_2_right
-            - parameters[21] * t207 - t224;
-        let t237 = g2_vx_left * t140 - minus_g1_vx_left * t170 + g1_vx_right * t225
-            - minus_g2_vx_right * t232 + t110 * parameters[24];
-        let t248 = g2_vy_left * t140 - minus_g1_vy_left * t170 + g1_vy_right * t225
-            - minus_g2_vy_right * t232 + parameters[24] * (t108 + 9.81);
-        let t251 = t64 * (t248 - t58 * t237);
-        let t253 = t38 * t237 - t58 * t251;
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
+            + minus_tau_2_right;
+        let moment2_z_right = parameters[20] * a2_y_right
+            - parameters[19] * minus_rate_dot_2_right - parameters[21] * a2_x_right;
+        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
+        let force_x_platform = dvx * parameters[24];
+        let t3 = g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
+            + g1_vx_right * force_on_u1_right - minus_g2_vx_right * force_on_u2_right
+            + force_x_platform;
+        let force_y_platform = parameters[24] * (dvy + 9.81);
+        let t4 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+            + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
+            + force_y_platform - l_2_1 * t3;
+        let t5 = inv_pivot_2 * t4;
+        let t6 = inv_pivot_1 * t3 - l_2_1 * t5;
         ::core::result::Result::Ok([
-            -(minus_g1_vx_left * t253 + minus_g1_vy_left * t251),
-            g1_vx_right * t253 + g1_vy_right * t251,
+            -(minus_g1_vx_left * t6 + minus_g1_vy_left * t5), g1_vx_right * t6 + g1_vy_right * t5,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -2778,85 +3753,109 @@ impl FiveBar {
         pose: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 - pose[1] * t11;
-        let t14 = t3 * t11;
-        ::overact::guard::leg(t14, 0.04998437255783052, "left")?;
-        let t15 = 1.0 / t14;
-        let g2_vx_left = t13 * t15;
-        let t18 = t0 - t13;
-        let minus_g1_vx_left = t18 * t15;
-        let t21 = 2.0 * (t3 - 0.1025);
-        let t22 = minus_g1_vx_left * t21;
-        let c12_left = 4.0 * t18;
-        let t33 = 4.0 * t14;
-        let t42 = t21 * (g2_vx_left * parameters[8] - parameters[10] * t22)
-            - t33 * (c12_left * parameters[10] - g2_vx_left * parameters[9])
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1 / half
+        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let v2_by_1_y_left = L_1_PER_HALF * (rho_squared_left - 0.1025);
+        let minus_g1_vx_v2_by_1_y_left = minus_g1_vx_left * v2_by_1_y_left;
+        let c12_left = INV_L_2 * l2_x_left;
+        let minus_v2_by_1_x_left = INV_L_2 * det_left;
+        let t1 = v2_by_1_y_left
+            * (g2_vx_left * parameters[8] - parameters[10] * minus_g1_vx_v2_by_1_y_left)
+            - minus_v2_by_1_x_left
+                * (c12_left * parameters[10] - g2_vx_left * parameters[9])
             - (minus_g1_vx_left * parameters[0] + minus_g1_vx_left * parameters[3]);
-        let t45 = pose[0] - 0.1;
-        let t47 = t45 * t45 + t2;
-        let t48 = 1.0 / t47;
-        let t50 = 0.5 - 0.01125 * t48;
-        let t54 = 0.04 * t48 - t50 * t50;
-        ::overact::guard::reach(t54, "right")?;
-        let t55 = ::overact::math::sqrt(t54);
-        let t57 = t45 * t50 + pose[1] * t55;
-        let t58 = t45 - t57;
-        let t59 = t47 * t55;
-        ::overact::guard::leg(t59, 0.04998437255783052, "right")?;
-        let t60 = 1.0 / t59;
-        let g1_vx_right = t58 * t60;
-        let t65 = 4.0 * t59;
-        let minus_g2_vx_right = t57 * t60;
-        let c12_right = 4.0 * t58;
-        let t73 = 2.0 * (t47 - 0.1025);
-        let t74 = g1_vx_right * t73;
-        let t80 = g1_vx_right * parameters[12] + g1_vx_right * parameters[15]
-            + t65 * (minus_g2_vx_right * parameters[21] + c12_right * parameters[22])
-            + t73 * (parameters[22] * t74 - minus_g2_vx_right * parameters[20]);
-        let t89 = g2_vx_left
-            * (g2_vx_left * parameters[7] - parameters[8] * t22
-                - c12_left * parameters[9]) - minus_g1_vx_left * t42 + g1_vx_right * t80
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let v2_by_1_x_right = INV_L_2 * det_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let c12_right = INV_L_2 * l2_x_right;
+        let v2_by_1_y_right = L_1_PER_HALF * (rho_squared_right - 0.1025);
+        let g1_vx_v2_by_1_y_right = g1_vx_right * v2_by_1_y_right;
+        let t2 = g1_vx_right * parameters[12] + g1_vx_right * parameters[15]
+            + v2_by_1_x_right
+                * (minus_g2_vx_right * parameters[21] + c12_right * parameters[22])
+            + v2_by_1_y_right
+                * (parameters[22] * g1_vx_v2_by_1_y_right
+                    - minus_g2_vx_right * parameters[20]);
+        let t3 = g2_vx_left
+            * (g2_vx_left * parameters[7] - parameters[8] * minus_g1_vx_v2_by_1_y_left
+                - c12_left * parameters[9]) - minus_g1_vx_left * t1 + g1_vx_right * t2
             - minus_g2_vx_right
-                * (parameters[20] * t74 - minus_g2_vx_right * parameters[19]
-                    - c12_right * parameters[21]);
-        let t93 = pose[1] * t6 + t0 * t11;
-        let g2_vy_left = t93 * t15;
-        let t96 = pose[1] - t93;
-        let minus_g1_vy_left = t96 * t15;
-        let t98 = t21 * minus_g1_vy_left;
-        let s12_left = 4.0 * t96;
-        let t103 = g2_vy_left * parameters[7] - parameters[8] * t98
+                * (parameters[20] * g1_vx_v2_by_1_y_right
+                    - minus_g2_vx_right * parameters[19] - c12_right * parameters[21]);
+        // --- left
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let minus_v2_by_1_y_g1_vy_left = v2_by_1_y_left * minus_g1_vy_left;
+        let s12_left = INV_L_2 * l2_y_left;
+        let t4 = g2_vy_left * parameters[7] - parameters[8] * minus_v2_by_1_y_g1_vy_left
             - s12_left * parameters[9];
-        let t117 = t21 * (g2_vy_left * parameters[8] - parameters[10] * t98)
-            - t33 * (s12_left * parameters[10] - g2_vy_left * parameters[9])
+        let t5 = v2_by_1_y_left
+            * (g2_vy_left * parameters[8] - parameters[10] * minus_v2_by_1_y_g1_vy_left)
+            - minus_v2_by_1_x_left
+                * (s12_left * parameters[10] - g2_vy_left * parameters[9])
             - (minus_g1_vy_left * parameters[0] + minus_g1_vy_left * parameters[3]);
-        let t122 = pose[1] * t50 - t45 * t55;
-        let t123 = pose[1] - t122;
-        let g1_vy_right = t123 * t60;
-        let minus_g2_vy_right = t122 * t60;
-        let s12_right = 4.0 * t123;
-        let t134 = t73 * g1_vy_right;
-        let t140 = g1_vy_right * parameters[12] + g1_vy_right * parameters[15]
-            + t65 * (minus_g2_vy_right * parameters[21] + s12_right * parameters[22])
-            + t73 * (parameters[22] * t134 - minus_g2_vy_right * parameters[20]);
-        let t146 = parameters[20] * t134 - minus_g2_vy_right * parameters[19]
-            - s12_right * parameters[21];
-        let t149 = g2_vx_left * t103 - minus_g1_vx_left * t117 + g1_vx_right * t140
-            - minus_g2_vx_right * t146;
+        // --- right
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let s12_right = INV_L_2 * l2_y_right;
+        let v2_by_1_y_g1_vy_right = v2_by_1_y_right * g1_vy_right;
+        let t6 = g1_vy_right * parameters[12] + g1_vy_right * parameters[15]
+            + v2_by_1_x_right
+                * (minus_g2_vy_right * parameters[21] + s12_right * parameters[22])
+            + v2_by_1_y_right
+                * (parameters[22] * v2_by_1_y_g1_vy_right
+                    - minus_g2_vy_right * parameters[20]);
+        let t7 = parameters[20] * v2_by_1_y_g1_vy_right
+            - minus_g2_vy_right * parameters[19] - s12_right * parameters[21];
+        let t8 = g2_vx_left * t4 - minus_g1_vx_left * t5 + g1_vx_right * t6
+            - minus_g2_vx_right * t7;
         ::core::result::Result::Ok([
-            [t89 + parameters[24], t149],
+            [t3 + parameters[24], t8],
             [
-                t149,
-                g2_vy_left * t103 - minus_g1_vy_left * t117 + g1_vy_right * t140
-                    - minus_g2_vy_right * t146 + parameters[24],
+                t8,
+                g2_vy_left * t4 - minus_g1_vy_left * t5 + g1_vy_right * t6
+                    - minus_g2_vy_right * t7 + parameters[24],
             ],
         ])
     }
@@ -2878,112 +3877,159 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.1;
-        let t2 = pose[1] * pose[1];
-        let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 - pose[1] * t11;
-        let t14 = t3 * t11;
-        ::overact::guard::leg(t14, 0.04998437255783052, "left")?;
-        let t15 = 1.0 / t14;
-        let g2_vx_left = t13 * t15;
-        let minus_g1_vx_left = (t0 - t13) * t15;
-        let t22 = pose[1] * t6 + t0 * t11;
-        let minus_g1_vy_left = (pose[1] - t22) * t15;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half
+        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let t27 = minus_rate_1_left * minus_rate_1_left;
-        let g2_vy_left = t22 * t15;
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t33 = rate_2_left * rate_2_left;
-        let t34 = t3 - 0.1025;
-        let t35 = 0.5 * t34;
-        let rate_dot_2_left = t15 * (0.04 * t27 + t33 * t35);
-        let minus_s2_left = 20.0 * t14;
-        let t41 = 49.05 * t22;
-        let t43 = t41 - 0.2 * t27;
-        let c2_left = 10.0 * t34;
-        let t46 = 49.05 * t13;
-        let minus_rate_dot_1_left = t15 * (0.0625 * t33 + t27 * t35);
-        let t52 = t46 - 0.2 * minus_rate_dot_1_left;
-        let t54 = minus_s2_left * t43 + c2_left * t52;
-        let t59 = c2_left * t43 - minus_s2_left * t52;
-        let t63 = ::overact::math::signed(
-            parameters[11],
-            minus_rate_1_left + rate_2_left,
-        );
-        let t64 = parameters[7] * rate_dot_2_left + parameters[8] * t54
-            - parameters[9] * t59 + t63;
-        let t77 = parameters[1] * t46 - parameters[0] * minus_rate_dot_1_left
-            - parameters[2] * t41 + parameters[6]
-            - (parameters[3] * minus_rate_dot_1_left + parameters[4] * minus_rate_1_left
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let bias_rate_dot_2_left = k_left
+            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let t4_left = bias_a1_x_left - L_1 * rate_1_squared_left;
+        let c2_left = INV_HALF * t2_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let t5_left = bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left;
+        let bias_a2_y_left = minus_s2_left * t4_left + c2_left * t5_left;
+        let bias_a2_x_left = c2_left * t4_left - minus_s2_left * t5_left;
+        let moment2_z_left = parameters[7] * bias_rate_dot_2_left
+            + parameters[8] * bias_a2_y_left - parameters[9] * bias_a2_x_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let moment1_z_left = parameters[1] * bias_a1_y_left
+            - parameters[0] * minus_bias_rate_dot_1_left
+            - parameters[2] * bias_a1_x_left;
+        let tau_1_left = parameters[6]
+            - (parameters[3] * minus_bias_rate_dot_1_left
+                + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let t92 = 2.0 * t34
-            * (parameters[8] * rate_dot_2_left - parameters[9] * t33
-                + parameters[10] * t54)
-            - 4.0 * t14
-                * (parameters[10] * t59
-                    - (parameters[8] * t33 + parameters[9] * rate_dot_2_left));
-        let t94 = t77 + t92 - t63;
-        let t97 = pose[0] - 0.1;
-        let t99 = t97 * t97 + t2;
-        let t100 = 1.0 / t99;
-        let t102 = 0.5 - 0.01125 * t100;
-        let t106 = 0.04 * t100 - t102 * t102;
-        ::overact::guard::reach(t106, "right")?;
-        let t107 = ::overact::math::sqrt(t106);
-        let t109 = t97 * t102 + pose[1] * t107;
-        let t111 = t99 * t107;
-        ::overact::guard::leg(t111, 0.04998437255783052, "right")?;
-        let t112 = 1.0 / t111;
-        let g1_vx_right = (t97 - t109) * t112;
-        let minus_g2_vx_right = t109 * t112;
-        let t118 = pose[1] * t102 - t97 * t107;
-        let minus_g2_vy_right = t118 * t112;
+        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
+        let force2_y_left = parameters[8] * bias_rate_dot_2_left
+            - parameters[9] * rate_2_squared_left + parameters[10] * bias_a2_y_left;
+        let minus_v2_by_1_x_left = INV_L_2 * det_left;
+        let force2_x_left = parameters[10] * bias_a2_x_left
+            - (parameters[8] * rate_2_squared_left
+                + parameters[9] * bias_rate_dot_2_left);
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
+            - tau_2_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t122 = minus_rate_2_right * minus_rate_2_right;
-        let g1_vy_right = (pose[1] - t118) * t112;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t129 = rate_1_right * rate_1_right;
-        let t130 = t99 - 0.1025;
-        let t131 = 0.5 * t130;
-        let rate_dot_1_right = t112 * (0.0625 * t122 + t129 * t131);
-        let t136 = 49.05 * t109;
-        let t139 = 49.05 * t118;
-        let t148 = parameters[12] * rate_dot_1_right + parameters[13] * t136
-            - parameters[14] * t139 + parameters[15] * rate_dot_1_right
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let moment1_z_right = parameters[12] * bias_rate_dot_1_right
+            + parameters[13] * bias_a1_y_right - parameters[14] * bias_a1_x_right;
+        let tau_1_right = parameters[15] * bias_rate_dot_1_right
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let minus_rate_dot_2_right = t112 * (0.04 * t129 + t122 * t131);
-        let c2_right = 10.0 * t130;
-        let t159 = t139 - 0.2 * t129;
-        let s2_right = 20.0 * t111;
-        let t163 = t136 + 0.2 * rate_dot_1_right;
-        let t165 = c2_right * t159 + s2_right * t163;
-        let t172 = c2_right * t163 - s2_right * t159;
-        let t179 = 4.0 * t111
-            * (parameters[21] * minus_rate_dot_2_right - parameters[20] * t122
-                + parameters[22] * t165)
-            + 2.0 * t130
-                * (parameters[22] * t172
-                    - (parameters[20] * minus_rate_dot_2_right + parameters[21] * t122));
-        let t182 = ::overact::math::signed(
+        let v2_by_1_x_right = INV_L_2 * det_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
+        let t4_right = bias_a1_x_right - L_1 * rate_1_squared_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let t5_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
+        let bias_a2_x_right = c2_right * t4_right + s2_right * t5_right;
+        let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
+            - parameters[20] * rate_2_squared_right + parameters[22] * bias_a2_x_right;
+        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
+        let bias_a2_y_right = c2_right * t5_right - s2_right * t4_right;
+        let force2_y_right = parameters[22] * bias_a2_y_right
+            - (parameters[20] * minus_bias_rate_dot_2_right
+                + parameters[21] * rate_2_squared_right);
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
-            rate_1_right + minus_rate_2_right,
+            minus_qd_2_right,
         );
-        let t183 = t148 + t179 + t182;
-        let t190 = parameters[20] * t172 - parameters[19] * minus_rate_dot_2_right
-            - parameters[21] * t165 - t182;
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
+            + minus_tau_2_right;
+        let moment2_z_right = parameters[20] * bias_a2_y_right
+            - parameters[19] * minus_bias_rate_dot_2_right
+            - parameters[21] * bias_a2_x_right;
+        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
+        let force_y_platform = 9.81 * parameters[24];
         ::core::result::Result::Ok([
-            g2_vx_left * t64 - minus_g1_vx_left * t94 + g1_vx_right * t183
-                - minus_g2_vx_right * t190,
-            g2_vy_left * t64 - minus_g1_vy_left * t94 + g1_vy_right * t183
-                - minus_g2_vy_right * t190 + 9.81 * parameters[24],
+            g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
+                + g1_vx_right * force_on_u1_right
+                - minus_g2_vx_right * force_on_u2_right,
+            g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+                + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
+                + force_y_platform,
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.

@@ -4,6 +4,31 @@
 ///
 /// 1 legs, 6 joints, 6 actuators, 6 degrees of freedom; 73 standard parameters, 58 base parameters.
 /// Source: Khalil and Dombre 2002, Modeling, Identification and Control of Robots; dynamics invented.
+///
+/// # Names
+///
+/// | name | symbol | meaning |
+/// |---|---|---|
+/// | `c23_arm` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
+/// | `s23_arm` | sin q | as the cosine |
+/// | `rate_1_squared_arm` | u_i² | its square |
+/// | `w4_y_arm` | ω_j | angular velocity of body j in its own axes |
+/// | `wd4_y_arm` | ω̇_j | angular acceleration of body j in its own axes |
+/// | `a2_x_arm` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
+/// | `u2_xx_arm` | U_j | [ω̇]× + [ω]×[ω]× of body j |
+/// | `v3_by_1_z_arm` | ∂V_j/∂u_i | partial velocity of the origin of body j |
+/// | `w5_by_2_x_arm` | ∂Ω_j/∂u_i | partial angular velocity of body j |
+/// | `force3_x_arm` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
+/// | `moment1_z_arm` | m | moment of a body's inertial parameters about its origin |
+/// | `tau_1_arm` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `force_on_u1_arm` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
+/// | `bias_wd2_x_arm` | ω̇_j at v̇ = 0 | angular acceleration of body j without the independent accelerations |
+/// | `bias_a2_x_arm` | a_j - g at v̇ = 0 | acceleration of the origin of body j, likewise |
+/// | `bias_u2_xy_arm` | U_j at v̇ = 0 | [ω̇]× + [ω]×[ω]× of body j, likewise |
+///
+/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
+/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
+/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -384,302 +409,463 @@ impl Rx90 {
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
     ) -> [[::core::primitive::f64; 73]; 6] {
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        // --- sines and cosines
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t3 = s2_arm * joint_velocities[0];
-        let t4 = joint_velocities[1] * t3;
-        let t5 = c2_arm * joint_accelerations[0];
-        let t7 = t4 - (t5 - t4);
-        let t8 = c2_arm * t7;
-        let t10 = c2_arm * joint_velocities[0];
-        let t11 = t3 * t10;
-        let t12 = joint_velocities[1] * t10;
-        let t13 = s2_arm * joint_accelerations[0];
-        let t19 = t3 * t3;
-        let t20 = t10 * t10;
-        let t22 = t11 + joint_accelerations[1];
-        let t24 = joint_velocities[1] * joint_velocities[1];
-        let t27 = s2_arm * t22 + c2_arm * (t24 - t19);
-        let t33 = 9.81 * c2_arm;
-        let t34 = 9.81 * s2_arm;
+        // --- arm
+        let w2_x_arm = s2_arm * joint_velocities[0];
+        let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
+        let u2_xz_arm = c2_arm * joint_accelerations[0];
+        let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
+        let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+        let minus_yy_2_on_q1 = c2_arm * u2_zx_arm;
+        let w2_y_arm = c2_arm * joint_velocities[0];
+        let minus_xx_2_on_q2 = w2_x_arm * w2_y_arm;
+        let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
+        let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
+        let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
+        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+        let u2_yx_arm = minus_xx_2_on_q2 + joint_accelerations[1];
+        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+        let xz_2_on_q1 = s2_arm * u2_yx_arm
+            + c2_arm * (rate_2_squared_arm - w2_x_squared_arm);
+        let u2_xy_arm = minus_xx_2_on_q2 - joint_accelerations[1];
+        let a2_y_arm = 9.81 * c2_arm;
+        let a2_x_arm = 9.81 * s2_arm;
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t44 = joint_velocities[0] * s23_arm;
-        let t45 = joint_velocities[1] + joint_velocities[2];
-        let t46 = t44 * t45;
-        let t47 = joint_accelerations[0] * c23_arm;
-        let t48 = t47 - t46;
-        let t49 = t46 - t48;
-        let t50 = c23_arm * t49;
-        let t51 = joint_accelerations[0] + t50;
-        let t52 = joint_velocities[0] * c23_arm;
-        let t53 = t44 * t52;
-        let t54 = t52 * t45;
-        let t55 = joint_accelerations[0] * s23_arm;
-        let t56 = t54 + t55;
-        let t57 = t54 + t56;
-        let t61 = t44 * t44;
-        let t62 = t52 * t52;
-        let t63 = t61 - t62;
-        let t64 = joint_accelerations[1] + joint_accelerations[2];
-        let t65 = t53 + t64;
-        let t67 = t45 * t45;
-        let t73 = t53 - t64;
-        let t76 = 0.45 * c2_arm;
-        let t78 = 0.45 * t7;
-        let t81 = 0.45 * c3_arm;
-        let t88 = t33 + 0.45 * t22;
-        let t92 = t34 - 0.45 * (t20 + t24);
-        let t94 = c3_arm * t88 - s3_arm * t92;
-        let t99 = t61 + t67;
-        let t101 = 0.45 * t73;
-        let t103 = s3_arm * t101 - t81 * t99;
-        let t106 = c3_arm * t92 + s3_arm * t88;
-        let t115 = s23_arm * c4_arm;
-        let t121 = s4_arm * t44 + c4_arm * t45;
-        let t123 = c4_arm * t56 - s4_arm * t64 - joint_velocities[3] * t121;
-        let t125 = s23_arm * s4_arm;
-        let t128 = c4_arm * t44 - s4_arm * t45;
-        let t129 = t52 + joint_velocities[3];
-        let t130 = t128 * t129;
-        let t131 = t125 * t130;
-        let t133 = t128 * t121;
-        let t135 = t115 * t123 - t131 + c23_arm * t133;
-        let t136 = t44 * t129;
-        let t137 = t121 * t129;
-        let t138 = t123 - t137;
-        let t139 = s4_arm * t138;
-        let t140 = t136 + t139;
-        let t141 = t121 * t121;
-        let t142 = t129 * t129;
-        let t143 = t141 + t142;
-        let t144 = t143 - t99;
-        let t145 = t141 - t142;
-        let t146 = t144 + t145;
-        let t148 = t140 - t73;
-        let t156 = s4_arm * t56 + c4_arm * t64 + joint_velocities[3] * t128;
-        let t157 = t130 + t156;
-        let t160 = s4_arm * t157 - c4_arm * t138;
-        let t161 = t48 + joint_accelerations[3];
-        let t162 = t161 - t133;
-        let t166 = t137 + t123;
-        let t169 = s4_arm * t162;
-        let t171 = t169 + c4_arm * t144;
-        let t174 = t133 + t161;
-        let t177 = t130 - t156;
-        let t181 = c4_arm * t174;
-        let t182 = s4_arm * t145 + t181;
-        let t186 = t131 - t115 * t137 + c23_arm * t161;
-        let t188 = 0.45 * (s23_arm - c2_arm);
-        let t189 = s4_arm * t188;
-        let t191 = c4_arm * t188;
-        let t195 = t94 - 0.45 * t99;
-        let t197 = t106 + t101;
-        let t200 = 0.45 * (t7 + t57);
-        let t202 = s4_arm * t197 + c4_arm * t200;
-        let t207 = 0.45 * c4_arm;
-        let t210 = t207 * t143 + 0.45 * t169;
-        let t211 = 1.0 - s3_arm;
-        let t214 = c4_arm * t195;
-        let t218 = t143 - t146;
-        let t224 = c4_arm * t197 - s4_arm * t200;
-        let t227 = t189 * t174 + t191 * t218 + t115 * t195 - c23_arm * t224;
-        let t229 = 0.45 * s4_arm;
-        let t231 = 0.45 * t181 - t229 * t218;
-        let t235 = s4_arm * t195;
-        let t236 = t231 * t211 + t81 * t138 - t235;
-        let t237 = t231 - t235;
-        let t241 = t101 + t197;
-        let t243 = t188 * t200;
-        let t244 = 0.45 * t197;
-        let t247 = t81 * t195 - t244 * t211;
-        let t253 = t115 * c5_arm + c23_arm * s5_arm;
-        let t259 = c5_arm * t129 - s5_arm * t128;
-        let t261 = c5_arm * t123 + s5_arm * t161 + joint_velocities[4] * t259;
-        let t265 = c23_arm * c5_arm - t115 * s5_arm;
-        let t268 = c5_arm * t128 + s5_arm * t129;
-        let t269 = t121 + joint_velocities[4];
-        let t270 = t268 * t269;
-        let t271 = t265 * t270;
-        let t273 = t268 * t259;
-        let t275 = t253 * t261 + t271 - t125 * t273;
-        let t276 = s4_arm * s5_arm;
-        let t277 = t276 * t270;
-        let t278 = s4_arm * c5_arm;
-        let t282 = t277 - t261 * t278 - c4_arm * t273;
-        let t283 = t128 * t269;
-        let t284 = t259 * t269;
-        let t285 = t284 + t261;
-        let t286 = s5_arm * t285;
-        let t287 = t283 + t286;
-        let t293 = c5_arm * t161 - s5_arm * t123 - joint_velocities[4] * t268;
-        let t294 = t270 - t293;
-        let t297 = t259 * t259;
-        let t298 = t269 * t269;
-        let t299 = t297 + t298;
-        let t300 = t297 - t298;
-        let t301 = t218 - t300;
-        let t302 = t301 - t299;
-        let t305 = t174 - t287;
-        let t309 = s4_arm * (t287 - t305) + c4_arm * t302;
-        let t313 = t156 + joint_accelerations[4];
-        let t314 = t273 + t313;
-        let t316 = t302 + t300;
-        let t319 = t284 - t261;
-        let t326 = t276 * t316 + t278 * t314 + c4_arm * t319;
-        let t332 = t139 + t282;
-        let t334 = t273 - t313;
-        let t337 = t270 + t293;
-        let t344 = c4_arm * t337 - (t278 * t300 + t276 * t334);
-        let t351 = t253 * t284 - t271 + t125 * t313;
-        let t355 = c4_arm * t313 - (t278 * t284 + t277);
-        let t356 = c5_arm * t189;
-        let t358 = s5_arm * t189;
-        let t365 = c5_arm * t195 - s5_arm * t224;
-        let t371 = s5_arm * t207;
-        let t373 = c5_arm * t81 + t371 * t211;
-        let t375 = c5_arm * t207;
-        let t378 = s5_arm * t81 - t375 * t211;
-        let t381 = t229 * t294;
-        let t386 = c4_arm * t365 - t202 * t276;
-        let t402 = c5_arm * t224 + s5_arm * t195;
-        let t405 = t191 * t285 - (t356 * t334 + t358 * t301) + t253 * t202 - t125 * t402;
-        let t409 = t229 * t285;
-        let t414 = t202 * t278 + c4_arm * t402;
-        let t415 = t378 * t334 - t373 * t301 - t409 * t211 - t414;
-        let t420 = t375 * t334 + t371 * t301 + t409 + t414;
-        let t421 = s5_arm * t202;
-        let t427 = t253 * c6_arm - t125 * s6_arm;
-        let t433 = s6_arm * t268 + c6_arm * t269;
-        let t435 = c6_arm * t261 - s6_arm * t313 - joint_velocities[5] * t433;
-        let t439 = t253 * s6_arm + t125 * c6_arm;
-        let t442 = c6_arm * t268 - s6_arm * t269;
-        let t443 = t259 + joint_velocities[5];
-        let t444 = t442 * t443;
-        let t445 = t439 * t444;
-        let t447 = t442 * t433;
-        let t449 = t427 * t435 - t445 + t265 * t447;
-        let t452 = s6_arm * t278 - c4_arm * c6_arm;
-        let t453 = t452 * t444;
-        let t456 = c6_arm * t278 + c4_arm * s6_arm;
-        let t460 = t453 - t435 * t456 + t276 * t447;
-        let t461 = s5_arm * c6_arm;
-        let t463 = s5_arm * s6_arm;
-        let t464 = t463 * t444;
-        let t467 = t435 * t461 - t464 + c5_arm * t447;
-        let t468 = t268 * t443;
-        let t469 = t433 * t443;
-        let t470 = t435 - t469;
-        let t472 = t468 + s6_arm * t470;
-        let t473 = t443 * t443;
-        let t474 = t442 * t442;
-        let t475 = t473 - t474;
-        let t476 = t474 + t473;
-        let t477 = t301 - t476;
-        let t478 = t475 + t477;
-        let t484 = s6_arm * t261 + c6_arm * t313 + joint_velocities[5] * t442;
-        let t485 = t444 + t484;
-        let t494 = t456 * t485 + t452 * t470 - t276 * t478;
-        let t496 = t472 - t334;
-        let t503 = t293 + joint_accelerations[5];
-        let t504 = t503 - t447;
-        let t508 = t469 + t435;
-        let t515 = t452 * t475 - t456 * t504 + t276 * t508;
-        let t527 = t355 + t282 - t460;
-        let t530 = t447 + t503;
-        let t533 = t444 - t484;
-        let t540 = t452 * t530 - t456 * t477 + t276 * t533;
-        let t556 = t456 * t469 - t453 + t276 * t503;
-        let t561 = t188 * t456;
-        let t562 = t301 + t475;
-        let t564 = t188 * t452;
-        let t572 = s6_arm * t402 + c6_arm * t202;
-        let t578 = s6_arm * t229;
-        let t580 = c6_arm * t378 + t578 * t211;
-        let t583 = c6_arm * t229;
-        let t585 = s6_arm * t378 - t583 * t211;
-        let t591 = t365 * t452 + t276 * t572;
-        let t594 = s6_arm * t375 + t583;
-        let t597 = t578 - c6_arm * t375;
-        let t615 = c6_arm * t402 - s6_arm * t202;
-        let t626 = t365 * t456 + t276 * t615;
+        let w3_x_arm = joint_velocities[0] * s23_arm;
+        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+        let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
+        let u3_xz_arm = joint_accelerations[0] * c23_arm;
+        let wd3_y_arm = u3_xz_arm - w3_x_w3_z_arm;
+        let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+        let minus_yy_3_on_q1 = c23_arm * u3_zx_arm;
+        let xx_3_on_q1 = joint_accelerations[0] + minus_yy_3_on_q1;
+        let w3_y_arm = joint_velocities[0] * c23_arm;
+        let minus_xx_3_on_q2 = w3_x_arm * w3_y_arm;
+        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
+        let minus_u3_yz_arm = joint_accelerations[0] * s23_arm;
+        let wd3_x_arm = w3_y_w3_z_arm + minus_u3_yz_arm;
+        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+        let xy_3_on_q2 = w3_x_squared_arm - w3_y_squared_arm;
+        let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
+        let u3_yx_arm = minus_xx_3_on_q2 + wd3_z_arm;
+        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+        let u3_xy_arm = minus_xx_3_on_q2 - wd3_z_arm;
+        let minus_v3_by_1_z_arm = D3 * c2_arm;
+        let a3_z_arm = D3 * u2_zx_arm;
+        let v3_by_2_y_arm = D3 * c3_arm;
+        let v3_by_2_x_arm = D3 * s3_arm;
+        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
+        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
+        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
+        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let d3_u3_xy_arm = D3 * u3_xy_arm;
+        let t1_arm = s3_arm * d3_u3_xy_arm - v3_by_2_y_arm * minus_u3_yy_arm;
+        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
+        let w4_by_1_x_arm = s23_arm * c4_arm;
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let w5_by_1_z_arm = s23_arm * s4_arm;
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let w5_by_1_z_w4_x_w4_z_arm = w5_by_1_z_arm * w4_x_w4_z_arm;
+        let xx_4_on_q4 = w4_x_arm * minus_w4_y_arm;
+        let xx_4_on_q1 = w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm
+            + c23_arm * xx_4_on_q4;
+        let zz_4_on_q2 = w3_x_arm * w4_z_arm;
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
+        let s4_u4_zy_arm = s4_arm * u4_zy_arm;
+        let minus_xx_4_on_q2 = zz_4_on_q2 + s4_u4_zy_arm;
+        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let minus_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let u3_yy_minus_u4_xx_arm = minus_u4_xx_arm - minus_u3_yy_arm;
+        let t2_arm = w4_y_squared_arm - w4_z_squared_arm;
+        let minus_xy_4_on_q4 = u3_yy_minus_u4_xx_arm + t2_arm;
+        let yy_4_on_q2 = minus_xx_4_on_q2 - u3_xy_arm;
+        let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
+            + joint_velocities[3] * w4_x_arm;
+        let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+        let xy_4_on_q2 = s4_arm * u4_zx_arm - c4_arm * u4_zy_arm;
+        let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
+        let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
+        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
+        let s4_u4_yx_arm = s4_arm * u4_yx_arm;
+        let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * u3_yy_minus_u4_xx_arm;
+        let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
+        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
+        let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
+        let minus_yz_4_on_q2 = s4_arm * t2_arm + minus_c4_u4_xy_arm;
+        let zz_4_on_q1 = w5_by_1_z_w4_x_w4_z_arm - w4_by_1_x_arm * minus_w4_y_w4_z_arm
+            + c23_arm * wd4_z_arm;
+        let t3_arm = D3 * (s23_arm - c2_arm);
+        let minus_v4_by_1_x_arm = s4_arm * t3_arm;
+        let v5_by_1_z_arm = c4_arm * t3_arm;
+        let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
+        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + d3_u3_xy_arm;
+        let t4_arm = D3 * (u2_zx_arm + u3_zy_arm);
+        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t4_arm;
+        let minus_v4_by_3_x_arm = D3 * c4_arm;
+        let t5_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
+        let t6_arm = 1.0 - s3_arm;
+        let c4_a4_z_arm = c4_arm * a4_z_arm;
+        let minus_u4_yy_arm = minus_u4_xx_arm - minus_xy_4_on_q4;
+        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t4_arm;
+        let my_4_on_q1 = minus_v4_by_1_x_arm * minus_u4_xy_arm
+            + v5_by_1_z_arm * minus_u4_yy_arm + w4_by_1_x_arm * a4_z_arm
+            - c23_arm * a4_x_arm;
+        let v4_by_3_y_arm = D3 * s4_arm;
+        let t7_arm = D3 * minus_c4_u4_xy_arm - v4_by_3_y_arm * minus_u4_yy_arm;
+        let s4_a4_z_arm = s4_arm * a4_z_arm;
+        let my_4_on_q2 = t7_arm * t6_arm + v3_by_2_y_arm * u4_zy_arm - s4_a4_z_arm;
+        let my_4_on_q3 = t7_arm - s4_a4_z_arm;
+        let minus_mz_4_on_q3 = d3_u3_xy_arm + a3_x_plus_d3_u3_xy_arm;
+        let m_4_on_q1 = t3_arm * t4_arm;
+        let minus_m_4_on_q3 = D3 * a3_x_plus_d3_u3_xy_arm;
+        let m_4_on_q2 = v3_by_2_y_arm * a4_z_arm - minus_m_4_on_q3 * t6_arm;
+        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
+        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+        let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
+            + joint_velocities[4] * w5_y_arm;
+        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+        let w5_by_1_y_w5_x_w5_z_arm = w5_by_1_y_arm * w5_x_w5_z_arm;
+        let minus_xx_5_on_q5 = w5_x_arm * w5_y_arm;
+        let xx_5_on_q1 = w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm
+            - w5_by_1_z_arm * minus_xx_5_on_q5;
+        let w5_by_2_y_arm = s4_arm * s5_arm;
+        let w5_by_2_y_w5_x_w5_z_arm = w5_by_2_y_arm * w5_x_w5_z_arm;
+        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
+        let xx_5_on_q2 = w5_by_2_y_w5_x_w5_z_arm - wd5_x_arm * minus_w5_by_2_x_arm
+            - c4_arm * minus_xx_5_on_q5;
+        let minus_zz_5_on_q4 = w4_x_arm * w5_z_arm;
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
+        let s5_u5_zy_arm = s5_arm * u5_zy_arm;
+        let xx_5_on_q4 = minus_zz_5_on_q4 + s5_u5_zy_arm;
+        let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
+            - joint_velocities[4] * w5_x_arm;
+        let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let t8_arm = w5_y_squared_arm - w5_z_squared_arm;
+        let minus_u5_yy_arm = minus_u4_yy_arm - t8_arm;
+        let xy_5_on_q5 = minus_u5_yy_arm - minus_u5_xx_arm;
+        let yy_5_on_q4 = minus_u4_xy_arm - xx_5_on_q4;
+        let xy_5_on_q2 = s4_arm * (xx_5_on_q4 - yy_5_on_q4) + c4_arm * xy_5_on_q5;
+        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
+        let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
+        let t9_arm = xy_5_on_q5 + t8_arm;
+        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
+        let minus_xz_5_on_q2 = w5_by_2_y_arm * t9_arm + minus_w5_by_2_x_arm * u5_yx_arm
+            + c4_arm * u5_yz_arm;
+        let minus_yy_5_on_q2 = s4_u4_zy_arm + xx_5_on_q2;
+        let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
+        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
+        let yz_5_on_q2 = c4_arm * u5_xz_arm
+            - (minus_w5_by_2_x_arm * t8_arm + w5_by_2_y_arm * u5_xy_arm);
+        let zz_5_on_q1 = w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm
+            + w5_by_1_z_arm * wd5_z_arm;
+        let zz_5_on_q2 = c4_arm * wd5_z_arm
+            - (minus_w5_by_2_x_arm * w5_y_w5_z_arm + w5_by_2_y_w5_x_w5_z_arm);
+        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
+        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
+        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
+        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm + v5_by_3_y_arm * t6_arm;
+        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
+        let v5_by_2_x_arm = s5_arm * v3_by_2_y_arm - minus_v5_by_3_x_arm * t6_arm;
+        let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
+        let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
+            - a5_z_arm * w5_by_2_y_arm;
+        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
+        let my_5_on_q1 = v5_by_1_z_arm * u5_zy_arm
+            - (minus_v5_by_1_x_arm * u5_xy_arm + v5_by_1_y_arm * minus_u5_yy_arm)
+            + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm;
+        let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
+        let c4_a5_x_minus_a5_z_w5_by_2_x_arm = a5_z_arm * minus_w5_by_2_x_arm
+            + c4_arm * a5_x_arm;
+        let my_5_on_q2 = v5_by_2_x_arm * u5_xy_arm - v5_by_2_y_arm * minus_u5_yy_arm
+            - v4_by_3_y_u5_zy_arm * t6_arm - c4_a5_x_minus_a5_z_w5_by_2_x_arm;
+        let minus_my_5_on_q3 = minus_v5_by_3_x_arm * u5_xy_arm
+            + v5_by_3_y_arm * minus_u5_yy_arm + v4_by_3_y_u5_zy_arm
+            + c4_a5_x_minus_a5_z_w5_by_2_x_arm;
+        let my_5_on_q4 = s5_arm * a5_z_arm;
+        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+        let minus_w6_by_1_y_w6_x_w6_z_arm = minus_w6_by_1_y_arm * w6_x_w6_z_arm;
+        let xx_6_on_q6 = w6_x_arm * minus_w6_y_arm;
+        let xx_6_on_q1 = w6_by_1_x_arm * wd6_x_arm - minus_w6_by_1_y_w6_x_w6_z_arm
+            + w5_by_1_y_arm * xx_6_on_q6;
+        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
+        let w6_by_2_y_w6_x_w6_z_arm = w6_by_2_y_arm * w6_x_w6_z_arm;
+        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
+        let xx_6_on_q2 = w6_by_2_y_w6_x_w6_z_arm - wd6_x_arm * minus_w6_by_2_x_arm
+            + w5_by_2_y_arm * xx_6_on_q6;
+        let w6_by_4_x_arm = s5_arm * c6_arm;
+        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
+        let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
+        let xx_6_on_q4 = wd6_x_arm * w6_by_4_x_arm - minus_w6_by_4_y_w6_x_w6_z_arm
+            + c5_arm * xx_6_on_q6;
+        let zz_6_on_q5 = w5_x_arm * w6_z_arm;
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
+        let minus_xx_6_on_q5 = zz_6_on_q5 + s6_arm * u6_zy_arm;
+        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let t10_arm = w6_z_squared_arm - w6_x_squared_arm;
+        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
+        let minus_xy_6_on_q6 = t10_arm + u6_yy_minus_u5_yy_arm;
+        let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
+            + joint_velocities[5] * w6_x_arm;
+        let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+        let xy_6_on_q2 = minus_w6_by_2_x_arm * u6_zx_arm + w6_by_2_y_arm * u6_zy_arm
+            - w5_by_2_y_arm * minus_xy_6_on_q6;
+        let yy_6_on_q5 = minus_xx_6_on_q5 - u5_xy_arm;
+        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
+        let u6_yx_arm = wd6_z_arm - xx_6_on_q6;
+        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
+        let xz_6_on_q2 = w6_by_2_y_arm * t10_arm - minus_w6_by_2_x_arm * u6_yx_arm
+            + w5_by_2_y_arm * minus_u6_yz_arm;
+        let yy_6_on_q2 = zz_5_on_q2 + xx_5_on_q2 - xx_6_on_q2;
+        let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
+        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
+        let yz_6_on_q2 = w6_by_2_y_arm * minus_u6_xy_arm
+            - minus_w6_by_2_x_arm * u6_yy_minus_u5_yy_arm + w5_by_2_y_arm * u6_xz_arm;
+        let zz_6_on_q2 = minus_w6_by_2_x_arm * minus_w6_y_w6_z_arm
+            - w6_by_2_y_w6_x_w6_z_arm + w5_by_2_y_arm * wd6_z_arm;
+        let minus_v6_by_1_x_arm = t3_arm * minus_w6_by_2_x_arm;
+        let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
+        let v6_by_1_y_arm = t3_arm * w6_by_2_y_arm;
+        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
+        let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
+        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm + s6_v4_by_3_y_arm * t6_arm;
+        let c6_v4_by_3_y_arm = c6_arm * v4_by_3_y_arm;
+        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm - c6_v4_by_3_y_arm * t6_arm;
+        let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
+        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
+        let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
+        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
+        let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, joint_accelerations[0] + t8,
-                c2_arm * (t12 + t13 + t12) - s2_arm * t7, t27, -t8,
-                s2_arm * (t20 - t24) - c2_arm * (t11 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, t51, c23_arm * t57 - s23_arm * t49,
-                s23_arm * t65 + c23_arm * (t67 - t61), -t50, s23_arm * (t62 - t67) - c23_arm * t73,
-                0.0, -(t76 * t49 + c23_arm * t78), s23_arm * t78 - t76 * t57, -(0.45 * t27),
-                -(t76 * t78), 0.0, 0.0, 0.0, 0.0, t135, -(c23_arm * t146 + s23_arm * (t140 + t148)),
-                t115 * t162 - t125 * t144 + c23_arm * t166, t51 - t135,
-                t115 * t145 - t125 * t174 + c23_arm * t177, t186,
-                t189 * t143 - t191 * t162 + t125 * t195 - c23_arm * t202, t227,
-                t57 * t188 + s23_arm * t200, t243, 0.0, 0.0, 0.0, 0.0, t275,
-                t265 * t285 - t253 * t294 + t125 * t302, t253 * t314 - t265 * t316 - t125 * t319,
-                t186 + t135 - t275, t253 * t300 - t265 * t334 + t125 * t337, t351,
-                t356 * t299 + t358 * t314 + t191 * t294 + t125 * t365 - t265 * t202, t405, -t227,
-                t243, 0.0, 0.0, 0.0, 0.0, t449, -(t265 * t478 + t427 * t485 + t439 * t470),
-                t427 * t504 - t439 * t475 + t265 * t508, t351 + t275 - t449,
-                t427 * t477 - t439 * t530 + t265 * t533, t445 - t427 * t469 + t265 * t503,
-                t561 * t562 + t564 * t504 + t358 * t485 + t439 * t365 - t265 * t572,
-                t561 * t530 - t564 * t476 + t358 * t470 + t427 * t365 - t265 * t615, t405, t243,
-                0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[0]), 1.0,
+                joint_accelerations[0] + minus_yy_2_on_q1, c2_arm * u2_zy_arm - s2_arm * u2_zx_arm,
+                xz_2_on_q1, -minus_yy_2_on_q1,
+                s2_arm * (w2_y_squared_arm - rate_2_squared_arm) - c2_arm * u2_xy_arm, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, xx_3_on_q1, c23_arm * u3_zy_arm - s23_arm * u3_zx_arm,
+                s23_arm * u3_yx_arm + c23_arm * (w3_z_squared_arm - w3_x_squared_arm),
+                -minus_yy_3_on_q1,
+                s23_arm * (w3_y_squared_arm - w3_z_squared_arm) - c23_arm * u3_xy_arm, 0.0,
+                -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm),
+                s23_arm * a3_z_arm - minus_v3_by_1_z_arm * u3_zy_arm, -(D3 * xz_2_on_q1),
+                -(minus_v3_by_1_z_arm * a3_z_arm), 0.0, 0.0, 0.0, 0.0, xx_4_on_q1,
+                -(c23_arm * minus_xy_4_on_q4
+                    + s23_arm * (minus_xx_4_on_q2 + yy_4_on_q2)),
+                w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * u3_yy_minus_u4_xx_arm
+                    + c23_arm * minus_u4_yz_arm,
+                xx_3_on_q1 - xx_4_on_q1,
+                w4_by_1_x_arm * t2_arm - w5_by_1_z_arm * minus_u4_xy_arm
+                    + c23_arm * u4_xz_arm,
+                zz_4_on_q1,
+                minus_v4_by_1_x_arm * minus_u4_xx_arm - v5_by_1_z_arm * u4_yx_arm
+                    + w5_by_1_z_arm * a4_z_arm - c23_arm * a5_z_arm,
+                my_4_on_q1,
+                u3_zy_arm * t3_arm + s23_arm * t4_arm,
+                m_4_on_q1,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                xx_5_on_q1,
+                w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
+                    + w5_by_1_z_arm * xy_5_on_q5,
+                w5_by_1_x_arm * u5_yx_arm - w5_by_1_y_arm * t9_arm
+                    - w5_by_1_z_arm * u5_yz_arm,
+                zz_4_on_q1 + xx_4_on_q1 - xx_5_on_q1,
+                w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm
+                    + w5_by_1_z_arm * u5_xz_arm,
+                zz_5_on_q1,
+                minus_v5_by_1_x_arm * minus_u5_xx_arm + v5_by_1_y_arm * u5_yx_arm
+                    + v5_by_1_z_arm * u5_zx_arm + w5_by_1_z_arm * a5_y_arm
+                    - w5_by_1_y_arm * a5_z_arm,
+                my_5_on_q1,
+                -my_4_on_q1,
+                m_4_on_q1,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                xx_6_on_q1,
+                -(w5_by_1_y_arm * minus_xy_6_on_q6 + w6_by_1_x_arm * u6_zx_arm
+                    + minus_w6_by_1_y_arm * u6_zy_arm),
+                w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
+                    + w5_by_1_y_arm * minus_u6_yz_arm,
+                zz_5_on_q1 + xx_5_on_q1 - xx_6_on_q1,
+                w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
+                    - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm,
+                minus_w6_by_1_y_w6_x_w6_z_arm - w6_by_1_x_arm * minus_w6_y_w6_z_arm
+                    + w5_by_1_y_arm * wd6_z_arm,
+                minus_v6_by_1_x_arm * minus_u6_xx_arm + v6_by_1_y_arm * u6_yx_arm
+                    + v5_by_1_y_arm * u6_zx_arm + minus_w6_by_1_y_arm * a5_y_arm
+                    - w5_by_1_y_arm * minus_a6_y_arm,
+                minus_v6_by_1_x_arm * minus_u6_xy_arm - v6_by_1_y_arm * minus_u6_yy_arm
+                    + v5_by_1_y_arm * u6_zy_arm + w6_by_1_x_arm * a5_y_arm
+                    - w5_by_1_y_arm * a6_x_arm,
+                my_5_on_q1,
+                m_4_on_q1,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t19 - t20, t13, t11, t5, joint_accelerations[1], t33,
-                -t34, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t53, t63, t55, t53, t47, t64,
-                t81 * t65 - 0.45 * s3_arm * (t62 + t67) + t94, t103 - t106, -(0.45 * t13),
-                0.45 * t88, 0.0, 0.0, 0.0, 0.0, -t140, t160, -t171, t148, -t182, t136,
-                t81 * t157 + t210 * t211 + t214, t236, t103 - t241, t247, 0.0, 0.0, 0.0, 0.0, t282,
-                t309, -t326, -t332, t344, t355, t373 * t314 - t378 * t299 - t381 * t211 + t386,
-                t415, -t236, t247, 0.0, 0.0, 0.0, 0.0, t460, t494, t515, t527, t540, t556,
-                t373 * t485 - (t580 * t562 + t585 * t504) - t591,
-                t585 * t476 - t580 * t530 + t373 * t470 - t626, t415, t247, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_xx_2_on_q2, w2_x_squared_arm - w2_y_squared_arm,
+                minus_u2_yz_arm, minus_xx_2_on_q2, u2_xz_arm, joint_accelerations[1], a2_y_arm,
+                -a2_x_arm, joint_accelerations[1], joint_velocities[1],
+                ::overact::math::sign(joint_velocities[1]), 1.0, -minus_xx_3_on_q2, xy_3_on_q2,
+                minus_u3_yz_arm, minus_xx_3_on_q2, u3_xz_arm, wd3_z_arm,
+                v3_by_2_y_arm * u3_yx_arm - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm,
+                t1_arm - a3_x_arm, -(D3 * minus_u2_yz_arm), D3 * a2_y_plus_d3_u2_yx_arm, 0.0, 0.0,
+                0.0, 0.0, -minus_xx_4_on_q2, xy_4_on_q2, -minus_xz_4_on_q2, yy_4_on_q2,
+                -minus_yz_4_on_q2, zz_4_on_q2,
+                v3_by_2_y_arm * u4_zx_arm + t5_arm * t6_arm + c4_a4_z_arm, my_4_on_q2,
+                t1_arm - minus_mz_4_on_q3, m_4_on_q2, 0.0, 0.0, 0.0, 0.0, xx_5_on_q2, xy_5_on_q2,
+                -minus_xz_5_on_q2, -minus_yy_5_on_q2, yz_5_on_q2, zz_5_on_q2,
+                v5_by_2_y_arm * u5_yx_arm - v5_by_2_x_arm * minus_u5_xx_arm
+                    - v4_by_3_y_u5_zx_arm * t6_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
+                my_5_on_q2,
+                -my_4_on_q2,
+                m_4_on_q2,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                xx_6_on_q2,
+                xy_6_on_q2,
+                xz_6_on_q2,
+                yy_6_on_q2,
+                yz_6_on_q2,
+                zz_6_on_q2,
+                v5_by_2_y_arm * u6_zx_arm
+                    - (v6_by_2_x_arm * minus_u6_xx_arm + minus_v6_by_2_y_arm * u6_yx_arm)
+                    - t11_arm,
+                minus_v6_by_2_y_arm * minus_u6_yy_arm - v6_by_2_x_arm * minus_u6_xy_arm
+                    + v5_by_2_y_arm * u6_zy_arm - t12_arm,
+                my_5_on_q2,
+                m_4_on_q2,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -t53, t63, t55, t53, t47, t64, t94, -t106, 0.0, 0.0, joint_accelerations[2],
-                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t140, t160,
-                -t171, t148, -t182, t136, t210 + t214, t237, -t241, -t244, 0.0, 0.0, 0.0, 0.0, t282,
-                t309, -t326, -t332, t344, t355, t375 * t299 + t371 * t314 - t381 + t386, -t420,
-                -t237, -t244, 0.0, 0.0, 0.0, 0.0, t460, t494, t515, t527, t540, t556,
-                t594 * t504 - t597 * t562 + t371 * t485 - t591,
-                t371 * t470 - (t597 * t530 + t594 * t476) - t626, -t420, -t244, 0.0, 0.0, 0.0, 0.0,
+                -minus_xx_3_on_q2, xy_3_on_q2, minus_u3_yz_arm, minus_xx_3_on_q2, u3_xz_arm,
+                wd3_z_arm, a3_y_arm, -a3_x_arm, 0.0, 0.0, joint_accelerations[2],
+                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0,
+                -minus_xx_4_on_q2, xy_4_on_q2, -minus_xz_4_on_q2, yy_4_on_q2, -minus_yz_4_on_q2,
+                zz_4_on_q2, t5_arm + c4_a4_z_arm, my_4_on_q3, -minus_mz_4_on_q3, -minus_m_4_on_q3,
+                0.0, 0.0, 0.0, 0.0, xx_5_on_q2, xy_5_on_q2, -minus_xz_5_on_q2, -minus_yy_5_on_q2,
+                yz_5_on_q2, zz_5_on_q2,
+                minus_v5_by_3_x_arm * minus_u5_xx_arm + v5_by_3_y_arm * u5_yx_arm
+                    - v4_by_3_y_u5_zx_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
+                -minus_my_5_on_q3,
+                -my_4_on_q3,
+                -minus_m_4_on_q3,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                xx_6_on_q2,
+                xy_6_on_q2,
+                xz_6_on_q2,
+                yy_6_on_q2,
+                yz_6_on_q2,
+                zz_6_on_q2,
+                v6_by_3_y_arm * u6_yx_arm - v6_by_3_x_arm * minus_u6_xx_arm
+                    + v5_by_3_y_arm * u6_zx_arm - t11_arm,
+                v5_by_3_y_arm * u6_zy_arm
+                    - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
+                    - t12_arm,
+                -minus_my_5_on_q3,
+                -minus_m_4_on_q3,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t133, -t146,
-                t166, -t133, t177, t161, -t202, -t224, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t287,
-                c5_arm * t285 - s5_arm * t294, s5_arm * t314 - c5_arm * t316, t305,
-                s5_arm * t300 - c5_arm * t334, -t283, -(c5_arm * t202), t421, t224, 0.0, 0.0, 0.0,
-                0.0, 0.0, t467, -(c5_arm * t478 + s5_arm * (t472 + t496)),
-                t461 * t504 - t463 * t475 + c5_arm * t508, t286 - t467,
-                t461 * t477 - t463 * t530 + c5_arm * t533, t464 - t461 * t469 + c5_arm * t503,
-                t365 * t463 - c5_arm * t572, t365 * t461 - c5_arm * t615, t421, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, xx_4_on_q4,
+                -minus_xy_4_on_q4, minus_u4_yz_arm, -xx_4_on_q4, u4_xz_arm, wd4_z_arm, -a5_z_arm,
+                -a4_x_arm, 0.0, 0.0, joint_accelerations[3], joint_velocities[3],
+                ::overact::math::sign(joint_velocities[3]), 1.0, xx_5_on_q4,
+                c5_arm * u5_zy_arm - s5_arm * u5_zx_arm, s5_arm * u5_yx_arm - c5_arm * t9_arm,
+                yy_5_on_q4, s5_arm * t8_arm - c5_arm * u5_xy_arm, -minus_zz_5_on_q4,
+                -(c5_arm * a5_z_arm), my_5_on_q4, a4_x_arm, 0.0, 0.0, 0.0, 0.0, 0.0, xx_6_on_q4,
+                -(c5_arm * minus_xy_6_on_q6 + s5_arm * (minus_xx_6_on_q5 + yy_6_on_q5)),
+                w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
+                    + c5_arm * minus_u6_yz_arm,
+                s5_u5_zy_arm - xx_6_on_q4,
+                w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
+                    - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm,
+                minus_w6_by_4_y_w6_x_w6_z_arm - w6_by_4_x_arm * minus_w6_y_w6_z_arm
+                    + c5_arm * wd6_z_arm,
+                a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm,
+                a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm,
+                my_5_on_q4,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
                 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t273, t302, -t319, t273,
-                t337, t313, t365, -t402, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, -t472,
-                s6_arm * t485 - c6_arm * t470, -(s6_arm * t504 + c6_arm * t475), t496,
-                -(s6_arm * t477 + c6_arm * t530), t468, c6_arm * t365, -(s6_arm * t365), -t402, 0.0,
-                0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_xx_5_on_q5,
+                xy_5_on_q5, -u5_yz_arm, minus_xx_5_on_q5, u5_xz_arm, wd5_z_arm, a5_y_arm, -a5_x_arm,
+                0.0, 0.0, joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, -minus_xx_6_on_q5,
+                s6_arm * u6_zx_arm - c6_arm * u6_zy_arm, -(s6_arm * u6_yx_arm + c6_arm * t10_arm),
+                yy_6_on_q5, -(s6_arm * u6_yy_minus_u5_yy_arm + c6_arm * minus_u6_xy_arm),
+                zz_6_on_q5, c6_arm * a5_y_arm, -(s6_arm * a5_y_arm), -a5_x_arm, 0.0, 0.0, 0.0, 0.0,
+                0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t447, -t478, t508, -t447, t533, t503, -t572,
-                -t615, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, xx_6_on_q6, -minus_xy_6_on_q6,
+                minus_u6_yz_arm, -xx_6_on_q6, u6_xz_arm, wd6_z_arm, -minus_a6_y_arm, -a6_x_arm, 0.0,
+                0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
         ]
@@ -701,273 +887,377 @@ impl Rx90 {
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
     ) -> [[::core::primitive::f64; 58]; 6] {
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        // --- sines and cosines
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t6 = joint_accelerations[1] + joint_accelerations[2];
-        let t9 = 9.81 * c2_arm;
-        let t10 = 9.81 * s2_arm;
-        let t11 = s2_arm * joint_velocities[0];
-        let t12 = joint_velocities[1] * t11;
-        let t13 = c2_arm * joint_accelerations[0];
-        let t14 = t13 - t12;
-        let t15 = t12 - t14;
-        let t17 = c2_arm * joint_velocities[0];
-        let t18 = t11 * t17;
-        let t19 = t18 + joint_accelerations[1];
-        let t21 = joint_velocities[1] * joint_velocities[1];
-        let t22 = t11 * t11;
-        let t26 = s2_arm * joint_accelerations[0];
+        // --- arm
+        let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
+        let a2_y_arm = 9.81 * c2_arm;
+        let a2_x_arm = 9.81 * s2_arm;
+        let w2_x_arm = s2_arm * joint_velocities[0];
+        let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
+        let u2_xz_arm = c2_arm * joint_accelerations[0];
+        let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
+        let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+        let w2_y_arm = c2_arm * joint_velocities[0];
+        let yy_2_on_q2 = w2_x_arm * w2_y_arm;
+        let u2_yx_arm = yy_2_on_q2 + joint_accelerations[1];
+        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t35 = joint_velocities[0] * s23_arm;
-        let t36 = joint_velocities[1] + joint_velocities[2];
-        let t37 = t35 * t36;
-        let t38 = joint_accelerations[0] * c23_arm;
-        let t39 = t38 - t37;
-        let t40 = t37 - t39;
-        let t42 = joint_velocities[0] * c23_arm;
-        let t43 = t35 * t42;
-        let t44 = t17 * t17;
-        let t50 = joint_velocities[1] * t17;
-        let t51 = t26 + t50;
-        let t57 = t42 * t36;
-        let t62 = c3_arm * t51 + s3_arm * t14 + joint_velocities[2] * t42;
-        let t63 = t57 + t62;
-        let t67 = t35 * t35;
-        let t68 = t42 * t42;
-        let t69 = t67 - t68;
-        let t70 = t43 + t6;
-        let t72 = t36 * t36;
-        let t76 = t57 - t62;
-        let t79 = t43 - t6;
-        let t83 = 0.45 * (t15 + t63);
-        let t85 = 0.45 * (s23_arm - c2_arm);
-        let t89 = t10 - 0.45 * (t44 + t21);
-        let t92 = t9 + 0.45 * t19;
-        let t96 = c3_arm * t89 + s3_arm * t92 + 0.45 * t79;
-        let t97 = 0.45 * t96;
-        let t98 = 1.0 - s3_arm;
-        let t100 = 0.45 * c3_arm;
-        let t103 = c3_arm * t92 - s3_arm * t89;
-        let t104 = t67 + t72;
-        let t106 = t103 - 0.45 * t104;
-        let t111 = s23_arm * s4_arm;
-        let t114 = c4_arm * t35 - s4_arm * t36;
-        let t115 = t42 + joint_velocities[3];
-        let t116 = t114 * t115;
-        let t117 = t111 * t116;
-        let t118 = s23_arm * c4_arm;
-        let t121 = s4_arm * t35 + c4_arm * t36;
-        let t122 = t121 * t115;
-        let t125 = t39 + joint_accelerations[3];
-        let t128 = t35 * t115;
-        let t133 = c4_arm * t62 - s4_arm * t6 - joint_velocities[3] * t121;
-        let t136 = t114 * t121;
-        let t139 = t133 - t122;
-        let t141 = t128 + s4_arm * t139;
-        let t142 = t115 * t115;
-        let t143 = t114 * t114;
-        let t144 = t142 - t143;
-        let t145 = t143 + t142;
-        let t146 = t144 + t104;
-        let t147 = t145 - t146;
-        let t148 = t144 + t147;
-        let t150 = t136 + t125;
-        let t157 = s4_arm * t62 + c4_arm * t6 + joint_velocities[3] * t114;
-        let t158 = t116 - t157;
-        let t162 = c4_arm * t150;
-        let t163 = t162 - s4_arm * t148;
-        let t164 = t125 - t136;
-        let t168 = t122 + t133;
-        let t171 = s4_arm * t164;
-        let t173 = t171 + c4_arm * t144;
-        let t175 = t116 + t157;
-        let t182 = s4_arm * t175 - c4_arm * t139;
-        let t198 = t118 * c5_arm + c23_arm * s5_arm;
-        let t201 = c5_arm * t115 - s5_arm * t114;
-        let t202 = t121 + joint_velocities[4];
-        let t203 = t201 * t202;
-        let t207 = c23_arm * c5_arm - t118 * s5_arm;
-        let t210 = c5_arm * t114 + s5_arm * t115;
-        let t211 = t210 * t202;
-        let t212 = t207 * t211;
-        let t214 = t157 + joint_accelerations[4];
-        let t218 = s4_arm * c5_arm;
-        let t220 = s4_arm * s5_arm;
-        let t221 = t220 * t211;
-        let t223 = c4_arm * t214 - (t218 * t203 + t221);
-        let t224 = t114 * t202;
-        let t229 = c5_arm * t133 + s5_arm * t125 + joint_velocities[4] * t201;
-        let t232 = t210 * t201;
-        let t238 = t221 - t229 * t218 - c4_arm * t232;
-        let t239 = t203 + t229;
-        let t242 = s4_arm * t85;
-        let t244 = c4_arm * t85;
-        let t250 = c4_arm * t96 - s4_arm * t83;
-        let t255 = 0.45 * s4_arm;
-        let t257 = 0.45 * t162 - t255 * t145;
-        let t261 = s4_arm * t106;
-        let t269 = c5_arm * t125 - s5_arm * t133 - joint_velocities[4] * t210;
-        let t270 = t211 - t269;
-        let t273 = t210 * t210;
-        let t274 = t201 * t201;
-        let t275 = t273 - t274;
-        let t282 = t218 * t270 + t220 * t239 + c4_arm * t275;
-        let t286 = t232 + t214;
-        let t288 = t202 * t202;
-        let t289 = t288 - t273;
-        let t292 = t203 - t229;
-        let t299 = t220 * t289 - t218 * t286 - c4_arm * t292;
-        let t303 = t274 - t288;
-        let t305 = t232 - t214;
-        let t308 = t211 + t269;
-        let t315 = c4_arm * t308 - (t218 * t303 + t220 * t305);
-        let t323 = t198 * s6_arm + t111 * c6_arm;
-        let t326 = c6_arm * t210 - s6_arm * t202;
-        let t327 = t201 + joint_velocities[5];
-        let t328 = t326 * t327;
-        let t329 = t323 * t328;
-        let t332 = t198 * c6_arm - t111 * s6_arm;
-        let t335 = s6_arm * t210 + c6_arm * t202;
-        let t336 = t335 * t327;
-        let t339 = t269 + joint_accelerations[5];
-        let t344 = c6_arm * t218 + c4_arm * s6_arm;
-        let t348 = s6_arm * t218 - c4_arm * c6_arm;
-        let t349 = t348 * t328;
-        let t352 = t344 * t336 - t349 + t220 * t339;
-        let t353 = s5_arm * s6_arm;
-        let t354 = t353 * t328;
-        let t355 = s5_arm * c6_arm;
-        let t360 = t210 * t327;
-        let t365 = c6_arm * t229 - s6_arm * t214 - joint_velocities[5] * t335;
-        let t368 = t326 * t335;
-        let t374 = t349 - t365 * t344 + t220 * t368;
-        let t379 = t365 - t336;
-        let t383 = c5_arm * t242;
-        let t385 = s5_arm * t242;
-        let t386 = t273 + t288;
-        let t392 = s4_arm * t96 + c4_arm * t83;
-        let t396 = c5_arm * t250 + s5_arm * t106;
-        let t400 = 0.45 * c4_arm;
-        let t401 = c5_arm * t400;
-        let t404 = s5_arm * t100 - t401 * t98;
-        let t407 = s5_arm * t400;
-        let t409 = c5_arm * t100 + t407 * t98;
-        let t412 = t255 * t239;
-        let t417 = t392 * t218 + c4_arm * t396;
-        let t435 = t400 * t146 + 0.45 * t171;
-        let t438 = c4_arm * t106;
-        let t441 = t339 - t368;
-        let t443 = t327 * t327;
-        let t444 = t326 * t326;
-        let t445 = t443 - t444;
-        let t448 = t336 + t365;
-        let t455 = t348 * t445 - t344 * t441 + t220 * t448;
-        let t464 = t444 + t443;
-        let t465 = t386 - t464;
-        let t467 = t368 + t339;
-        let t474 = s6_arm * t229 + c6_arm * t214 + joint_velocities[5] * t326;
-        let t475 = t328 - t474;
-        let t482 = t348 * t467 - t344 * t465 + t220 * t475;
-        let t491 = t386 + t445;
-        let t492 = t464 - t491;
-        let t494 = t328 + t474;
-        let t503 = t344 * t494 + t348 * t379 + t220 * t492;
-        let t512 = t274 + t288;
-        let t520 = c5_arm * t106 - s5_arm * t250;
-        let t528 = t255 * t270;
-        let t533 = c4_arm * t520 - t392 * t220;
-        let t541 = t85 * t344;
-        let t543 = t85 * t348;
-        let t551 = s6_arm * t396 + c6_arm * t392;
-        let t557 = s6_arm * t255;
-        let t559 = c6_arm * t404 + t557 * t98;
-        let t562 = c6_arm * t255;
-        let t564 = s6_arm * t404 - t562 * t98;
-        let t570 = t520 * t348 + t220 * t551;
-        let t573 = s6_arm * t401 + t562;
-        let t576 = t557 - c6_arm * t401;
-        let t594 = c6_arm * t396 - s6_arm * t392;
-        let t605 = t520 * t344 + t220 * t594;
+        let w3_x_arm = joint_velocities[0] * s23_arm;
+        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+        let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
+        let u3_xz_arm = joint_accelerations[0] * c23_arm;
+        let wd3_y_arm = u3_xz_arm - w3_x_w3_z_arm;
+        let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+        let w3_y_arm = joint_velocities[0] * c23_arm;
+        let yy_3_on_q2 = w3_x_arm * w3_y_arm;
+        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+        let u2_xy_arm = yy_2_on_q2 - joint_accelerations[1];
+        let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
+        let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
+        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
+        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
+        let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
+            + joint_velocities[2] * w3_y_arm;
+        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+        let xy_3_on_q2 = w3_x_squared_arm - w3_y_squared_arm;
+        let u3_yx_arm = yy_3_on_q2 + wd3_z_arm;
+        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+        let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
+        let u3_xy_arm = yy_3_on_q2 - wd3_z_arm;
+        let t1_arm = D3 * (u2_zx_arm + u3_zy_arm);
+        let t2_arm = D3 * (s23_arm - c2_arm);
+        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
+        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
+        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
+        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
+        let minus_m_4_on_q3 = D3 * a3_x_plus_d3_u3_xy_arm;
+        let t3_arm = 1.0 - s3_arm;
+        let v3_by_2_y_arm = D3 * c3_arm;
+        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
+        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
+        let w5_by_1_z_arm = s23_arm * s4_arm;
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let w5_by_1_z_w4_x_w4_z_arm = w5_by_1_z_arm * w4_x_w4_z_arm;
+        let w4_by_1_x_arm = s23_arm * c4_arm;
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
+        let zz_4_on_q2 = w3_x_arm * w4_z_arm;
+        let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let xx_4_on_q4 = w4_x_arm * minus_w4_y_arm;
+        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
+        let minus_xx_4_on_q2 = zz_4_on_q2 + s4_arm * u4_zy_arm;
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let t4_arm = w4_z_squared_arm - w4_x_squared_arm;
+        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let minus_u4_xx_arm = t4_arm + minus_u3_yy_arm;
+        let xy_4_on_q4 = minus_u4_yy_arm - minus_u4_xx_arm;
+        let t5_arm = t4_arm + xy_4_on_q4;
+        let minus_u4_xy_arm = xx_4_on_q4 + wd4_z_arm;
+        let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
+            + joint_velocities[3] * w4_x_arm;
+        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
+        let minus_c4_u4_xy_arm = c4_arm * minus_u4_xy_arm;
+        let minus_yz_4_on_q2 = minus_c4_u4_xy_arm - s4_arm * t5_arm;
+        let u4_yx_arm = wd4_z_arm - xx_4_on_q4;
+        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
+        let s4_u4_yx_arm = s4_arm * u4_yx_arm;
+        let minus_xz_4_on_q2 = s4_u4_yx_arm + c4_arm * t4_arm;
+        let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+        let xy_4_on_q2 = s4_arm * u4_zx_arm - c4_arm * u4_zy_arm;
+        let minus_v3_by_1_z_arm = D3 * c2_arm;
+        let a3_z_arm = D3 * u2_zx_arm;
+        let v3_by_2_x_arm = D3 * s3_arm;
+        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
+        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+        let w5_by_1_y_w5_x_w5_z_arm = w5_by_1_y_arm * w5_x_w5_z_arm;
+        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
+        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
+        let w5_by_2_y_arm = s4_arm * s5_arm;
+        let w5_by_2_y_w5_x_w5_z_arm = w5_by_2_y_arm * w5_x_w5_z_arm;
+        let zz_5_on_q2 = c4_arm * wd5_z_arm
+            - (minus_w5_by_2_x_arm * w5_y_w5_z_arm + w5_by_2_y_w5_x_w5_z_arm);
+        let minus_zz_5_on_q4 = w4_x_arm * w5_z_arm;
+        let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
+            + joint_velocities[4] * w5_y_arm;
+        let minus_xx_5_on_q5 = w5_x_arm * w5_y_arm;
+        let xx_5_on_q2 = w5_by_2_y_w5_x_w5_z_arm - wd5_x_arm * minus_w5_by_2_x_arm
+            - c4_arm * minus_xx_5_on_q5;
+        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
+        let minus_v4_by_1_x_arm = s4_arm * t2_arm;
+        let v5_by_1_z_arm = c4_arm * t2_arm;
+        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t1_arm;
+        let v4_by_3_y_arm = D3 * s4_arm;
+        let t6_arm = D3 * minus_c4_u4_xy_arm - v4_by_3_y_arm * minus_u4_yy_arm;
+        let s4_a4_z_arm = s4_arm * a4_z_arm;
+        let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
+            - joint_velocities[4] * w5_x_arm;
+        let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let xy_5_on_q5 = w5_x_squared_arm - w5_y_squared_arm;
+        let xy_5_on_q2 = minus_w5_by_2_x_arm * u5_zx_arm + w5_by_2_y_arm * u5_zy_arm
+            + c4_arm * xy_5_on_q5;
+        let u5_yx_arm = minus_xx_5_on_q5 + wd5_z_arm;
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let t7_arm = w5_z_squared_arm - w5_x_squared_arm;
+        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
+        let xz_5_on_q2 = w5_by_2_y_arm * t7_arm - minus_w5_by_2_x_arm * u5_yx_arm
+            - c4_arm * u5_yz_arm;
+        let t8_arm = w5_y_squared_arm - w5_z_squared_arm;
+        let u5_xy_arm = minus_xx_5_on_q5 - wd5_z_arm;
+        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
+        let yz_5_on_q2 = c4_arm * u5_xz_arm
+            - (minus_w5_by_2_x_arm * t8_arm + w5_by_2_y_arm * u5_xy_arm);
+        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+        let minus_w6_by_1_y_w6_x_w6_z_arm = minus_w6_by_1_y_arm * w6_x_w6_z_arm;
+        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
+        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
+        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
+        let w6_by_2_y_w6_x_w6_z_arm = w6_by_2_y_arm * w6_x_w6_z_arm;
+        let zz_6_on_q2 = minus_w6_by_2_x_arm * minus_w6_y_w6_z_arm
+            - w6_by_2_y_w6_x_w6_z_arm + w5_by_2_y_arm * wd6_z_arm;
+        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
+        let minus_w6_by_4_y_w6_x_w6_z_arm = minus_w6_by_4_y_arm * w6_x_w6_z_arm;
+        let w6_by_4_x_arm = s5_arm * c6_arm;
+        let zz_6_on_q5 = w5_x_arm * w6_z_arm;
+        let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let xx_6_on_q6 = w6_x_arm * minus_w6_y_arm;
+        let xx_6_on_q2 = w6_by_2_y_w6_x_w6_z_arm - wd6_x_arm * minus_w6_by_2_x_arm
+            + w5_by_2_y_arm * xx_6_on_q6;
+        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
+        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
+        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
+        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t1_arm;
+        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
+        let minus_v4_by_3_x_arm = D3 * c4_arm;
+        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
+        let v5_by_2_x_arm = s5_arm * v3_by_2_y_arm - minus_v5_by_3_x_arm * t3_arm;
+        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
+        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm + v5_by_3_y_arm * t3_arm;
+        let v4_by_3_y_u5_zy_arm = v4_by_3_y_arm * u5_zy_arm;
+        let c4_a5_x_minus_a5_z_w5_by_2_x_arm = a5_z_arm * minus_w5_by_2_x_arm
+            + c4_arm * a5_x_arm;
+        let t9_arm = minus_v4_by_3_x_arm * minus_u4_xx_arm + D3 * s4_u4_yx_arm;
+        let c4_a4_z_arm = c4_arm * a4_z_arm;
+        let u6_yx_arm = wd6_z_arm - xx_6_on_q6;
+        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let t10_arm = w6_z_squared_arm - w6_x_squared_arm;
+        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
+        let xz_6_on_q2 = w6_by_2_y_arm * t10_arm - minus_w6_by_2_x_arm * u6_yx_arm
+            + w5_by_2_y_arm * minus_u6_yz_arm;
+        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let u6_yy_minus_u5_yy_arm = minus_u5_yy_arm - minus_u6_yy_arm;
+        let minus_u6_xy_arm = xx_6_on_q6 + wd6_z_arm;
+        let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
+            + joint_velocities[5] * w6_x_arm;
+        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
+        let yz_6_on_q2 = w6_by_2_y_arm * minus_u6_xy_arm
+            - minus_w6_by_2_x_arm * u6_yy_minus_u5_yy_arm + w5_by_2_y_arm * u6_xz_arm;
+        let minus_u6_xx_arm = minus_u5_yy_arm + t10_arm;
+        let xy_6_on_q6 = minus_u6_yy_arm - minus_u6_xx_arm;
+        let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+        let xy_6_on_q2 = minus_w6_by_2_x_arm * u6_zx_arm + w6_by_2_y_arm * u6_zy_arm
+            + w5_by_2_y_arm * xy_6_on_q6;
+        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+        let v4_by_3_y_u5_zx_arm = v4_by_3_y_arm * u5_zx_arm;
+        let c4_a5_y_minus_a5_z_w5_by_2_y_arm = c4_arm * a5_y_arm
+            - a5_z_arm * w5_by_2_y_arm;
+        let minus_v6_by_1_x_arm = t2_arm * minus_w6_by_2_x_arm;
+        let v6_by_1_y_arm = t2_arm * w6_by_2_y_arm;
+        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
+        let s6_v4_by_3_y_arm = s6_arm * v4_by_3_y_arm;
+        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm + s6_v4_by_3_y_arm * t3_arm;
+        let c6_v4_by_3_y_arm = c6_arm * v4_by_3_y_arm;
+        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm - c6_v4_by_3_y_arm * t3_arm;
+        let t11_arm = a5_y_arm * w6_by_2_y_arm + w5_by_2_y_arm * minus_a6_y_arm;
+        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_v4_by_3_y_arm;
+        let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
+        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
+        let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
                 ::overact::math::sign(joint_velocities[0]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(c2_arm * t15), s2_arm * t19 + c2_arm * (t21 - t22), -(c23_arm * t40),
-                s2_arm * (t44 - t21) - c2_arm * (t18 - joint_accelerations[1]),
-                c2_arm * (t50 + t51) - s2_arm * t15, c23_arm * t63 - s23_arm * t40,
-                s23_arm * t70 + c23_arm * (t72 - t67), s23_arm * (t68 - t72) - c23_arm * t79,
-                t83 * t85, t117 - t118 * t122 + c23_arm * t125, t118 * t133 - t117 + c23_arm * t136,
-                c23_arm * t158 - (t118 * t148 + t111 * t150),
-                t118 * t164 - t111 * t144 + c23_arm * t168,
-                c23_arm * t147 - (t118 * t175 + t111 * t139),
-                -(0.45 * c2_arm * t40 + c23_arm * (0.45 * t15)), t198 * t203 - t212 + t111 * t214,
-                t198 * t229 + t212 - t111 * t232,
-                t242 * t150 + t244 * t145 + t118 * t106 - c23_arm * t250,
-                t207 * t239 - t198 * t270 + t111 * t275, t198 * t286 + t207 * t289 - t111 * t292,
-                t198 * t303 - t207 * t305 + t111 * t308, t329 - t332 * t336 + t207 * t339,
-                t332 * t365 - t329 + t207 * t368,
-                t244 * t239 - (t383 * t305 + t385 * t386) + t198 * t392 - t111 * t396,
-                t242 * t146 - t244 * t164 + t111 * t106 - c23_arm * t392,
-                t332 * t441 - t323 * t445 + t207 * t448, t332 * t465 - t323 * t467 + t207 * t475,
-                t207 * t492 - (t332 * t494 + t323 * t379),
-                t383 * t512 + t385 * t286 + t244 * t270 + t111 * t520 - t207 * t392,
-                t541 * t491 + t543 * t441 + t385 * t494 + t323 * t520 - t207 * t551,
-                t541 * t467 - t543 * t464 + t385 * t379 + t332 * t520 - t207 * t594,
+                -(c2_arm * u2_zx_arm),
+                s2_arm * u2_yx_arm + c2_arm * (rate_2_squared_arm - w2_x_squared_arm),
+                -(c23_arm * u3_zx_arm),
+                s2_arm * (w2_y_squared_arm - rate_2_squared_arm) - c2_arm * u2_xy_arm,
+                c2_arm * u2_zy_arm - s2_arm * u2_zx_arm, c23_arm * u3_zy_arm - s23_arm * u3_zx_arm,
+                s23_arm * u3_yx_arm + c23_arm * (w3_z_squared_arm - w3_x_squared_arm),
+                s23_arm * (w3_y_squared_arm - w3_z_squared_arm) - c23_arm * u3_xy_arm,
+                t1_arm * t2_arm,
+                w5_by_1_z_w4_x_w4_z_arm - w4_by_1_x_arm * minus_w4_y_w4_z_arm
+                    + c23_arm * wd4_z_arm,
+                w4_by_1_x_arm * wd4_x_arm - w5_by_1_z_w4_x_w4_z_arm
+                    + c23_arm * xx_4_on_q4,
+                c23_arm * u4_xz_arm
+                    - (w4_by_1_x_arm * t5_arm + w5_by_1_z_arm * minus_u4_xy_arm),
+                w4_by_1_x_arm * u4_yx_arm - w5_by_1_z_arm * t4_arm
+                    + c23_arm * minus_u4_yz_arm,
+                c23_arm * xy_4_on_q4
+                    - (w4_by_1_x_arm * u4_zx_arm + w5_by_1_z_arm * u4_zy_arm),
+                -(minus_v3_by_1_z_arm * u3_zx_arm + c23_arm * a3_z_arm),
+                w5_by_1_x_arm * w5_y_w5_z_arm - w5_by_1_y_w5_x_w5_z_arm
+                    + w5_by_1_z_arm * wd5_z_arm,
+                w5_by_1_x_arm * wd5_x_arm + w5_by_1_y_w5_x_w5_z_arm
+                    - w5_by_1_z_arm * minus_xx_5_on_q5,
+                minus_v4_by_1_x_arm * minus_u4_xy_arm + v5_by_1_z_arm * minus_u4_yy_arm
+                    + w4_by_1_x_arm * a4_z_arm - c23_arm * a4_x_arm,
+                w5_by_1_y_arm * u5_zy_arm - w5_by_1_x_arm * u5_zx_arm
+                    + w5_by_1_z_arm * xy_5_on_q5,
+                w5_by_1_x_arm * u5_yx_arm + w5_by_1_y_arm * t7_arm
+                    - w5_by_1_z_arm * u5_yz_arm,
+                w5_by_1_x_arm * t8_arm - w5_by_1_y_arm * u5_xy_arm
+                    + w5_by_1_z_arm * u5_xz_arm,
+                minus_w6_by_1_y_w6_x_w6_z_arm - w6_by_1_x_arm * minus_w6_y_w6_z_arm
+                    + w5_by_1_y_arm * wd6_z_arm,
+                w6_by_1_x_arm * wd6_x_arm - minus_w6_by_1_y_w6_x_w6_z_arm
+                    + w5_by_1_y_arm * xx_6_on_q6,
+                v5_by_1_z_arm * u5_zy_arm
+                    - (minus_v5_by_1_x_arm * u5_xy_arm + v5_by_1_y_arm * minus_u5_yy_arm)
+                    + w5_by_1_x_arm * a5_z_arm - w5_by_1_z_arm * a5_x_arm,
+                minus_v4_by_1_x_arm * minus_u4_xx_arm - v5_by_1_z_arm * u4_yx_arm
+                    + w5_by_1_z_arm * a4_z_arm - c23_arm * a5_z_arm,
+                w6_by_1_x_arm * u6_yx_arm - minus_w6_by_1_y_arm * t10_arm
+                    + w5_by_1_y_arm * minus_u6_yz_arm,
+                w6_by_1_x_arm * u6_yy_minus_u5_yy_arm
+                    - minus_w6_by_1_y_arm * minus_u6_xy_arm + w5_by_1_y_arm * u6_xz_arm,
+                w5_by_1_y_arm * xy_6_on_q6
+                    - (w6_by_1_x_arm * u6_zx_arm + minus_w6_by_1_y_arm * u6_zy_arm),
+                minus_v5_by_1_x_arm * minus_u5_xx_arm + v5_by_1_y_arm * u5_yx_arm
+                    + v5_by_1_z_arm * u5_zx_arm + w5_by_1_z_arm * a5_y_arm
+                    - w5_by_1_y_arm * a5_z_arm,
+                minus_v6_by_1_x_arm * minus_u6_xx_arm + v6_by_1_y_arm * u6_yx_arm
+                    + v5_by_1_y_arm * u6_zx_arm + minus_w6_by_1_y_arm * a5_y_arm
+                    - w5_by_1_y_arm * minus_a6_y_arm,
+                minus_v6_by_1_x_arm * minus_u6_xy_arm - v6_by_1_y_arm * minus_u6_yy_arm
+                    + v5_by_1_y_arm * u6_zy_arm + w6_by_1_x_arm * a5_y_arm
+                    - w5_by_1_y_arm * a6_x_arm,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
                 ::overact::math::sign(joint_velocities[1]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t6, t9, -t10, t18, t26, t43, t13,
-                t22 - t44, t69, -t76, t38, t100 * t106 - t97 * t98, t128, -t141, -t163, -t173, t182,
-                t100 * t70 - 0.45 * s3_arm * (t68 + t72) + t103, t223, t238,
-                t257 * t98 + t100 * t139 - t261, t282, t299, t315, t352, t374,
-                t404 * t305 - t409 * t386 - t412 * t98 - t417, t100 * t175 + t435 * t98 + t438,
-                t455, t482, t503, t409 * t286 - t404 * t512 - t528 * t98 + t533,
-                t409 * t494 - (t559 * t491 + t564 * t441) - t570,
-                t564 * t464 - t559 * t467 + t409 * t379 - t605,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, wd3_z_arm, a2_y_arm, -a2_x_arm,
+                yy_2_on_q2, minus_u2_yz_arm, yy_3_on_q2, u2_xz_arm,
+                w2_x_squared_arm - w2_y_squared_arm, xy_3_on_q2, -u3_yz_arm, u3_xz_arm,
+                v3_by_2_y_arm * a4_z_arm - minus_m_4_on_q3 * t3_arm, zz_4_on_q2, -minus_xx_4_on_q2,
+                -minus_yz_4_on_q2, -minus_xz_4_on_q2, xy_4_on_q2,
+                v3_by_2_y_arm * u3_yx_arm - v3_by_2_x_arm * minus_u3_xx_arm + a3_y_arm, zz_5_on_q2,
+                xx_5_on_q2, t6_arm * t3_arm + v3_by_2_y_arm * u4_zy_arm - s4_a4_z_arm, xy_5_on_q2,
+                xz_5_on_q2, yz_5_on_q2, zz_6_on_q2, xx_6_on_q2,
+                v5_by_2_x_arm * u5_xy_arm - v5_by_2_y_arm * minus_u5_yy_arm
+                    - v4_by_3_y_u5_zy_arm * t3_arm - c4_a5_x_minus_a5_z_w5_by_2_x_arm,
+                v3_by_2_y_arm * u4_zx_arm + t9_arm * t3_arm + c4_a4_z_arm,
+                xz_6_on_q2,
+                yz_6_on_q2,
+                xy_6_on_q2,
+                v5_by_2_y_arm * u5_yx_arm - v5_by_2_x_arm * minus_u5_xx_arm
+                    - v4_by_3_y_u5_zx_arm * t3_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
+                v5_by_2_y_arm * u6_zx_arm
+                    - (v6_by_2_x_arm * minus_u6_xx_arm + minus_v6_by_2_y_arm * u6_yx_arm)
+                    - t11_arm,
+                minus_v6_by_2_y_arm * minus_u6_yy_arm - v6_by_2_x_arm * minus_u6_xy_arm
+                    + v5_by_2_y_arm * u6_zy_arm - t12_arm,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[2], joint_velocities[2],
                 ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t6, 0.0, 0.0, 0.0, 0.0, t43, 0.0, 0.0, t69, -t76, t38,
-                -t97, t128, -t141, -t163, -t173, t182, t103, t223, t238, t257 - t261, t282, t299,
-                t315, t352, t374, -(t401 * t305 + t407 * t386 + t412 + t417), t435 + t438, t455,
-                t482, t503, t401 * t512 + t407 * t286 - t528 + t533,
-                t573 * t441 - t576 * t491 + t407 * t494 - t570,
-                t407 * t379 - (t576 * t467 + t573 * t464) - t605,
+                0.0, 0.0, 0.0, 0.0, 0.0, wd3_z_arm, 0.0, 0.0, 0.0, 0.0, yy_3_on_q2, 0.0, 0.0,
+                xy_3_on_q2, -u3_yz_arm, u3_xz_arm, -minus_m_4_on_q3, zz_4_on_q2, -minus_xx_4_on_q2,
+                -minus_yz_4_on_q2, -minus_xz_4_on_q2, xy_4_on_q2, a3_y_arm, zz_5_on_q2, xx_5_on_q2,
+                t6_arm - s4_a4_z_arm, xy_5_on_q2, xz_5_on_q2, yz_5_on_q2, zz_6_on_q2, xx_6_on_q2,
+                -(minus_v5_by_3_x_arm * u5_xy_arm + v5_by_3_y_arm * minus_u5_yy_arm
+                    + v4_by_3_y_u5_zy_arm + c4_a5_x_minus_a5_z_w5_by_2_x_arm),
+                t9_arm + c4_a4_z_arm,
+                xz_6_on_q2,
+                yz_6_on_q2,
+                xy_6_on_q2,
+                minus_v5_by_3_x_arm * minus_u5_xx_arm + v5_by_3_y_arm * u5_yx_arm
+                    - v4_by_3_y_u5_zx_arm + c4_a5_y_minus_a5_z_w5_by_2_y_arm,
+                v6_by_3_y_arm * u6_yx_arm - v6_by_3_x_arm * minus_u6_xx_arm
+                    + v5_by_3_y_arm * u6_zx_arm - t11_arm,
+                v5_by_3_y_arm * u6_zy_arm
+                    - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
+                    - t12_arm,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[3],
                 joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t125, t136, t158, t168, t147, 0.0, -t224, t224 + s5_arm * t239, -t250,
-                c5_arm * t239 - s5_arm * t270, s5_arm * t286 + c5_arm * t289,
-                s5_arm * t303 - c5_arm * t305, t354 - t355 * t336 + c5_arm * t339,
-                t365 * t355 - t354 + c5_arm * t368, s5_arm * t392, -t392,
-                t355 * t441 - t353 * t445 + c5_arm * t448,
-                t355 * t465 - t353 * t467 + c5_arm * t475,
-                c5_arm * t492 - (t355 * t494 + t353 * t379), -(c5_arm * t392),
-                t520 * t353 - c5_arm * t551, t520 * t355 - c5_arm * t594,
+                wd4_z_arm, xx_4_on_q4, u4_xz_arm, minus_u4_yz_arm, xy_4_on_q4, 0.0,
+                -minus_zz_5_on_q4, minus_zz_5_on_q4 + s5_arm * u5_zy_arm, -a4_x_arm,
+                c5_arm * u5_zy_arm - s5_arm * u5_zx_arm, s5_arm * u5_yx_arm + c5_arm * t7_arm,
+                s5_arm * t8_arm - c5_arm * u5_xy_arm,
+                minus_w6_by_4_y_w6_x_w6_z_arm - w6_by_4_x_arm * minus_w6_y_w6_z_arm
+                    + c5_arm * wd6_z_arm,
+                wd6_x_arm * w6_by_4_x_arm - minus_w6_by_4_y_w6_x_w6_z_arm
+                    + c5_arm * xx_6_on_q6,
+                s5_arm * a5_z_arm,
+                -a5_z_arm,
+                w6_by_4_x_arm * u6_yx_arm - minus_w6_by_4_y_arm * t10_arm
+                    + c5_arm * minus_u6_yz_arm,
+                w6_by_4_x_arm * u6_yy_minus_u5_yy_arm
+                    - minus_w6_by_4_y_arm * minus_u6_xy_arm + c5_arm * u6_xz_arm,
+                c5_arm * xy_6_on_q6
+                    - (w6_by_4_x_arm * u6_zx_arm + minus_w6_by_4_y_arm * u6_zy_arm),
+                -(c5_arm * a5_z_arm),
+                a5_y_arm * minus_w6_by_4_y_arm - c5_arm * minus_a6_y_arm,
+                a5_y_arm * w6_by_4_x_arm - c5_arm * a6_x_arm,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 joint_accelerations[4], joint_velocities[4],
                 ::overact::math::sign(joint_velocities[4]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t214,
-                -t232, 0.0, t275, -t292, t308, t360, -(t360 + s6_arm * t379), -t396, 0.0,
-                -(s6_arm * t441 + c6_arm * t445), -(s6_arm * t465 + c6_arm * t467),
-                s6_arm * t494 - c6_arm * t379, t520, c6_arm * t520, -(s6_arm * t520),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                wd5_z_arm, -minus_xx_5_on_q5, 0.0, xy_5_on_q5, -u5_yz_arm, u5_xz_arm, zz_6_on_q5,
+                -(zz_6_on_q5 + s6_arm * u6_zy_arm), -a5_x_arm, 0.0,
+                -(s6_arm * u6_yx_arm + c6_arm * t10_arm),
+                -(s6_arm * u6_yy_minus_u5_yy_arm + c6_arm * minus_u6_xy_arm),
+                s6_arm * u6_zx_arm - c6_arm * u6_zy_arm, a5_y_arm, c6_arm * a5_y_arm,
+                -(s6_arm * a5_y_arm),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t339, t368, 0.0, 0.0, t448, t475, t492, 0.0, -t551, -t594,
+                wd6_z_arm, xx_6_on_q6, 0.0, 0.0, minus_u6_yz_arm, u6_xz_arm, xy_6_on_q6, 0.0,
+                -minus_a6_y_arm, -a6_x_arm,
             ],
         ]
     }
@@ -1005,280 +1295,341 @@ impl Rx90 {
         joint_accelerations: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
     ) -> [::core::primitive::f64; 6] {
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        // --- sines and cosines
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t10 = s2_arm * joint_accelerations[0];
-        let t11 = c2_arm * joint_velocities[0];
-        let t12 = joint_velocities[1] * t11;
-        let t13 = t10 + t12;
-        let t15 = s2_arm * joint_velocities[0];
-        let t16 = joint_velocities[1] * t15;
-        let t17 = c2_arm * joint_accelerations[0];
-        let t18 = t17 - t16;
-        let t19 = t16 - t18;
-        let t22 = t15 * t11;
-        let t23 = t22 + joint_accelerations[1];
-        let t28 = t11 * t11;
-        let t29 = joint_velocities[1] * joint_velocities[1];
-        let t32 = parameters[5] * t13 - parameters[6] * t19 + parameters[7] * t23
-            - parameters[8] * t12 + parameters[9] * (t28 - t29);
-        let t40 = t15 * t15;
-        let t48 = parameters[5] * t16 + parameters[6] * (t12 + t13)
-            + parameters[7] * (t29 - t40) + parameters[8] * t18
-            - parameters[9] * (t22 - joint_accelerations[1]);
-        let t53 = joint_accelerations[0] * parameters[0]
-            + joint_accelerations[0] * parameters[1]
+        let moment1_z_arm = joint_accelerations[0] * parameters[0];
+        let tau_1_arm = joint_accelerations[0] * parameters[1]
             + joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0]) + parameters[4]
-            + s2_arm * (t32 + parameters[10] * t12)
-            + c2_arm * (t48 - parameters[10] * t16);
+            + ::overact::math::signed(parameters[3], joint_velocities[0])
+            + parameters[4];
+        // --- arm
+        let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
+        let w2_y_arm = c2_arm * joint_velocities[0];
+        let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
+        let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
+        let w2_x_arm = s2_arm * joint_velocities[0];
+        let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
+        let u2_xz_arm = c2_arm * joint_accelerations[0];
+        let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
+        let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+        let w2_x_w2_y_arm = w2_x_arm * w2_y_arm;
+        let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
+        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+        let t1 = parameters[5] * wd2_x_arm - parameters[6] * u2_zx_arm
+            + parameters[7] * u2_yx_arm - parameters[8] * qd2_w2_y_arm
+            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
+        let moment2_x_arm = t1 + parameters[10] * qd2_w2_y_arm;
+        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
+        let t2 = parameters[5] * qd2_w2_x_arm + parameters[6] * u2_zy_arm
+            + parameters[7] * (rate_2_squared_arm - w2_x_squared_arm)
+            + parameters[8] * wd2_y_arm - parameters[9] * u2_xy_arm;
+        let moment2_y_arm = t2 - parameters[10] * qd2_w2_x_arm;
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t65 = joint_velocities[0] * c23_arm;
-        let t67 = c3_arm * t13 + s3_arm * t18 + joint_velocities[2] * t65;
-        let t69 = joint_velocities[0] * s23_arm;
-        let t70 = joint_velocities[1] + joint_velocities[2];
-        let t71 = t69 * t70;
-        let t76 = c3_arm * t18 - s3_arm * t13 - joint_velocities[2] * t69;
-        let t77 = t71 - t76;
-        let t80 = t69 * t65;
-        let t81 = joint_accelerations[1] + joint_accelerations[2];
-        let t82 = t80 + t81;
-        let t85 = t65 * t70;
-        let t88 = t65 * t65;
-        let t89 = t70 * t70;
-        let t92 = parameters[17] * t67 - parameters[18] * t77 + parameters[19] * t82
-            - parameters[20] * t85 + parameters[21] * (t88 - t89);
-        let t95 = 0.45 * t19;
-        let t98 = 9.81 * c2_arm;
-        let t100 = t98 + 0.45 * t23;
-        let t102 = 9.81 * s2_arm;
-        let t105 = t102 - 0.45 * (t28 + t29);
-        let t107 = c3_arm * t100 - s3_arm * t105;
-        let t112 = t85 + t67;
-        let t115 = t69 * t69;
-        let t121 = t80 - t81;
-        let t123 = parameters[17] * t71 + parameters[18] * t112
-            + parameters[19] * (t89 - t115) + parameters[20] * t76
-            - parameters[21] * t121;
-        let t130 = c3_arm * t105 + s3_arm * t100;
-        let t134 = s23_arm
-            * (t92 + parameters[22] * t85 + parameters[24] * t95 - parameters[25] * t107)
-            + c23_arm
-                * (t123 - parameters[22] * t71 - parameters[23] * t95
-                    + parameters[25] * t130);
-        let t144 = 0.45 * c2_arm
-            * (parameters[23] * t77 + parameters[24] * t112
-                - parameters[25] * (joint_velocities[0] * joint_velocities[0])
-                + parameters[26] * t95);
-        let t149 = s23_arm * c4_arm;
-        let t155 = s4_arm * t69 + c4_arm * t70;
-        let t157 = c4_arm * t67 - s4_arm * t81 - joint_velocities[3] * t155;
-        let t161 = c4_arm * t69 - s4_arm * t70;
-        let t162 = t65 + joint_velocities[3];
-        let t163 = t161 * t162;
-        let t168 = s4_arm * t67 + c4_arm * t81 + joint_velocities[3] * t161;
-        let t169 = t163 + t168;
-        let t172 = t76 + joint_accelerations[3];
-        let t173 = t161 * t155;
-        let t174 = t172 - t173;
-        let t177 = t155 * t162;
-        let t180 = t155 * t155;
-        let t181 = t162 * t162;
-        let t184 = parameters[31] * t157 - parameters[32] * t169 + parameters[33] * t174
-            + parameters[34] * t177 + parameters[35] * (t180 - t181);
-        let t187 = t115 + t89;
-        let t189 = t107 - 0.45 * t187;
-        let t193 = t130 + 0.45 * t121;
-        let t196 = 0.45 * (t19 + t112);
-        let t198 = s4_arm * t193 + c4_arm * t196;
-        let t200 = t184 - parameters[36] * t177 + parameters[38] * t189
-            + parameters[39] * t198;
-        let t202 = s23_arm * s4_arm;
-        let t204 = t157 - t177;
-        let t207 = t161 * t161;
-        let t213 = t173 + t172;
-        let t215 = parameters[31] * t163 + parameters[32] * t204
-            + parameters[33] * (t181 - t207) - parameters[34] * t168
-            + parameters[35] * t213;
-        let t222 = c4_arm * t193 - s4_arm * t196;
-        let t224 = t215 - parameters[36] * t163 - parameters[37] * t189
-            + parameters[39] * t222;
-        let t231 = t177 + t157;
-        let t236 = t163 - t168;
-        let t238 = parameters[31] * t173 + parameters[32] * (t207 - t180)
-            + parameters[33] * t231 - parameters[34] * t173 + parameters[35] * t236;
-        let t244 = t238 + parameters[36] * t172 - parameters[37] * t198
-            - parameters[38] * t222;
-        let t248 = 0.45 * (s23_arm - c2_arm);
-        let t249 = s4_arm * t248;
-        let t257 = parameters[39] * t236
-            - (parameters[37] * (t180 + t181) + parameters[38] * t213)
-            + parameters[40] * t222;
-        let t259 = c4_arm * t248;
-        let t261 = t207 + t181;
-        let t267 = parameters[37] * t174 - parameters[38] * t261 - parameters[39] * t231
-            - parameters[40] * t198;
-        let t271 = t53 + t134 - t144 + t149 * t200 - t202 * t224 + c23_arm * t244
-            - (t249 * t257 + t259 * t267);
-        let t274 = s5_arm * t249;
-        let t277 = c5_arm * t161 + s5_arm * t162;
-        let t280 = c5_arm * t162 - s5_arm * t161;
-        let t281 = t277 * t280;
-        let t282 = t168 + joint_accelerations[4];
-        let t283 = t281 + t282;
-        let t285 = t277 * t277;
-        let t286 = t155 + joint_velocities[4];
-        let t287 = t286 * t286;
-        let t288 = t285 + t287;
-        let t291 = t280 * t286;
-        let t296 = c5_arm * t157 + s5_arm * t172 + joint_velocities[4] * t280;
-        let t297 = t291 - t296;
-        let t302 = c5_arm * t189 - s5_arm * t222;
-        let t304 = parameters[51] * t283 - parameters[52] * t288 + parameters[53] * t297
-            + parameters[54] * t302;
-        let t307 = t281 - t282;
-        let t309 = t280 * t280;
-        let t313 = t277 * t286;
-        let t318 = c5_arm * t172 - s5_arm * t157 - joint_velocities[4] * t277;
-        let t319 = t313 + t318;
-        let t324 = c5_arm * t222 + s5_arm * t189;
-        let t326 = parameters[52] * t307 - parameters[51] * (t309 + t287)
-            + parameters[53] * t319 + parameters[54] * t324;
-        let t329 = t313 - t318;
-        let t331 = t291 + t296;
-        let t337 = parameters[51] * t329 + parameters[52] * t331 - parameters[53] * t261
-            + parameters[54] * t198;
-        let t342 = t149 * c5_arm + c23_arm * s5_arm;
-        let t352 = parameters[45] * t296 - parameters[46] * t329 + parameters[47] * t283
-            - parameters[48] * t291 + parameters[49] * (t309 - t287);
-        let t358 = t352 + parameters[50] * t291 + parameters[52] * t198
-            - parameters[53] * t302;
-        let t362 = c23_arm * c5_arm - t149 * s5_arm;
-        let t372 = parameters[45] * t313 + parameters[46] * t331
-            + parameters[47] * (t287 - t285) + parameters[48] * t318
-            - parameters[49] * t307;
-        let t378 = t372 - parameters[50] * t313 - parameters[51] * t198
-            + parameters[53] * t324;
-        let t390 = parameters[46] * (t285 - t309) - parameters[45] * t281
-            - parameters[47] * t297 + parameters[48] * t281 + parameters[49] * t319;
-        let t396 = t390 + parameters[50] * t282 + parameters[51] * t302
-            - parameters[52] * t324;
-        let t399 = t274 * t304 - c5_arm * t249 * t326 + t259 * t337 + t342 * t358
-            + t362 * t378 + t202 * t396;
-        let t403 = s4_arm * c5_arm;
-        let t406 = s6_arm * t403 - c4_arm * c6_arm;
-        let t408 = t318 + joint_accelerations[5];
-        let t411 = c6_arm * t277 - s6_arm * t286;
-        let t414 = s6_arm * t277 + c6_arm * t286;
-        let t415 = t411 * t414;
-        let t416 = t408 - t415;
-        let t418 = t411 * t411;
-        let t419 = t280 + joint_velocities[5];
-        let t420 = t419 * t419;
-        let t424 = t414 * t419;
-        let t429 = c6_arm * t296 - s6_arm * t282 - joint_velocities[5] * t414;
-        let t430 = t424 + t429;
-        let t435 = s6_arm * t324 + c6_arm * t198;
-        let t437 = parameters[65] * t416 - parameters[66] * (t418 + t420)
-            - parameters[67] * t430 - parameters[68] * t435;
-        let t441 = c6_arm * t403 + c4_arm * s6_arm;
-        let t443 = t411 * t419;
-        let t448 = s6_arm * t296 + c6_arm * t282 + joint_velocities[5] * t411;
-        let t449 = t443 - t448;
-        let t451 = t414 * t414;
-        let t454 = t415 + t408;
-        let t460 = c6_arm * t324 - s6_arm * t198;
-        let t462 = parameters[67] * t449
-            - (parameters[65] * (t451 + t420) + parameters[66] * t454)
-            + parameters[68] * t460;
-        let t465 = t443 + t448;
-        let t467 = t429 - t424;
-        let t473 = parameters[65] * t465 + parameters[66] * t467 - parameters[67] * t288
-            + parameters[68] * t302;
-        let t488 = parameters[59] * t429 - parameters[60] * t465 + parameters[61] * t416
-            + parameters[62] * t424 + parameters[63] * (t451 - t420);
-        let t494 = t488 - parameters[64] * t424 + parameters[66] * t302
-            + parameters[67] * t435;
-        let t508 = parameters[59] * t443 + parameters[60] * t467
-            + parameters[61] * (t420 - t418) - parameters[62] * t448
-            + parameters[63] * t454;
-        let t514 = t508 - parameters[64] * t443 - parameters[65] * t302
-            + parameters[67] * t460;
-        let t526 = parameters[59] * t415 + parameters[60] * (t418 - t451)
-            + parameters[61] * t430 - parameters[62] * t415 + parameters[63] * t449;
-        let t532 = t526 + parameters[64] * t408 - parameters[65] * t435
-            - parameters[66] * t460;
-        let t534 = (t342 * c6_arm - t202 * s6_arm) * t494
-            - (t342 * s6_arm + t202 * c6_arm) * t514 + t362 * t532;
-        let t536 = t271 + t399 + t248 * t406 * t437 - t248 * t441 * t462 + t274 * t473
-            + t534;
-        let t546 = parameters[6] * (t40 - t28) - parameters[5] * t22
-            + parameters[7] * t10 + parameters[8] * t22 + parameters[9] * t17;
-        let t559 = t546 + joint_accelerations[1] * parameters[10] + parameters[11] * t98
-            - parameters[12] * t102 + joint_accelerations[1] * parameters[13]
+        let w3_y_arm = joint_velocities[0] * c23_arm;
+        let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
+            + joint_velocities[2] * w3_y_arm;
+        let w3_x_arm = joint_velocities[0] * s23_arm;
+        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+        let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
+        let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
+            - joint_velocities[2] * w3_x_arm;
+        let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+        let w3_x_w3_y_arm = w3_x_arm * w3_y_arm;
+        let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
+        let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
+        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
+        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+        let t3 = parameters[17] * wd3_x_arm - parameters[18] * u3_zx_arm
+            + parameters[19] * u3_yx_arm - parameters[20] * w3_y_w3_z_arm
+            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
+        let a3_z_arm = D3 * u2_zx_arm;
+        let a2_y_arm = 9.81 * c2_arm;
+        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
+        let a2_x_arm = 9.81 * s2_arm;
+        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
+        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
+        let moment3_x_arm = t3 + parameters[22] * w3_y_w3_z_arm
+            + parameters[24] * a3_z_arm - parameters[25] * a3_y_arm;
+        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
+        let t4 = parameters[17] * w3_x_w3_z_arm + parameters[18] * u3_zy_arm
+            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
+            + parameters[20] * wd3_y_arm - parameters[21] * u3_xy_arm;
+        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
+        let moment3_y_arm = t4 - parameters[22] * w3_x_w3_z_arm
+            - parameters[23] * a3_z_arm + parameters[25] * a3_x_arm;
+        let minus_v3_by_1_z_arm = D3 * c2_arm;
+        let rate_1_squared_arm = joint_velocities[0] * joint_velocities[0];
+        let force3_z_arm = parameters[23] * u3_zx_arm + parameters[24] * u3_zy_arm
+            - parameters[25] * rate_1_squared_arm + parameters[26] * a3_z_arm;
+        let t5 = moment1_z_arm + tau_1_arm + s2_arm * moment2_x_arm
+            + c2_arm * moment2_y_arm + s23_arm * moment3_x_arm + c23_arm * moment3_y_arm
+            - minus_v3_by_1_z_arm * force3_z_arm;
+        let w4_by_1_x_arm = s23_arm * c4_arm;
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
+            + joint_velocities[3] * w4_x_arm;
+        let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+        let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
+        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+        let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let t6 = parameters[31] * wd4_x_arm - parameters[32] * u4_zx_arm
+            + parameters[33] * u4_yx_arm + parameters[34] * minus_w4_y_w4_z_arm
+            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
+        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
+        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
+        let t1_arm = D3 * (u2_zx_arm + u3_zy_arm);
+        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t1_arm;
+        let moment4_x_arm = t6 - parameters[36] * minus_w4_y_w4_z_arm
+            + parameters[38] * a4_z_arm + parameters[39] * a5_z_arm;
+        let w5_by_1_z_arm = s23_arm * s4_arm;
+        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
+        let t7 = parameters[31] * w4_x_w4_z_arm + parameters[32] * u4_zy_arm
+            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
+            - parameters[34] * minus_wd4_y_arm + parameters[35] * minus_u4_xy_arm;
+        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t1_arm;
+        let moment4_y_arm = t7 - parameters[36] * w4_x_w4_z_arm
+            - parameters[37] * a4_z_arm + parameters[39] * a4_x_arm;
+        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
+        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
+        let t8 = parameters[31] * minus_w4_x_w4_y_arm
+            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
+            + parameters[33] * minus_u4_yz_arm - parameters[34] * minus_w4_x_w4_y_arm
+            + parameters[35] * u4_xz_arm;
+        let moment4_z_arm = t8 + parameters[36] * wd4_z_arm - parameters[37] * a5_z_arm
+            - parameters[38] * a4_x_arm;
+        let t2_arm = D3 * (s23_arm - c2_arm);
+        let minus_v4_by_1_x_arm = s4_arm * t2_arm;
+        let minus_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let force4_x_arm = parameters[39] * u4_xz_arm
+            - (parameters[37] * minus_u4_xx_arm + parameters[38] * minus_u4_xy_arm)
+            + parameters[40] * a4_x_arm;
+        let v5_by_1_z_arm = c4_arm * t2_arm;
+        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let force4_y_arm = parameters[37] * u4_yx_arm - parameters[38] * minus_u4_yy_arm
+            - parameters[39] * minus_u4_yz_arm - parameters[40] * a5_z_arm;
+        let t9 = t5 + w4_by_1_x_arm * moment4_x_arm - w5_by_1_z_arm * moment4_y_arm
+            + c23_arm * moment4_z_arm
+            - (minus_v4_by_1_x_arm * force4_x_arm + v5_by_1_z_arm * force4_y_arm);
+        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
+        let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
+            + joint_velocities[4] * w5_y_arm;
+        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
+        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+        let force5_y_arm = parameters[51] * u5_yx_arm - parameters[52] * minus_u5_yy_arm
+            + parameters[53] * u5_yz_arm + parameters[54] * a5_y_arm;
+        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
+        let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+        let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
+            - joint_velocities[4] * w5_x_arm;
+        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
+        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
+        let force5_x_arm = parameters[52] * u5_xy_arm - parameters[51] * minus_u5_xx_arm
+            + parameters[53] * u5_xz_arm + parameters[54] * a5_x_arm;
+        let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
+        let force5_z_arm = parameters[51] * u5_zx_arm + parameters[52] * u5_zy_arm
+            - parameters[53] * minus_u4_yy_arm + parameters[54] * a5_z_arm;
+        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
+        let t10 = parameters[45] * wd5_x_arm - parameters[46] * u5_zx_arm
+            + parameters[47] * u5_yx_arm - parameters[48] * w5_y_w5_z_arm
+            + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
+        let moment5_x_arm = t10 + parameters[50] * w5_y_w5_z_arm
+            + parameters[52] * a5_z_arm - parameters[53] * a5_y_arm;
+        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
+        let t11 = parameters[45] * w5_x_w5_z_arm + parameters[46] * u5_zy_arm
+            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
+            + parameters[48] * wd5_y_arm - parameters[49] * u5_xy_arm;
+        let moment5_y_arm = t11 - parameters[50] * w5_x_w5_z_arm
+            - parameters[51] * a5_z_arm + parameters[53] * a5_x_arm;
+        let t12 = parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
+            - parameters[45] * w5_x_w5_y_arm - parameters[47] * u5_yz_arm
+            + parameters[48] * w5_x_w5_y_arm + parameters[49] * u5_xz_arm;
+        let moment5_z_arm = t12 + parameters[50] * wd5_z_arm + parameters[51] * a5_y_arm
+            - parameters[52] * a5_x_arm;
+        let t13 = v5_by_1_y_arm * force5_y_arm - minus_v5_by_1_x_arm * force5_x_arm
+            + v5_by_1_z_arm * force5_z_arm + w5_by_1_x_arm * moment5_x_arm
+            + w5_by_1_y_arm * moment5_y_arm + w5_by_1_z_arm * moment5_z_arm;
+        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
+        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
+        let v6_by_1_y_arm = t2_arm * w6_by_2_y_arm;
+        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+        let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
+        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
+        let force6_y_arm = parameters[65] * u6_yx_arm - parameters[66] * minus_u6_yy_arm
+            - parameters[67] * minus_u6_yz_arm - parameters[68] * minus_a6_y_arm;
+        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
+        let minus_v6_by_1_x_arm = t2_arm * minus_w6_by_2_x_arm;
+        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+        let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
+            + joint_velocities[5] * w6_x_arm;
+        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
+        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
+        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
+        let force6_x_arm = parameters[67] * u6_xz_arm
+            - (parameters[65] * minus_u6_xx_arm + parameters[66] * minus_u6_xy_arm)
+            + parameters[68] * a6_x_arm;
+        let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
+        let force6_z_arm = parameters[65] * u6_zx_arm + parameters[66] * u6_zy_arm
+            - parameters[67] * minus_u5_yy_arm + parameters[68] * a5_y_arm;
+        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
+        let t14 = parameters[59] * wd6_x_arm - parameters[60] * u6_zx_arm
+            + parameters[61] * u6_yx_arm + parameters[62] * minus_w6_y_w6_z_arm
+            + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
+        let moment6_x_arm = t14 - parameters[64] * minus_w6_y_w6_z_arm
+            + parameters[66] * a5_y_arm + parameters[67] * minus_a6_y_arm;
+        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
+        let t15 = parameters[59] * w6_x_w6_z_arm + parameters[60] * u6_zy_arm
+            + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
+            - parameters[62] * minus_wd6_y_arm + parameters[63] * minus_u6_xy_arm;
+        let moment6_y_arm = t15 - parameters[64] * w6_x_w6_z_arm
+            - parameters[65] * a5_y_arm + parameters[67] * a6_x_arm;
+        let t16 = parameters[59] * minus_w6_x_w6_y_arm
+            + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
+            + parameters[61] * minus_u6_yz_arm - parameters[62] * minus_w6_x_w6_y_arm
+            + parameters[63] * u6_xz_arm;
+        let moment6_z_arm = t16 + parameters[64] * wd6_z_arm
+            - parameters[65] * minus_a6_y_arm - parameters[66] * a6_x_arm;
+        let t17 = v6_by_1_y_arm * force6_y_arm - minus_v6_by_1_x_arm * force6_x_arm
+            + v5_by_1_y_arm * force6_z_arm + w6_by_1_x_arm * moment6_x_arm
+            - minus_w6_by_1_y_arm * moment6_y_arm + w5_by_1_y_arm * moment6_z_arm;
+        let force_on_u1_arm = t9 + t13 + t17;
+        let t18 = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+            - parameters[5] * w2_x_w2_y_arm + parameters[7] * minus_u2_yz_arm
+            + parameters[8] * w2_x_w2_y_arm + parameters[9] * u2_xz_arm;
+        let moment2_z_arm = t18 + joint_accelerations[1] * parameters[10]
+            + parameters[11] * a2_y_arm - parameters[12] * a2_x_arm;
+        let tau_2_arm = joint_accelerations[1] * parameters[13]
             + joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
             + parameters[16];
-        let t560 = 0.45 * s3_arm;
-        let t565 = t71 + t76;
-        let t571 = 0.45 * c3_arm;
-        let t575 = t85 - t67;
-        let t581 = t560
-            * (parameters[24] * t121 - parameters[23] * (t88 + t89)
-                + parameters[25] * t565 + parameters[26] * t130)
-            + t571
-                * (parameters[23] * t82 - parameters[24] * t187 + parameters[25] * t575
-                    + parameters[26] * t107);
-        let t591 = parameters[18] * (t115 - t88) - parameters[17] * t80
-            - parameters[19] * t575 + parameters[20] * t80 + parameters[21] * t565;
-        let t597 = t591 + parameters[22] * t81 + parameters[23] * t107
-            - parameters[24] * t130;
-        let t600 = t560 - 0.45;
-        let t601 = c4_arm * t600;
-        let t603 = s4_arm * t600;
-        let t614 = t601 * t257 - t603 * t267
-            + t571
-                * (parameters[37] * t169 + parameters[38] * t204 - parameters[39] * t187
-                    + parameters[40] * t189);
-        let t617 = s4_arm * t200 + c4_arm * t224;
-        let t622 = c5_arm * t601 + s5_arm * t571;
-        let t626 = c5_arm * t571 - s5_arm * t601;
-        let t631 = s4_arm * s5_arm;
-        let t636 = t631 * t378 - t403 * t358 + c4_arm * t396;
-        let t638 = t559 + t581 + t597 + t614 - t617 + t622 * t326 + t626 * t304
-            + t603 * t337 + t636;
-        let t649 = (c6_arm * t622 - s6_arm * t603) * t462
-            - (s6_arm * t622 + c6_arm * t603) * t437 + t626 * t473;
-        let t654 = t406 * t514 - t441 * t494 + t631 * t532;
-        let t664 = 0.45 * s4_arm;
-        let t666 = 0.45 * c4_arm;
-        let t670 = t597 + joint_accelerations[2] * parameters[27]
+        let v3_by_2_x_arm = D3 * s3_arm;
+        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
+        let force3_x_arm = parameters[24] * u3_xy_arm - parameters[23] * minus_u3_xx_arm
+            + parameters[25] * u3_xz_arm + parameters[26] * a3_x_arm;
+        let v3_by_2_y_arm = D3 * c3_arm;
+        let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
+        let force3_y_arm = parameters[23] * u3_yx_arm - parameters[24] * minus_u3_yy_arm
+            + parameters[25] * u3_yz_arm + parameters[26] * a3_y_arm;
+        let t19 = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+            - parameters[17] * w3_x_w3_y_arm - parameters[19] * u3_yz_arm
+            + parameters[20] * w3_x_w3_y_arm + parameters[21] * u3_xz_arm;
+        let moment3_z_arm = t19 + parameters[22] * wd3_z_arm + parameters[23] * a3_y_arm
+            - parameters[24] * a3_x_arm;
+        let v3_by_2_x_minus_d3_arm = v3_by_2_x_arm - D3;
+        let v4_by_2_x_arm = c4_arm * v3_by_2_x_minus_d3_arm;
+        let v5_by_2_z_arm = s4_arm * v3_by_2_x_minus_d3_arm;
+        let force4_z_arm = parameters[37] * u4_zx_arm + parameters[38] * u4_zy_arm
+            - parameters[39] * minus_u3_yy_arm + parameters[40] * a4_z_arm;
+        let s4_moment4_x_plus_c4_moment4_y_arm = s4_arm * moment4_x_arm
+            + c4_arm * moment4_y_arm;
+        let t20 = moment2_z_arm + tau_2_arm + v3_by_2_x_arm * force3_x_arm
+            + v3_by_2_y_arm * force3_y_arm + moment3_z_arm + v4_by_2_x_arm * force4_x_arm
+            - v5_by_2_z_arm * force4_y_arm + v3_by_2_y_arm * force4_z_arm
+            - s4_moment4_x_plus_c4_moment4_y_arm;
+        let v5_by_2_x_arm = c5_arm * v4_by_2_x_arm + s5_arm * v3_by_2_y_arm;
+        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm - s5_arm * v4_by_2_x_arm;
+        let w5_by_2_y_arm = s4_arm * s5_arm;
+        let t21 = w5_by_2_y_arm * moment5_y_arm - minus_w5_by_2_x_arm * moment5_x_arm
+            + c4_arm * moment5_z_arm;
+        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm - s6_arm * v5_by_2_z_arm;
+        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm + c6_arm * v5_by_2_z_arm;
+        let t22 = w6_by_2_y_arm * moment6_y_arm - minus_w6_by_2_x_arm * moment6_x_arm
+            + w5_by_2_y_arm * moment6_z_arm;
+        let force_on_u2_arm = t20 + v5_by_2_x_arm * force5_x_arm
+            + v5_by_2_y_arm * force5_y_arm + v5_by_2_z_arm * force5_z_arm + t21
+            + v6_by_2_x_arm * force6_x_arm - minus_v6_by_2_y_arm * force6_y_arm
+            + v5_by_2_y_arm * force6_z_arm + t22;
+        let tau_3_arm = joint_accelerations[2] * parameters[27]
             + joint_velocities[2] * parameters[28]
             + ::overact::math::signed(parameters[29], joint_velocities[2])
-            + parameters[30] + t664 * t267 - t666 * t257 - t617;
-        let t671 = s5_arm * t666;
-        let t673 = c5_arm * t666;
-        let t690 = (s6_arm * t664 - c6_arm * t673) * t462
-            + (s6_arm * t673 + c6_arm * t664) * t437 + t671 * t473;
-        let t703 = t244 + joint_accelerations[3] * parameters[41]
+            + parameters[30];
+        let v4_by_3_y_arm = D3 * s4_arm;
+        let minus_v4_by_3_x_arm = D3 * c4_arm;
+        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
+        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
+        let t23 = moment3_z_arm + tau_3_arm + v4_by_3_y_arm * force4_y_arm
+            - minus_v4_by_3_x_arm * force4_x_arm - s4_moment4_x_plus_c4_moment4_y_arm
+            + v5_by_3_y_arm * force5_y_arm - minus_v5_by_3_x_arm * force5_x_arm
+            - v4_by_3_y_arm * force5_z_arm + t21;
+        let v6_by_3_x_arm = s6_arm * v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
+        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_arm * v4_by_3_y_arm;
+        let force_on_u3_arm = t23 + v6_by_3_x_arm * force6_x_arm
+            + v6_by_3_y_arm * force6_y_arm + v5_by_3_y_arm * force6_z_arm + t22;
+        let tau_4_arm = joint_accelerations[3] * parameters[41]
             + joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44] + s5_arm * t358 + c5_arm * t378;
-        let t722 = t396 + joint_accelerations[4] * parameters[55]
+            + parameters[44];
+        let w6_by_4_x_arm = s5_arm * c6_arm;
+        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
+        let force_on_u4_arm = moment4_z_arm + tau_4_arm + s5_arm * moment5_x_arm
+            + c5_arm * moment5_y_arm + w6_by_4_x_arm * moment6_x_arm
+            - minus_w6_by_4_y_arm * moment6_y_arm + c5_arm * moment6_z_arm;
+        let tau_5_arm = joint_accelerations[4] * parameters[55]
             + joint_velocities[4] * parameters[56]
             + ::overact::math::signed(parameters[57], joint_velocities[4])
-            + parameters[58] - (s6_arm * t494 + c6_arm * t514);
+            + parameters[58];
+        let force_on_u5_arm = moment5_z_arm + tau_5_arm
+            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let tau_6_arm = joint_accelerations[5] * parameters[69]
+            + joint_velocities[5] * parameters[70]
+            + ::overact::math::signed(parameters[71], joint_velocities[5])
+            + parameters[72];
+        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
         [
-            t536, t638 + t649 + t654,
-            t670 + t671 * t304 - t673 * t326 - t664 * t337 + t636 + t690 + t654,
-            t703 + s5_arm * c6_arm * t494 - s5_arm * s6_arm * t514 + c5_arm * t532, t722,
-            t532 + joint_accelerations[5] * parameters[69]
-                + joint_velocities[5] * parameters[70]
-                + ::overact::math::signed(parameters[71], joint_velocities[5])
-                + parameters[72],
+            force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
+            force_on_u6_arm,
         ]
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -1295,235 +1646,323 @@ impl Rx90 {
         joints: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
     ) -> [[::core::primitive::f64; 6]; 6] {
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        // --- sines and cosines
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t12 = parameters[0] + parameters[1]
+        let t1 = parameters[0] + parameters[1]
             + s2_arm * (s2_arm * parameters[5] + c2_arm * parameters[6])
             + c2_arm * (s2_arm * parameters[6] + c2_arm * parameters[8]);
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t24 = 0.45 * c2_arm;
-        let t34 = s23_arm
+        let minus_v3_by_1_z_arm = D3 * c2_arm;
+        let t2 = s23_arm
             * (s23_arm * parameters[17] + c23_arm * parameters[18]
-                - parameters[24] * t24)
+                - parameters[24] * minus_v3_by_1_z_arm)
             + c23_arm
                 * (s23_arm * parameters[18] + c23_arm * parameters[20]
-                    + parameters[23] * t24);
-        let t45 = s23_arm * c4_arm;
-        let t47 = s23_arm * s4_arm;
-        let t53 = 0.45 * (s23_arm - c2_arm);
-        let t54 = c4_arm * t53;
-        let t63 = s4_arm * t53;
-        let t67 = t45
-            * (t45 * parameters[31] - t47 * parameters[32] + c23_arm * parameters[33]
-                + parameters[39] * t54)
-            - t47
-                * (t45 * parameters[32] - t47 * parameters[34] + c23_arm * parameters[35]
-                    - parameters[39] * t63);
-        let t76 = t45 * parameters[33] - t47 * parameters[35] + c23_arm * parameters[36]
-            - parameters[37] * t54 + parameters[38] * t63;
-        let t91 = t54
-            * (c23_arm * parameters[37] - t45 * parameters[39] - parameters[40] * t54)
-            - t63
-                * (parameters[40] * t63 + c23_arm * parameters[38]
-                    + t47 * parameters[39]);
-        let t93 = t12 + t34
-            - t24
+                    + parameters[23] * minus_v3_by_1_z_arm);
+        // --- arm
+        let w4_by_1_x_arm = s23_arm * c4_arm;
+        let w5_by_1_z_arm = s23_arm * s4_arm;
+        let t1_arm = D3 * (s23_arm - c2_arm);
+        let v5_by_1_z_arm = c4_arm * t1_arm;
+        let minus_v4_by_1_x_arm = s4_arm * t1_arm;
+        let t3 = w4_by_1_x_arm
+            * (w4_by_1_x_arm * parameters[31] - w5_by_1_z_arm * parameters[32]
+                + c23_arm * parameters[33] + parameters[39] * v5_by_1_z_arm)
+            - w5_by_1_z_arm
+                * (w4_by_1_x_arm * parameters[32] - w5_by_1_z_arm * parameters[34]
+                    + c23_arm * parameters[35] - parameters[39] * minus_v4_by_1_x_arm);
+        let t4 = w4_by_1_x_arm * parameters[33] - w5_by_1_z_arm * parameters[35]
+            + c23_arm * parameters[36] - parameters[37] * v5_by_1_z_arm
+            + parameters[38] * minus_v4_by_1_x_arm;
+        let t5 = v5_by_1_z_arm
+            * (c23_arm * parameters[37] - w4_by_1_x_arm * parameters[39]
+                - parameters[40] * v5_by_1_z_arm)
+            - minus_v4_by_1_x_arm
+                * (parameters[40] * minus_v4_by_1_x_arm + c23_arm * parameters[38]
+                    + w5_by_1_z_arm * parameters[39]);
+        let t6 = t1 + t2
+            - minus_v3_by_1_z_arm
                 * (s23_arm * parameters[24] - c23_arm * parameters[23]
-                    - parameters[26] * t24) + t67 + c23_arm * t76 - t91;
-        let t96 = s5_arm * t63;
-        let t100 = t45 * c5_arm + c23_arm * s5_arm;
-        let t106 = c5_arm * t63;
-        let t109 = c23_arm * c5_arm - t45 * s5_arm;
-        let t116 = t96
-            * (t47 * parameters[51] - t100 * parameters[53] + parameters[54] * t96)
-            - t106
-                * (t109 * parameters[53] - t47 * parameters[52] - parameters[54] * t106);
-        let t133 = t100
-            * (t100 * parameters[45] + t109 * parameters[46] + t47 * parameters[47]
-                + parameters[52] * t54 - parameters[53] * t96);
-        let t143 = t109
-            * (t100 * parameters[46] + t109 * parameters[48] + t47 * parameters[49]
-                - parameters[51] * t54 - parameters[53] * t106);
-        let t153 = t100 * parameters[47] + t109 * parameters[49] + t47 * parameters[50]
-            + parameters[51] * t96 + parameters[52] * t106;
-        let t156 = t116
-            + t54
-                * (t100 * parameters[52] - t109 * parameters[51] + parameters[54] * t54)
-            + t133 + t143 + t47 * t153;
-        let t160 = s4_arm * c5_arm;
-        let t163 = s6_arm * t160 - c4_arm * c6_arm;
-        let t164 = t53 * t163;
-        let t168 = t100 * c6_arm - t47 * s6_arm;
-        let t176 = c6_arm * t160 + c4_arm * s6_arm;
-        let t177 = t53 * t176;
-        let t182 = t100 * s6_arm + t47 * c6_arm;
-        let t187 = t164
-            * (t109 * parameters[65] - t168 * parameters[67] + parameters[68] * t164)
-            + t177
-                * (parameters[68] * t177 + t109 * parameters[66]
-                    + t182 * parameters[67]);
-        let t204 = t168
-            * (t168 * parameters[59] - t182 * parameters[60] + t109 * parameters[61]
-                + parameters[66] * t96 - parameters[67] * t164);
-        let t214 = t182
-            * (t168 * parameters[60] - t182 * parameters[62] + t109 * parameters[63]
-                - parameters[65] * t96 - parameters[67] * t177);
-        let t224 = t168 * parameters[61] - t182 * parameters[63] + t109 * parameters[64]
-            + parameters[65] * t164 + parameters[66] * t177;
-        let t227 = t187
-            + t96
-                * (t182 * parameters[65] + t168 * parameters[66] + parameters[68] * t96)
-            + t204 - t214 + t109 * t224;
-        let t232 = 0.45 * c3_arm;
-        let t236 = 0.45 * s3_arm;
-        let t241 = s2_arm * parameters[7] + c2_arm * parameters[9]
-            + s23_arm * (parameters[19] - parameters[25] * t232)
-            + c23_arm * (parameters[21] + parameters[25] * t236);
-        let t245 = s4_arm * parameters[31] + c4_arm * parameters[32];
-        let t247 = t236 - 0.45;
-        let t248 = s4_arm * t247;
-        let t250 = parameters[38] * t232 - t245 + parameters[39] * t248;
-        let t252 = c4_arm * t247;
-        let t256 = s4_arm * parameters[32] + c4_arm * parameters[34];
-        let t259 = parameters[39] * t252 - (t256 + parameters[37] * t232);
-        let t264 = s4_arm * parameters[33] + c4_arm * parameters[35];
-        let t268 = t264 + parameters[37] * t248 + parameters[38] * t252;
-        let t272 = s4_arm * s5_arm;
-        let t277 = parameters[46] * t272 - parameters[45] * t160
+                    - parameters[26] * minus_v3_by_1_z_arm) + t3 + c23_arm * t4 - t5;
+        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
+        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
+        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
+        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
+        let t7 = v5_by_1_y_arm
+            * (w5_by_1_z_arm * parameters[51] - w5_by_1_x_arm * parameters[53]
+                + parameters[54] * v5_by_1_y_arm)
+            - minus_v5_by_1_x_arm
+                * (w5_by_1_y_arm * parameters[53] - w5_by_1_z_arm * parameters[52]
+                    - parameters[54] * minus_v5_by_1_x_arm);
+        let t8 = w5_by_1_x_arm
+            * (w5_by_1_x_arm * parameters[45] + w5_by_1_y_arm * parameters[46]
+                + w5_by_1_z_arm * parameters[47] + parameters[52] * v5_by_1_z_arm
+                - parameters[53] * v5_by_1_y_arm);
+        let t9 = w5_by_1_y_arm
+            * (w5_by_1_x_arm * parameters[46] + w5_by_1_y_arm * parameters[48]
+                + w5_by_1_z_arm * parameters[49] - parameters[51] * v5_by_1_z_arm
+                - parameters[53] * minus_v5_by_1_x_arm);
+        let t10 = w5_by_1_x_arm * parameters[47] + w5_by_1_y_arm * parameters[49]
+            + w5_by_1_z_arm * parameters[50] + parameters[51] * v5_by_1_y_arm
+            + parameters[52] * minus_v5_by_1_x_arm;
+        let t11 = t7
+            + v5_by_1_z_arm
+                * (w5_by_1_x_arm * parameters[52] - w5_by_1_y_arm * parameters[51]
+                    + parameters[54] * v5_by_1_z_arm) + t8 + t9 + w5_by_1_z_arm * t10;
+        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
+        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
+        let v6_by_1_y_arm = t1_arm * w6_by_2_y_arm;
+        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
+        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
+        let minus_v6_by_1_x_arm = t1_arm * minus_w6_by_2_x_arm;
+        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
+        let t12 = v6_by_1_y_arm
+            * (w5_by_1_y_arm * parameters[65] - w6_by_1_x_arm * parameters[67]
+                + parameters[68] * v6_by_1_y_arm)
+            + minus_v6_by_1_x_arm
+                * (parameters[68] * minus_v6_by_1_x_arm + w5_by_1_y_arm * parameters[66]
+                    + minus_w6_by_1_y_arm * parameters[67]);
+        let t13 = w6_by_1_x_arm
+            * (w6_by_1_x_arm * parameters[59] - minus_w6_by_1_y_arm * parameters[60]
+                + w5_by_1_y_arm * parameters[61] + parameters[66] * v5_by_1_y_arm
+                - parameters[67] * v6_by_1_y_arm);
+        let t14 = minus_w6_by_1_y_arm
+            * (w6_by_1_x_arm * parameters[60] - minus_w6_by_1_y_arm * parameters[62]
+                + w5_by_1_y_arm * parameters[63] - parameters[65] * v5_by_1_y_arm
+                - parameters[67] * minus_v6_by_1_x_arm);
+        let t15 = w6_by_1_x_arm * parameters[61] - minus_w6_by_1_y_arm * parameters[63]
+            + w5_by_1_y_arm * parameters[64] + parameters[65] * v6_by_1_y_arm
+            + parameters[66] * minus_v6_by_1_x_arm;
+        let t16 = t12
+            + v5_by_1_y_arm
+                * (minus_w6_by_1_y_arm * parameters[65] + w6_by_1_x_arm * parameters[66]
+                    + parameters[68] * v5_by_1_y_arm) + t13 - t14 + w5_by_1_y_arm * t15;
+        let v3_by_2_y_arm = D3 * c3_arm;
+        let v3_by_2_x_arm = D3 * s3_arm;
+        let t17 = s2_arm * parameters[7] + c2_arm * parameters[9]
+            + s23_arm * (parameters[19] - parameters[25] * v3_by_2_y_arm)
+            + c23_arm * (parameters[21] + parameters[25] * v3_by_2_x_arm);
+        let s4_xx_4_plus_c4_xy_4_arm = s4_arm * parameters[31] + c4_arm * parameters[32];
+        let v3_by_2_x_minus_d3_arm = v3_by_2_x_arm - D3;
+        let v5_by_2_z_arm = s4_arm * v3_by_2_x_minus_d3_arm;
+        let t18 = parameters[38] * v3_by_2_y_arm - s4_xx_4_plus_c4_xy_4_arm
+            + parameters[39] * v5_by_2_z_arm;
+        let v4_by_2_x_arm = c4_arm * v3_by_2_x_minus_d3_arm;
+        let s4_xy_4_plus_c4_yy_4_arm = s4_arm * parameters[32] + c4_arm * parameters[34];
+        let t19 = parameters[39] * v4_by_2_x_arm
+            - (s4_xy_4_plus_c4_yy_4_arm + parameters[37] * v3_by_2_y_arm);
+        let s4_xz_4_plus_c4_yz_4_arm = s4_arm * parameters[33] + c4_arm * parameters[35];
+        let t20 = s4_xz_4_plus_c4_yz_4_arm + parameters[37] * v5_by_2_z_arm
+            + parameters[38] * v4_by_2_x_arm;
+        let w5_by_2_y_arm = s4_arm * s5_arm;
+        let t21 = parameters[46] * w5_by_2_y_arm - parameters[45] * minus_w5_by_2_x_arm
             + c4_arm * parameters[47];
-        let t282 = c5_arm * t232 - s5_arm * t252;
-        let t284 = t277 + parameters[52] * t248 - parameters[53] * t282;
-        let t290 = parameters[48] * t272 - parameters[46] * t160
+        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm - s5_arm * v4_by_2_x_arm;
+        let t22 = t21 + parameters[52] * v5_by_2_z_arm - parameters[53] * v5_by_2_y_arm;
+        let t23 = parameters[48] * w5_by_2_y_arm - parameters[46] * minus_w5_by_2_x_arm
             + c4_arm * parameters[49];
-        let t295 = c5_arm * t252 + s5_arm * t232;
-        let t297 = t290 - parameters[51] * t248 + parameters[53] * t295;
-        let t304 = parameters[49] * t272 - parameters[47] * t160
+        let v5_by_2_x_arm = c5_arm * v4_by_2_x_arm + s5_arm * v3_by_2_y_arm;
+        let t24 = t23 - parameters[51] * v5_by_2_z_arm + parameters[53] * v5_by_2_x_arm;
+        let t25 = parameters[49] * w5_by_2_y_arm - parameters[47] * minus_w5_by_2_x_arm
             + c4_arm * parameters[50];
-        let t308 = t304 + parameters[51] * t282 - parameters[52] * t295;
-        let t311 = t241 + t45 * t250 - t47 * t259 - c23_arm * t268 + t100 * t284
-            + t109 * t297 + t47 * t308;
-        let t316 = parameters[60] * t163 - parameters[59] * t176 + parameters[61] * t272;
-        let t321 = s6_arm * t295 + c6_arm * t248;
-        let t323 = t316 + parameters[66] * t282 + parameters[67] * t321;
-        let t329 = parameters[62] * t163 - parameters[60] * t176 + parameters[63] * t272;
-        let t334 = c6_arm * t295 - s6_arm * t248;
-        let t336 = t329 - parameters[65] * t282 + parameters[67] * t334;
-        let t343 = parameters[63] * t163 - parameters[61] * t176 + parameters[64] * t272;
-        let t347 = t343 - parameters[65] * t321 - parameters[66] * t334;
-        let t350 = t311 + t168 * t323 - t182 * t336 + t109 * t347;
-        let t354 = c4_arm * parameters[39];
-        let t356 = t256 + 0.45 * t354;
-        let t358 = s4_arm * parameters[39];
-        let t360 = t245 + 0.45 * t358;
-        let t363 = 0.45 * s4_arm;
-        let t366 = 0.45 * c4_arm;
-        let t368 = parameters[37] * t363 - t264 + parameters[38] * t366;
-        let t374 = s5_arm * t366;
-        let t376 = t277 - parameters[52] * t363 - parameters[53] * t374;
-        let t380 = c5_arm * t366;
-        let t382 = t290 + parameters[51] * t363 - parameters[53] * t380;
-        let t388 = t304 + parameters[51] * t374 + parameters[52] * t380;
-        let t391 = s23_arm * parameters[19] + c23_arm * parameters[21] + t47 * t356
-            - t45 * t360 + c23_arm * t368 + t100 * t376 + t109 * t382 + t47 * t388;
-        let t396 = s6_arm * t380 + c6_arm * t363;
-        let t398 = t316 + parameters[66] * t374 - parameters[67] * t396;
-        let t404 = s6_arm * t363 - c6_arm * t380;
-        let t406 = t329 - parameters[65] * t374 + parameters[67] * t404;
-        let t412 = t343 + parameters[65] * t396 - parameters[66] * t404;
-        let t415 = t391 + t168 * t398 - t182 * t406 + t109 * t412;
-        let t418 = s5_arm * parameters[52] - c5_arm * parameters[51];
-        let t424 = s5_arm * parameters[45] + c5_arm * parameters[46];
-        let t428 = s5_arm * parameters[46] + c5_arm * parameters[48];
-        let t433 = s5_arm * parameters[47] + c5_arm * parameters[49];
-        let t437 = t76 + t54 * t418 - t63 * parameters[53] + t100 * t424 + t109 * t428
-            + t47 * t433;
-        let t439 = s5_arm * c6_arm;
-        let t441 = c5_arm * parameters[65] - parameters[67] * t439;
-        let t444 = s5_arm * s6_arm;
-        let t446 = c5_arm * parameters[66] + parameters[67] * t444;
-        let t451 = parameters[65] * t444 + parameters[66] * t439;
-        let t458 = parameters[59] * t439 - parameters[60] * t444
+        let t26 = t25 + parameters[51] * v5_by_2_y_arm - parameters[52] * v5_by_2_x_arm;
+        let t27 = t17 + w4_by_1_x_arm * t18 - w5_by_1_z_arm * t19 - c23_arm * t20
+            + w5_by_1_x_arm * t22 + w5_by_1_y_arm * t24 + w5_by_1_z_arm * t26;
+        let t28 = parameters[60] * w6_by_2_y_arm - parameters[59] * minus_w6_by_2_x_arm
+            + parameters[61] * w5_by_2_y_arm;
+        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm + c6_arm * v5_by_2_z_arm;
+        let t29 = t28 + parameters[66] * v5_by_2_y_arm
+            + parameters[67] * minus_v6_by_2_y_arm;
+        let t30 = parameters[62] * w6_by_2_y_arm - parameters[60] * minus_w6_by_2_x_arm
+            + parameters[63] * w5_by_2_y_arm;
+        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm - s6_arm * v5_by_2_z_arm;
+        let t31 = t30 - parameters[65] * v5_by_2_y_arm + parameters[67] * v6_by_2_x_arm;
+        let t32 = parameters[63] * w6_by_2_y_arm - parameters[61] * minus_w6_by_2_x_arm
+            + parameters[64] * w5_by_2_y_arm;
+        let t33 = t32 - parameters[65] * minus_v6_by_2_y_arm
+            - parameters[66] * v6_by_2_x_arm;
+        let t34 = t27 + w6_by_1_x_arm * t29 - minus_w6_by_1_y_arm * t31
+            + w5_by_1_y_arm * t33;
+        let c4_mz_4_arm = c4_arm * parameters[39];
+        let t35 = s4_xy_4_plus_c4_yy_4_arm + D3 * c4_mz_4_arm;
+        let s4_mz_4_arm = s4_arm * parameters[39];
+        let t36 = s4_xx_4_plus_c4_xy_4_arm + D3 * s4_mz_4_arm;
+        let v4_by_3_y_arm = D3 * s4_arm;
+        let minus_v4_by_3_x_arm = D3 * c4_arm;
+        let t37 = parameters[37] * v4_by_3_y_arm - s4_xz_4_plus_c4_yz_4_arm
+            + parameters[38] * minus_v4_by_3_x_arm;
+        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
+        let t38 = t21 - parameters[52] * v4_by_3_y_arm - parameters[53] * v5_by_3_y_arm;
+        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
+        let t39 = t23 + parameters[51] * v4_by_3_y_arm
+            - parameters[53] * minus_v5_by_3_x_arm;
+        let t40 = t25 + parameters[51] * v5_by_3_y_arm
+            + parameters[52] * minus_v5_by_3_x_arm;
+        let t41 = s23_arm * parameters[19] + c23_arm * parameters[21]
+            + w5_by_1_z_arm * t35 - w4_by_1_x_arm * t36 + c23_arm * t37
+            + w5_by_1_x_arm * t38 + w5_by_1_y_arm * t39 + w5_by_1_z_arm * t40;
+        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_arm * v4_by_3_y_arm;
+        let t42 = t28 + parameters[66] * v5_by_3_y_arm - parameters[67] * v6_by_3_y_arm;
+        let v6_by_3_x_arm = s6_arm * v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
+        let t43 = t30 - parameters[65] * v5_by_3_y_arm + parameters[67] * v6_by_3_x_arm;
+        let t44 = t32 + parameters[65] * v6_by_3_y_arm - parameters[66] * v6_by_3_x_arm;
+        let t45 = t41 + w6_by_1_x_arm * t42 - minus_w6_by_1_y_arm * t43
+            + w5_by_1_y_arm * t44;
+        let s5_my_5_minus_c5_mx_5_arm = s5_arm * parameters[52]
+            - c5_arm * parameters[51];
+        let s5_xx_5_plus_c5_xy_5_arm = s5_arm * parameters[45] + c5_arm * parameters[46];
+        let s5_xy_5_plus_c5_yy_5_arm = s5_arm * parameters[46] + c5_arm * parameters[48];
+        let s5_xz_5_plus_c5_yz_5_arm = s5_arm * parameters[47] + c5_arm * parameters[49];
+        let t46 = t4 + v5_by_1_z_arm * s5_my_5_minus_c5_mx_5_arm
+            - minus_v4_by_1_x_arm * parameters[53]
+            + w5_by_1_x_arm * s5_xx_5_plus_c5_xy_5_arm
+            + w5_by_1_y_arm * s5_xy_5_plus_c5_yy_5_arm
+            + w5_by_1_z_arm * s5_xz_5_plus_c5_yz_5_arm;
+        let w6_by_4_x_arm = s5_arm * c6_arm;
+        let c5_mx_6_minus_mz_6_w6_by_4_x_arm = c5_arm * parameters[65]
+            - parameters[67] * w6_by_4_x_arm;
+        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
+        let c5_my_6_minus_mz_6_w6_by_4_y_arm = c5_arm * parameters[66]
+            + parameters[67] * minus_w6_by_4_y_arm;
+        let t47 = parameters[65] * minus_w6_by_4_y_arm + parameters[66] * w6_by_4_x_arm;
+        let t48 = parameters[59] * w6_by_4_x_arm - parameters[60] * minus_w6_by_4_y_arm
             + c5_arm * parameters[61];
-        let t464 = parameters[60] * t439 - parameters[62] * t444
+        let t49 = parameters[60] * w6_by_4_x_arm - parameters[62] * minus_w6_by_4_y_arm
             + c5_arm * parameters[63];
-        let t471 = parameters[61] * t439 - parameters[63] * t444
+        let t50 = parameters[61] * w6_by_4_x_arm - parameters[63] * minus_w6_by_4_y_arm
             + c5_arm * parameters[64];
-        let t474 = t164 * t441 + t177 * t446 + t96 * t451 + t168 * t458 - t182 * t464
-            + t109 * t471;
-        let t475 = t437 + t474;
-        let t479 = c6_arm * parameters[65] - s6_arm * parameters[66];
-        let t484 = s6_arm * parameters[60] + c6_arm * parameters[62];
-        let t488 = s6_arm * parameters[59] + c6_arm * parameters[60];
-        let t493 = s6_arm * parameters[61] + c6_arm * parameters[63];
-        let t497 = t153 + t106 * parameters[67] + t96 * t479 + t182 * t484 - t168 * t488
-            - t109 * t493;
-        let t509 = parameters[22] + parameters[23] * t232 - parameters[24] * t236;
-        let t511 = parameters[10] + parameters[13]
-            + t236 * (parameters[26] * t236 - parameters[24])
-            + t232 * (parameters[23] + parameters[26] * t232) + t509;
-        let t521 = c4_arm * parameters[37] - s4_arm * parameters[38];
-        let t525 = t252 * (parameters[40] * t252 - t354)
-            - t248 * (t358 - parameters[40] * t248)
-            + t232 * (t521 + parameters[40] * t232);
-        let t533 = parameters[53] * t272 - c4_arm * parameters[52];
-        let t539 = c4_arm * parameters[51] + parameters[53] * t160;
-        let t547 = parameters[52] * t160 + parameters[51] * t272;
-        let t550 = t295 * (t533 + parameters[54] * t295)
-            + t282 * (t539 + parameters[54] * t282)
-            + t248 * (parameters[54] * t248 - t547);
-        let t557 = t511 + t525 - (s4_arm * t250 + c4_arm * t259) + t550 + t272 * t297
-            - t160 * t284 + c4_arm * t308;
-        let t561 = parameters[66] * t272 - parameters[67] * t163;
-        let t566 = parameters[65] * t272 + parameters[67] * t176;
-        let t574 = parameters[65] * t163 + parameters[66] * t176;
-        let t577 = t334 * (parameters[68] * t334 - t561)
-            - t321 * (t566 - parameters[68] * t321)
-            + t282 * (parameters[68] * t282 - t574);
-        let t587 = parameters[40] * t366 + t354;
-        let t590 = t358 + parameters[40] * t363;
-        let t596 = s4_arm * t360 + c4_arm * t356;
-        let t600 = t533 - parameters[54] * t380;
-        let t603 = t539 + parameters[54] * t374;
-        let t607 = t547 + parameters[54] * t363;
-        let t614 = t272 * t382 - t160 * t376 + c4_arm * t388;
-        let t616 = t509 + t232 * t521 - (t252 * t587 + t248 * t590) + t596 + t295 * t600
-            + t282 * t603 - t248 * t607 + t614;
-        let t618 = parameters[68] * t404 - t561;
-        let t621 = t566 + parameters[68] * t396;
-        let t625 = parameters[68] * t374 - t574;
-        let t632 = t163 * t406 - t176 * t398 + t272 * t412;
-        let t634 = t616 + t334 * t618 - t321 * t621 + t282 * t625 + t632;
-        let t642 = t272 * t428 - t160 * t424 + c4_arm * t433;
-        let t654 = t163 * t464 - t176 * t458 + t272 * t471;
-        let t656 = parameters[53] * t252 + t248 * t418 + t642 - t268 + t282 * t451
-            - (t334 * t446 + t321 * t441) + t654;
-        let t664 = t176 * t488 - t163 * t484 - t272 * t493;
-        let t666 = t308 + t282 * t479 - parameters[67] * t295 + t664;
-        let t679 = parameters[22] + parameters[27] + t363 * t590 + t366 * t587 + t596
-            + t374 * t603 - t380 * t600 + t363 * t607 + t614;
-        let t698 = t368 + t642 - (parameters[53] * t366 + t363 * t418) + t396 * t441
-            - t404 * t446 + t374 * t451 + t654;
-        let t703 = t388 + parameters[67] * t380 + t374 * t479 + t664;
-        let t714 = parameters[36] + parameters[41] + s5_arm * t424 + c5_arm * t428
-            + t439 * t458 - t444 * t464 + c5_arm * t471;
-        let t720 = t433 + t444 * t484 - t439 * t488 - c5_arm * t493;
+        let t51 = v6_by_1_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm
+            + minus_v6_by_1_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm
+            + v5_by_1_y_arm * t47 + w6_by_1_x_arm * t48 - minus_w6_by_1_y_arm * t49
+            + w5_by_1_y_arm * t50;
+        let t52 = t46 + t51;
+        let c6_mx_6_minus_s6_my_6_arm = c6_arm * parameters[65]
+            - s6_arm * parameters[66];
+        let s6_xy_6_plus_c6_yy_6_arm = s6_arm * parameters[60] + c6_arm * parameters[62];
+        let s6_xx_6_plus_c6_xy_6_arm = s6_arm * parameters[59] + c6_arm * parameters[60];
+        let s6_xz_6_plus_c6_yz_6_arm = s6_arm * parameters[61] + c6_arm * parameters[63];
+        let t53 = t10 + minus_v5_by_1_x_arm * parameters[67]
+            + v5_by_1_y_arm * c6_mx_6_minus_s6_my_6_arm
+            + minus_w6_by_1_y_arm * s6_xy_6_plus_c6_yy_6_arm
+            - w6_by_1_x_arm * s6_xx_6_plus_c6_xy_6_arm
+            - w5_by_1_y_arm * s6_xz_6_plus_c6_yz_6_arm;
+        let t54 = parameters[22] + parameters[23] * v3_by_2_y_arm
+            - parameters[24] * v3_by_2_x_arm;
+        let t55 = parameters[10] + parameters[13]
+            + v3_by_2_x_arm * (parameters[26] * v3_by_2_x_arm - parameters[24])
+            + v3_by_2_y_arm * (parameters[23] + parameters[26] * v3_by_2_y_arm) + t54;
+        let c4_mx_4_minus_s4_my_4_arm = c4_arm * parameters[37]
+            - s4_arm * parameters[38];
+        let t56 = v4_by_2_x_arm * (parameters[40] * v4_by_2_x_arm - c4_mz_4_arm)
+            - v5_by_2_z_arm * (s4_mz_4_arm - parameters[40] * v5_by_2_z_arm)
+            + v3_by_2_y_arm
+                * (c4_mx_4_minus_s4_my_4_arm + parameters[40] * v3_by_2_y_arm);
+        let mz_5_w5_by_2_y_minus_c4_my_5_arm = parameters[53] * w5_by_2_y_arm
+            - c4_arm * parameters[52];
+        let c4_mx_5_minus_mz_5_w5_by_2_x_arm = c4_arm * parameters[51]
+            + parameters[53] * minus_w5_by_2_x_arm;
+        let t57 = parameters[52] * minus_w5_by_2_x_arm + parameters[51] * w5_by_2_y_arm;
+        let t58 = v5_by_2_x_arm
+            * (mz_5_w5_by_2_y_minus_c4_my_5_arm + parameters[54] * v5_by_2_x_arm)
+            + v5_by_2_y_arm
+                * (c4_mx_5_minus_mz_5_w5_by_2_x_arm + parameters[54] * v5_by_2_y_arm)
+            + v5_by_2_z_arm * (parameters[54] * v5_by_2_z_arm - t57);
+        let t59 = t55 + t56 - (s4_arm * t18 + c4_arm * t19) + t58 + w5_by_2_y_arm * t24
+            - minus_w5_by_2_x_arm * t22 + c4_arm * t26;
+        let t60 = parameters[66] * w5_by_2_y_arm - parameters[67] * w6_by_2_y_arm;
+        let t61 = parameters[65] * w5_by_2_y_arm + parameters[67] * minus_w6_by_2_x_arm;
+        let t62 = parameters[65] * w6_by_2_y_arm + parameters[66] * minus_w6_by_2_x_arm;
+        let t63 = v6_by_2_x_arm * (parameters[68] * v6_by_2_x_arm - t60)
+            - minus_v6_by_2_y_arm * (t61 - parameters[68] * minus_v6_by_2_y_arm)
+            + v5_by_2_y_arm * (parameters[68] * v5_by_2_y_arm - t62);
+        let c4_mz_4_minus_m_4_v4_by_3_x_arm = parameters[40] * minus_v4_by_3_x_arm
+            + c4_mz_4_arm;
+        let s4_mz_4_plus_m_4_v4_by_3_y_arm = s4_mz_4_arm
+            + parameters[40] * v4_by_3_y_arm;
+        let t64 = s4_arm * t36 + c4_arm * t35;
+        let t65 = mz_5_w5_by_2_y_minus_c4_my_5_arm
+            - parameters[54] * minus_v5_by_3_x_arm;
+        let t66 = c4_mx_5_minus_mz_5_w5_by_2_x_arm + parameters[54] * v5_by_3_y_arm;
+        let t67 = t57 + parameters[54] * v4_by_3_y_arm;
+        let t68 = w5_by_2_y_arm * t39 - minus_w5_by_2_x_arm * t38 + c4_arm * t40;
+        let t69 = t54 + v3_by_2_y_arm * c4_mx_4_minus_s4_my_4_arm
+            - (v4_by_2_x_arm * c4_mz_4_minus_m_4_v4_by_3_x_arm
+                + v5_by_2_z_arm * s4_mz_4_plus_m_4_v4_by_3_y_arm) + t64
+            + v5_by_2_x_arm * t65 + v5_by_2_y_arm * t66 - v5_by_2_z_arm * t67 + t68;
+        let t70 = parameters[68] * v6_by_3_x_arm - t60;
+        let t71 = t61 + parameters[68] * v6_by_3_y_arm;
+        let t72 = parameters[68] * v5_by_3_y_arm - t62;
+        let t73 = w6_by_2_y_arm * t43 - minus_w6_by_2_x_arm * t42 + w5_by_2_y_arm * t44;
+        let t74 = t69 + v6_by_2_x_arm * t70 - minus_v6_by_2_y_arm * t71
+            + v5_by_2_y_arm * t72 + t73;
+        let t75 = w5_by_2_y_arm * s5_xy_5_plus_c5_yy_5_arm
+            - minus_w5_by_2_x_arm * s5_xx_5_plus_c5_xy_5_arm
+            + c4_arm * s5_xz_5_plus_c5_yz_5_arm;
+        let t76 = w6_by_2_y_arm * t49 - minus_w6_by_2_x_arm * t48 + w5_by_2_y_arm * t50;
+        let t77 = parameters[53] * v4_by_2_x_arm
+            + v5_by_2_z_arm * s5_my_5_minus_c5_mx_5_arm + t75 - t20 + v5_by_2_y_arm * t47
+            - (v6_by_2_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm
+                + minus_v6_by_2_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm) + t76;
+        let t78 = minus_w6_by_2_x_arm * s6_xx_6_plus_c6_xy_6_arm
+            - w6_by_2_y_arm * s6_xy_6_plus_c6_yy_6_arm
+            - w5_by_2_y_arm * s6_xz_6_plus_c6_yz_6_arm;
+        let t79 = t26 + v5_by_2_y_arm * c6_mx_6_minus_s6_my_6_arm
+            - parameters[67] * v5_by_2_x_arm + t78;
+        let t80 = parameters[22] + parameters[27]
+            + v4_by_3_y_arm * s4_mz_4_plus_m_4_v4_by_3_y_arm
+            + minus_v4_by_3_x_arm * c4_mz_4_minus_m_4_v4_by_3_x_arm + t64
+            + v5_by_3_y_arm * t66 - minus_v5_by_3_x_arm * t65 + v4_by_3_y_arm * t67
+            + t68;
+        let t81 = t37 + t75
+            - (parameters[53] * minus_v4_by_3_x_arm
+                + v4_by_3_y_arm * s5_my_5_minus_c5_mx_5_arm)
+            + v6_by_3_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm
+            - v6_by_3_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm + v5_by_3_y_arm * t47
+            + t76;
+        let t82 = t40 + parameters[67] * minus_v5_by_3_x_arm
+            + v5_by_3_y_arm * c6_mx_6_minus_s6_my_6_arm + t78;
+        let t83 = parameters[36] + parameters[41] + s5_arm * s5_xx_5_plus_c5_xy_5_arm
+            + c5_arm * s5_xy_5_plus_c5_yy_5_arm + w6_by_4_x_arm * t48
+            - minus_w6_by_4_y_arm * t49 + c5_arm * t50;
+        let t84 = s5_xz_5_plus_c5_yz_5_arm
+            + minus_w6_by_4_y_arm * s6_xy_6_plus_c6_yy_6_arm
+            - w6_by_4_x_arm * s6_xx_6_plus_c6_xy_6_arm
+            - c5_arm * s6_xz_6_plus_c6_yz_6_arm;
         [
-            [t93 + t156 + t227, t350, t415, t475, t497, t224],
+            [t6 + t11 + t16, t34, t45, t52, t53, t15],
             [
-                t350, t557 + t577 + t163 * t336 - t176 * t323 + t272 * t347, t634, t656, t666, t347,
+                t34,
+                t59 + t63 + w6_by_2_y_arm * t31 - minus_w6_by_2_x_arm * t29
+                    + w5_by_2_y_arm * t33,
+                t74,
+                t77,
+                t79,
+                t33,
             ],
             [
-                t415, t634, t679 + t404 * t618 + t396 * t621 + t374 * t625 + t632, t698, t703, t412,
+                t45, t74,
+                t80 + v6_by_3_x_arm * t70 + v6_by_3_y_arm * t71 + v5_by_3_y_arm * t72
+                    + t73,
+                t81,
+                t82,
+                t44,
             ],
-            [t475, t656, t698, t714, t720, t471],
+            [t52, t77, t81, t83, t84, t50],
             [
-                t497, t666, t703, t720,
-                parameters[50] + parameters[55] + s6_arm * t488 + c6_arm * t484, -t493,
+                t53, t79, t82, t84,
+                parameters[50] + parameters[55] + s6_arm * s6_xx_6_plus_c6_xy_6_arm
+                    + c6_arm * s6_xy_6_plus_c6_yy_6_arm,
+                -s6_xz_6_plus_c6_yz_6_arm,
             ],
-            [t224, t347, t412, t471, -t493, parameters[64] + parameters[69]],
+            [
+                t15, t33, t44, t50, -s6_xz_6_plus_c6_yz_6_arm, parameters[64] + parameters[69],
+            ],
         ]
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -1542,248 +1981,327 @@ impl Rx90 {
         joint_velocities: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
     ) -> [::core::primitive::f64; 6] {
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        /// 2 d3
+        const TWICE_D3: ::core::primitive::f64 = 0.9;
+        // --- sines and cosines
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t6 = c2_arm * joint_velocities[0];
-        let t7 = joint_velocities[1] * t6;
-        let t9 = s2_arm * joint_velocities[0];
-        let t10 = joint_velocities[1] * t9;
-        let t14 = t9 * t6;
-        let t19 = t6 * t6;
-        let t20 = joint_velocities[1] * joint_velocities[1];
-        let t23 = parameters[5] * t7 - parameters[6] * (2.0 * t10) + parameters[7] * t14
-            - parameters[8] * t7 + parameters[9] * (t19 - t20);
-        let t31 = t9 * t9;
-        let t38 = parameters[5] * t10 + parameters[6] * (2.0 * t7)
-            + parameters[7] * (t20 - t31) - parameters[8] * t10 - parameters[9] * t14;
-        let t43 = joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0]) + parameters[4]
-            + s2_arm * (t23 + parameters[10] * t7)
-            + c2_arm * (t38 - parameters[10] * t10);
+        let tau_1_arm = joint_velocities[0] * parameters[2]
+            + ::overact::math::signed(parameters[3], joint_velocities[0])
+            + parameters[4];
+        // --- arm
+        let w2_y_arm = c2_arm * joint_velocities[0];
+        let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+        let w2_x_arm = s2_arm * joint_velocities[0];
+        let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
+        let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+        let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+        let t1 = parameters[5] * bias_wd2_x_arm - parameters[6] * bias_u2_zx_arm
+            + parameters[7] * bias_u2_xy_arm - parameters[8] * bias_wd2_x_arm
+            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
+        let moment2_x_arm = t1 + parameters[10] * bias_wd2_x_arm;
+        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let t2 = parameters[5] * minus_bias_wd2_y_arm + parameters[6] * bias_u2_zy_arm
+            + parameters[7] * (rate_2_squared_arm - w2_x_squared_arm)
+            - parameters[8] * minus_bias_wd2_y_arm - parameters[9] * bias_u2_xy_arm;
+        let moment2_y_arm = t2 - parameters[10] * minus_bias_wd2_y_arm;
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t52 = joint_velocities[0] * c23_arm;
-        let t53 = joint_velocities[1] + joint_velocities[2];
-        let t54 = t52 * t53;
-        let t56 = joint_velocities[0] * s23_arm;
-        let t57 = t56 * t53;
-        let t58 = 2.0 * t57;
-        let t61 = t56 * t52;
-        let t66 = t52 * t52;
-        let t67 = t53 * t53;
-        let t70 = parameters[17] * t54 - parameters[18] * t58 + parameters[19] * t61
-            - parameters[20] * t54 + parameters[21] * (t66 - t67);
-        let t73 = 0.9 * t10;
-        let t76 = 9.81 * c2_arm;
-        let t78 = t76 + 0.45 * t14;
-        let t80 = 9.81 * s2_arm;
-        let t83 = t80 - 0.45 * (t19 + t20);
-        let t85 = c3_arm * t78 - s3_arm * t83;
-        let t90 = 2.0 * t54;
-        let t93 = t56 * t56;
-        let t100 = parameters[17] * t57 + parameters[18] * t90
-            + parameters[19] * (t67 - t93) - parameters[20] * t57 - parameters[21] * t61;
-        let t107 = c3_arm * t83 + s3_arm * t78;
-        let t111 = s23_arm
-            * (t70 + parameters[22] * t54 + parameters[24] * t73 - parameters[25] * t85)
-            + c23_arm
-                * (t100 - parameters[22] * t57 - parameters[23] * t73
-                    + parameters[25] * t107);
-        let t121 = 0.45 * c2_arm
-            * (parameters[23] * t58 + parameters[24] * t90
-                - parameters[25] * (joint_velocities[0] * joint_velocities[0])
-                + parameters[26] * t73);
-        let t127 = 0.45 * (s23_arm - c2_arm);
-        let t128 = c4_arm * t127;
-        let t131 = c4_arm * t56 - s4_arm * t53;
-        let t134 = s4_arm * t56 + c4_arm * t53;
-        let t135 = t131 * t134;
-        let t136 = t135 + t57;
-        let t138 = t131 * t131;
-        let t139 = t52 + joint_velocities[3];
-        let t140 = t139 * t139;
-        let t141 = t138 + t140;
-        let t144 = t134 * t139;
-        let t147 = c4_arm * t54 - joint_velocities[3] * t134;
-        let t148 = t144 + t147;
-        let t152 = t107 + 0.45 * t61;
-        let t155 = 0.9 * (t10 + t54);
-        let t157 = s4_arm * t152 + c4_arm * t155;
-        let t159 = parameters[37] * t136 + parameters[38] * t141 + parameters[39] * t148
-            + parameters[40] * t157;
-        let t161 = s4_arm * t127;
-        let t162 = t57 - t135;
-        let t164 = t134 * t134;
-        let t168 = t131 * t139;
-        let t171 = s4_arm * t54 + joint_velocities[3] * t131;
-        let t172 = t168 - t171;
-        let t177 = c4_arm * t152 - s4_arm * t155;
-        let t179 = parameters[38] * t162 - parameters[37] * (t164 + t140)
-            + parameters[39] * t172 + parameters[40] * t177;
-        let t182 = s23_arm * c4_arm;
-        let t184 = t168 + t171;
-        let t193 = parameters[31] * t147 - parameters[32] * t184 - parameters[33] * t136
-            + parameters[34] * t144 + parameters[35] * (t164 - t140);
-        let t196 = t93 + t67;
-        let t198 = t85 - 0.45 * t196;
-        let t202 = t193 - parameters[36] * t144 + parameters[38] * t198
-            + parameters[39] * t157;
-        let t204 = s23_arm * s4_arm;
-        let t206 = t147 - t144;
-        let t215 = parameters[31] * t168 + parameters[32] * t206
-            + parameters[33] * (t140 - t138) - parameters[34] * t171
-            - parameters[35] * t162;
-        let t221 = t215 - parameters[36] * t168 - parameters[37] * t198
-            + parameters[39] * t177;
-        let t233 = parameters[31] * t135 + parameters[32] * (t138 - t164)
-            + parameters[33] * t148 - parameters[34] * t135 + parameters[35] * t172;
-        let t239 = t233 - parameters[36] * t57 - parameters[37] * t157
-            - parameters[38] * t177;
-        let t243 = t43 + t111 - t121 + t128 * t159 - t161 * t179 + t182 * t202
-            - t204 * t221 + c23_arm * t239;
-        let t246 = s5_arm * t161;
-        let t249 = c5_arm * t131 + s5_arm * t139;
-        let t252 = c5_arm * t139 - s5_arm * t131;
-        let t253 = t249 * t252;
-        let t254 = t253 + t171;
-        let t256 = t249 * t249;
-        let t257 = t134 + joint_velocities[4];
-        let t258 = t257 * t257;
-        let t259 = t256 + t258;
-        let t262 = t252 * t257;
-        let t267 = c5_arm * t147 - s5_arm * t57 + joint_velocities[4] * t252;
-        let t268 = t262 - t267;
-        let t273 = c5_arm * t198 - s5_arm * t177;
-        let t275 = parameters[51] * t254 - parameters[52] * t259 + parameters[53] * t268
-            + parameters[54] * t273;
-        let t278 = t253 - t171;
-        let t280 = t252 * t252;
-        let t284 = t249 * t257;
-        let t289 = s5_arm * t147 + c5_arm * t57 + joint_velocities[4] * t249;
-        let t290 = t284 - t289;
-        let t295 = c5_arm * t177 + s5_arm * t198;
-        let t297 = parameters[52] * t278 - parameters[51] * (t280 + t258)
-            + parameters[53] * t290 + parameters[54] * t295;
-        let t300 = t284 + t289;
-        let t302 = t262 + t267;
-        let t308 = parameters[51] * t300 + parameters[52] * t302 - parameters[53] * t141
-            + parameters[54] * t157;
-        let t313 = t182 * c5_arm + c23_arm * s5_arm;
-        let t323 = parameters[45] * t267 - parameters[46] * t300 + parameters[47] * t254
-            - parameters[48] * t262 + parameters[49] * (t280 - t258);
-        let t329 = t323 + parameters[50] * t262 + parameters[52] * t157
-            - parameters[53] * t273;
-        let t333 = c23_arm * c5_arm - t182 * s5_arm;
-        let t343 = parameters[45] * t284 + parameters[46] * t302
-            + parameters[47] * (t258 - t256) - parameters[48] * t289
-            - parameters[49] * t278;
-        let t349 = t343 - parameters[50] * t284 - parameters[51] * t157
-            + parameters[53] * t295;
-        let t361 = parameters[46] * (t256 - t280) - parameters[45] * t253
-            - parameters[47] * t268 + parameters[48] * t253 + parameters[49] * t290;
-        let t367 = t361 + parameters[50] * t171 + parameters[51] * t273
-            - parameters[52] * t295;
-        let t370 = t246 * t275 - c5_arm * t161 * t297 + t128 * t308 + t313 * t329
-            + t333 * t349 + t204 * t367;
-        let t376 = c6_arm * t249 - s6_arm * t257;
-        let t377 = t252 + joint_velocities[5];
-        let t378 = t376 * t377;
-        let t383 = s6_arm * t267 + c6_arm * t171 + joint_velocities[5] * t376;
-        let t384 = t378 + t383;
-        let t391 = s6_arm * t249 + c6_arm * t257;
-        let t393 = c6_arm * t267 - s6_arm * t171 - joint_velocities[5] * t391;
-        let t394 = t391 * t377;
-        let t395 = t393 - t394;
-        let t401 = parameters[65] * t384 + parameters[66] * t395 - parameters[67] * t259
-            + parameters[68] * t273;
-        let t403 = s4_arm * c5_arm;
-        let t406 = c6_arm * t403 + c4_arm * s6_arm;
-        let t408 = t376 * t391;
-        let t409 = t289 - t408;
-        let t411 = t391 * t391;
-        let t412 = t377 * t377;
-        let t416 = t378 - t383;
-        let t421 = c6_arm * t295 - s6_arm * t157;
-        let t423 = parameters[66] * t409 - parameters[65] * (t411 + t412)
-            + parameters[67] * t416 + parameters[68] * t421;
-        let t427 = s6_arm * t403 - c4_arm * c6_arm;
-        let t429 = t408 + t289;
-        let t431 = t376 * t376;
-        let t435 = t394 + t393;
-        let t440 = s6_arm * t295 + c6_arm * t157;
-        let t442 = parameters[65] * t429 + parameters[66] * (t431 + t412)
-            + parameters[67] * t435 + parameters[68] * t440;
-        let t458 = parameters[59] * t393 - parameters[60] * t384 - parameters[61] * t429
-            + parameters[62] * t394 + parameters[63] * (t411 - t412);
-        let t464 = t458 - parameters[64] * t394 + parameters[66] * t273
-            + parameters[67] * t440;
-        let t478 = parameters[59] * t378 + parameters[60] * t395
-            + parameters[61] * (t412 - t431) - parameters[62] * t383
-            - parameters[63] * t409;
-        let t484 = t478 - parameters[64] * t378 - parameters[65] * t273
-            + parameters[67] * t421;
-        let t496 = parameters[59] * t408 + parameters[60] * (t431 - t411)
-            + parameters[61] * t435 - parameters[62] * t408 + parameters[63] * t416;
-        let t502 = t496 - parameters[64] * t289 - parameters[65] * t440
-            - parameters[66] * t421;
-        let t504 = (t313 * c6_arm - t204 * s6_arm) * t464
-            - (t313 * s6_arm + t204 * c6_arm) * t484 + t333 * t502;
-        let t506 = t243 + t370 + t246 * t401 - (t127 * t406 * t423 + t127 * t427 * t442)
-            + t504;
-        let t516 = parameters[6] * (t31 - t19) - parameters[5] * t14
-            + parameters[8] * t14 + parameters[11] * t76 - parameters[12] * t80;
-        let t522 = 0.45 * s3_arm;
-        let t530 = 0.45 * c3_arm;
-        let t537 = t522
-            * (parameters[24] * t61 - parameters[23] * (t66 + t67)
-                + parameters[26] * t107)
-            + t530
-                * (parameters[23] * t61 - parameters[24] * t196 + parameters[26] * t85);
-        let t547 = parameters[18] * (t93 - t66) - parameters[17] * t61
-            + parameters[20] * t61 + parameters[23] * t85 - parameters[24] * t107;
-        let t550 = t522 - 0.45;
-        let t551 = c4_arm * t550;
-        let t553 = s4_arm * t550;
-        let t564 = t551 * t179 + t553 * t159
-            + t530
-                * (parameters[37] * t184 + parameters[38] * t206 - parameters[39] * t196
-                    + parameters[40] * t198);
-        let t567 = s4_arm * t202 + c4_arm * t221;
-        let t572 = c5_arm * t551 + s5_arm * t530;
-        let t576 = c5_arm * t530 - s5_arm * t551;
-        let t581 = s4_arm * s5_arm;
-        let t586 = t581 * t349 - t403 * t329 + c4_arm * t367;
-        let t588 = t516 + joint_velocities[1] * parameters[14]
+        let w3_y_arm = joint_velocities[0] * c23_arm;
+        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+        let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
+        let w3_x_arm = joint_velocities[0] * s23_arm;
+        let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
+        let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+        let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+        let t3 = parameters[17] * bias_wd3_x_arm - parameters[18] * bias_u3_zx_arm
+            + parameters[19] * bias_u3_xy_arm - parameters[20] * bias_wd3_x_arm
+            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
+        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+        let bias_a2_y_arm = 9.81 * c2_arm;
+        let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
+        let bias_a2_x_arm = 9.81 * s2_arm;
+        let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+        let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
+        let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
+            - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
+        let moment3_x_arm = t3 + parameters[22] * bias_wd3_x_arm
+            + parameters[24] * bias_a3_z_arm - parameters[25] * bias_a3_y_arm;
+        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let t4 = parameters[17] * minus_bias_wd3_y_arm + parameters[18] * bias_u3_zy_arm
+            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
+            - parameters[20] * minus_bias_wd3_y_arm - parameters[21] * bias_u3_xy_arm;
+        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+        let moment3_y_arm = t4 - parameters[22] * minus_bias_wd3_y_arm
+            - parameters[23] * bias_a3_z_arm + parameters[25] * bias_a3_x_arm;
+        let minus_v3_by_1_z_arm = D3 * c2_arm;
+        let rate_1_squared_arm = joint_velocities[0] * joint_velocities[0];
+        let force3_z_arm = parameters[23] * bias_u3_zx_arm
+            + parameters[24] * bias_u3_zy_arm - parameters[25] * rate_1_squared_arm
+            + parameters[26] * bias_a3_z_arm;
+        let t5 = tau_1_arm + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm
+            + s23_arm * moment3_x_arm + c23_arm * moment3_y_arm
+            - minus_v3_by_1_z_arm * force3_z_arm;
+        let t1_arm = D3 * (s23_arm - c2_arm);
+        let v5_by_1_z_arm = c4_arm * t1_arm;
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
+        let t2_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t2_arm;
+        let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
+            + parameters[38] * minus_bias_u4_yy_arm
+            + parameters[39] * minus_bias_u4_yz_arm + parameters[40] * bias_a5_z_arm;
+        let minus_v4_by_1_x_arm = s4_arm * t1_arm;
+        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
+        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t2_arm;
+        let force4_x_arm = parameters[38] * bias_u4_xy_arm
+            - parameters[37] * minus_bias_u4_xx_arm + parameters[39] * bias_u4_xz_arm
+            + parameters[40] * bias_a4_x_arm;
+        let w4_by_1_x_arm = s23_arm * c4_arm;
+        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+        let t6 = parameters[31] * bias_wd4_x_arm - parameters[32] * bias_u4_zx_arm
+            - parameters[33] * minus_bias_u4_yx_arm
+            + parameters[34] * minus_w4_y_w4_z_arm
+            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
+        let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+        let moment4_x_arm = t6 - parameters[36] * minus_w4_y_w4_z_arm
+            + parameters[38] * bias_a4_z_arm + parameters[39] * bias_a5_z_arm;
+        let w5_by_1_z_arm = s23_arm * s4_arm;
+        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+        let t7 = parameters[31] * w4_x_w4_z_arm + parameters[32] * bias_u4_zy_arm
+            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
+            - parameters[34] * bias_wd5_z_arm - parameters[35] * bias_u4_xy_arm;
+        let moment4_y_arm = t7 - parameters[36] * w4_x_w4_z_arm
+            - parameters[37] * bias_a4_z_arm + parameters[39] * bias_a4_x_arm;
+        let t8 = parameters[31] * minus_w4_x_w4_y_arm
+            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
+            + parameters[33] * minus_bias_u4_yz_arm
+            - parameters[34] * minus_w4_x_w4_y_arm + parameters[35] * bias_u4_xz_arm;
+        let moment4_z_arm = t8 - parameters[36] * minus_bias_wd3_y_arm
+            - parameters[37] * bias_a5_z_arm - parameters[38] * bias_a4_x_arm;
+        let t9 = t5 + v5_by_1_z_arm * minus_force4_y_arm
+            - minus_v4_by_1_x_arm * force4_x_arm + w4_by_1_x_arm * moment4_x_arm
+            - w5_by_1_z_arm * moment4_y_arm + c23_arm * moment4_z_arm;
+        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
+            + joint_velocities[4] * w5_y_arm;
+        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+        let force5_y_arm = parameters[51] * bias_u5_yx_arm
+            - parameters[52] * minus_bias_u5_yy_arm + parameters[53] * bias_u5_yz_arm
+            + parameters[54] * bias_a5_y_arm;
+        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
+        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+        let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
+            + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
+        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+        let force5_x_arm = parameters[52] * bias_u5_xy_arm
+            - parameters[51] * minus_bias_u5_xx_arm + parameters[53] * bias_u5_xz_arm
+            + parameters[54] * bias_a5_x_arm;
+        let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+        let force5_z_arm = parameters[51] * bias_u5_zx_arm
+            + parameters[52] * bias_u5_zy_arm - parameters[53] * minus_bias_u4_yy_arm
+            + parameters[54] * bias_a5_z_arm;
+        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
+        let t10 = parameters[45] * bias_wd5_x_arm - parameters[46] * bias_u5_zx_arm
+            + parameters[47] * bias_u5_yx_arm - parameters[48] * w5_y_w5_z_arm
+            + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
+        let moment5_x_arm = t10 + parameters[50] * w5_y_w5_z_arm
+            + parameters[52] * bias_a5_z_arm - parameters[53] * bias_a5_y_arm;
+        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
+        let t11 = parameters[45] * w5_x_w5_z_arm + parameters[46] * bias_u5_zy_arm
+            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
+            - parameters[48] * minus_bias_wd5_y_arm - parameters[49] * bias_u5_xy_arm;
+        let moment5_y_arm = t11 - parameters[50] * w5_x_w5_z_arm
+            - parameters[51] * bias_a5_z_arm + parameters[53] * bias_a5_x_arm;
+        let t12 = parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
+            - parameters[45] * w5_x_w5_y_arm - parameters[47] * bias_u5_yz_arm
+            + parameters[48] * w5_x_w5_y_arm + parameters[49] * bias_u5_xz_arm;
+        let moment5_z_arm = t12 + parameters[50] * bias_wd5_z_arm
+            + parameters[51] * bias_a5_y_arm - parameters[52] * bias_a5_x_arm;
+        let t13 = v5_by_1_y_arm * force5_y_arm - minus_v5_by_1_x_arm * force5_x_arm
+            + v5_by_1_z_arm * force5_z_arm + w5_by_1_x_arm * moment5_x_arm
+            + w5_by_1_y_arm * moment5_y_arm + w5_by_1_z_arm * moment5_z_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+        let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
+            + joint_velocities[5] * w6_x_arm;
+        let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+        let force6_z_arm = parameters[65] * bias_u6_zx_arm
+            + parameters[66] * bias_u6_zy_arm - parameters[67] * minus_bias_u5_yy_arm
+            + parameters[68] * bias_a5_y_arm;
+        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
+        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
+        let minus_v6_by_1_x_arm = t1_arm * minus_w6_by_2_x_arm;
+        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+        let force6_x_arm = parameters[66] * bias_u6_xy_arm
+            - parameters[65] * minus_bias_u6_xx_arm + parameters[67] * bias_u6_xz_arm
+            + parameters[68] * bias_a6_x_arm;
+        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
+        let v6_by_1_y_arm = t1_arm * w6_by_2_y_arm;
+        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
+        let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
+            + parameters[66] * minus_bias_u6_yy_arm
+            + parameters[67] * minus_bias_u6_yz_arm
+            + parameters[68] * minus_bias_a6_y_arm;
+        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
+        let t14 = parameters[59] * bias_wd6_x_arm - parameters[60] * bias_u6_zx_arm
+            - parameters[61] * minus_bias_u6_yx_arm
+            + parameters[62] * minus_w6_y_w6_z_arm
+            + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
+        let moment6_x_arm = t14 - parameters[64] * minus_w6_y_w6_z_arm
+            + parameters[66] * bias_a5_y_arm + parameters[67] * minus_bias_a6_y_arm;
+        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
+        let t15 = parameters[59] * w6_x_w6_z_arm + parameters[60] * bias_u6_zy_arm
+            + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
+            - parameters[62] * minus_bias_wd6_y_arm - parameters[63] * bias_u6_xy_arm;
+        let moment6_y_arm = t15 - parameters[64] * w6_x_w6_z_arm
+            - parameters[65] * bias_a5_y_arm + parameters[67] * bias_a6_x_arm;
+        let t16 = parameters[59] * minus_w6_x_w6_y_arm
+            + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
+            + parameters[61] * minus_bias_u6_yz_arm
+            - parameters[62] * minus_w6_x_w6_y_arm + parameters[63] * bias_u6_xz_arm;
+        let moment6_z_arm = t16 - parameters[64] * minus_bias_wd5_y_arm
+            - parameters[65] * minus_bias_a6_y_arm - parameters[66] * bias_a6_x_arm;
+        let t17 = v5_by_1_y_arm * force6_z_arm
+            - (minus_v6_by_1_x_arm * force6_x_arm + v6_by_1_y_arm * minus_force6_y_arm)
+            + w6_by_1_x_arm * moment6_x_arm - minus_w6_by_1_y_arm * moment6_y_arm
+            + w5_by_1_y_arm * moment6_z_arm;
+        let force_on_u1_arm = t9 + t13 + t17;
+        let moment2_z_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+            - parameters[5] * bias_u2_xy_arm + parameters[8] * bias_u2_xy_arm
+            + parameters[11] * bias_a2_y_arm - parameters[12] * bias_a2_x_arm;
+        let tau_2_arm = joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
-            + parameters[16] + t537 + t547 + t564 - t567 + t572 * t297 + t576 * t275
-            + t553 * t308 + t586;
-        let t599 = (c6_arm * t572 - s6_arm * t553) * t423
-            + (s6_arm * t572 + c6_arm * t553) * t442 + t576 * t401;
-        let t604 = t427 * t484 - t406 * t464 + t581 * t502;
-        let t612 = 0.45 * c4_arm;
-        let t614 = 0.45 * s4_arm;
-        let t618 = t547 + joint_velocities[2] * parameters[28]
+            + parameters[16];
+        let v3_by_2_x_arm = D3 * s3_arm;
+        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let force3_x_arm = parameters[24] * bias_u3_xy_arm
+            - parameters[23] * minus_bias_u3_xx_arm + parameters[26] * bias_a3_x_arm;
+        let v3_by_2_y_arm = D3 * c3_arm;
+        let force3_y_arm = parameters[23] * bias_u3_xy_arm
+            - parameters[24] * minus_bias_u3_yy_arm + parameters[26] * bias_a3_y_arm;
+        let moment3_z_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+            - parameters[17] * bias_u3_xy_arm + parameters[20] * bias_u3_xy_arm
+            + parameters[23] * bias_a3_y_arm - parameters[24] * bias_a3_x_arm;
+        let v3_by_2_x_minus_d3_arm = v3_by_2_x_arm - D3;
+        let v4_by_2_x_arm = c4_arm * v3_by_2_x_minus_d3_arm;
+        let v5_by_2_z_arm = s4_arm * v3_by_2_x_minus_d3_arm;
+        let force4_z_arm = parameters[37] * bias_u4_zx_arm
+            + parameters[38] * bias_u4_zy_arm - parameters[39] * minus_bias_u3_yy_arm
+            + parameters[40] * bias_a4_z_arm;
+        let s4_moment4_x_plus_c4_moment4_y_arm = s4_arm * moment4_x_arm
+            + c4_arm * moment4_y_arm;
+        let t18 = moment2_z_arm + tau_2_arm + v3_by_2_x_arm * force3_x_arm
+            + v3_by_2_y_arm * force3_y_arm + moment3_z_arm + v4_by_2_x_arm * force4_x_arm
+            + v5_by_2_z_arm * minus_force4_y_arm + v3_by_2_y_arm * force4_z_arm
+            - s4_moment4_x_plus_c4_moment4_y_arm;
+        let v5_by_2_x_arm = c5_arm * v4_by_2_x_arm + s5_arm * v3_by_2_y_arm;
+        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm - s5_arm * v4_by_2_x_arm;
+        let w5_by_2_y_arm = s4_arm * s5_arm;
+        let t19 = w5_by_2_y_arm * moment5_y_arm - minus_w5_by_2_x_arm * moment5_x_arm
+            + c4_arm * moment5_z_arm;
+        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm - s6_arm * v5_by_2_z_arm;
+        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm + c6_arm * v5_by_2_z_arm;
+        let t20 = w6_by_2_y_arm * moment6_y_arm - minus_w6_by_2_x_arm * moment6_x_arm
+            + w5_by_2_y_arm * moment6_z_arm;
+        let force_on_u2_arm = t18 + v5_by_2_x_arm * force5_x_arm
+            + v5_by_2_y_arm * force5_y_arm + v5_by_2_z_arm * force5_z_arm + t19
+            + v6_by_2_x_arm * force6_x_arm + minus_v6_by_2_y_arm * minus_force6_y_arm
+            + v5_by_2_y_arm * force6_z_arm + t20;
+        let tau_3_arm = joint_velocities[2] * parameters[28]
             + ::overact::math::signed(parameters[29], joint_velocities[2])
-            + parameters[30] - (t612 * t179 + t614 * t159 + t567);
-        let t619 = s5_arm * t612;
-        let t621 = c5_arm * t612;
-        let t638 = (s6_arm * t614 - c6_arm * t621) * t423
-            - (s6_arm * t621 + c6_arm * t614) * t442 + t619 * t401;
-        let t657 = t239 + joint_velocities[3] * parameters[42]
+            + parameters[30];
+        let minus_v4_by_3_x_arm = D3 * c4_arm;
+        let v4_by_3_y_arm = D3 * s4_arm;
+        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
+        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
+        let t21 = moment3_z_arm + tau_3_arm
+            - (minus_v4_by_3_x_arm * force4_x_arm + v4_by_3_y_arm * minus_force4_y_arm
+                + s4_moment4_x_plus_c4_moment4_y_arm) + v5_by_3_y_arm * force5_y_arm
+            - minus_v5_by_3_x_arm * force5_x_arm - v4_by_3_y_arm * force5_z_arm + t19;
+        let v6_by_3_x_arm = s6_arm * v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
+        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_arm * v4_by_3_y_arm;
+        let force_on_u3_arm = t21 + v6_by_3_x_arm * force6_x_arm
+            - v6_by_3_y_arm * minus_force6_y_arm + v5_by_3_y_arm * force6_z_arm + t20;
+        let tau_4_arm = joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44] + s5_arm * t329 + c5_arm * t349 + s5_arm * c6_arm * t464
-            - s5_arm * s6_arm * t484 + c5_arm * t502;
+            + parameters[44];
+        let w6_by_4_x_arm = s5_arm * c6_arm;
+        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
+        let force_on_u4_arm = moment4_z_arm + tau_4_arm + s5_arm * moment5_x_arm
+            + c5_arm * moment5_y_arm + w6_by_4_x_arm * moment6_x_arm
+            - minus_w6_by_4_y_arm * moment6_y_arm + c5_arm * moment6_z_arm;
+        let tau_5_arm = joint_velocities[4] * parameters[56]
+            + ::overact::math::signed(parameters[57], joint_velocities[4])
+            + parameters[58];
+        let force_on_u5_arm = moment5_z_arm + tau_5_arm
+            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let tau_6_arm = joint_velocities[5] * parameters[70]
+            + ::overact::math::signed(parameters[71], joint_velocities[5])
+            + parameters[72];
+        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
         [
-            t506, t588 + t599 + t604,
-            t618 + t619 * t275 - t621 * t297 - t614 * t308 + t586 + t638 + t604, t657,
-            t367 + joint_velocities[4] * parameters[56]
-                + ::overact::math::signed(parameters[57], joint_velocities[4])
-                + parameters[58] - (s6_arm * t464 + c6_arm * t484),
-            t502 + joint_velocities[5] * parameters[70]
-                + ::overact::math::signed(parameters[71], joint_velocities[5])
-                + parameters[72],
+            force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
+            force_on_u6_arm,
         ]
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.

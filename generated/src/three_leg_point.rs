@@ -4,6 +4,55 @@
 ///
 /// 3 legs, 6 joints, 3 actuators, 2 degrees of freedom; 31 standard parameters, 22 base parameters.
 /// Source: After Kock and Schumacher 1998; dimensions and masses assumed.
+///
+/// # Names
+///
+/// | name | symbol | meaning |
+/// |---|---|---|
+/// | `vx` | v | platform's velocity that fits the actuators' best, eq. (21) |
+/// | `dvx` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
+/// | `c12_leg1` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
+/// | `s12_leg1` | sin q | as the cosine |
+/// | `d_x_leg1` | D | from the leg's first joint to its end, in the leg's plane, m |
+/// | `rho_squared_leg1` | ρ² | D · D, m² |
+/// | `h_squared_leg1` | h² | l₁²/ρ² - a², the square of h |
+/// | `h_leg1` | h | the elbow stands at a D ± h D⊥, eq. (7) solved |
+/// | `l1_x_leg1` | l₁ e₁ | the proximal link, in the leg's plane, m |
+/// | `l2_x_leg1` | l₂ e₂ | the distal link, in the leg's plane, m |
+/// | `det_leg1` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
+/// | `k_leg1` | k | common factor, but for signs, of the leg's wrenches: the reciprocal of its determinant and a constant |
+/// | `fk1_x_leg3` | f_i/k | that force without the factor k, in the leg's axes |
+/// | `rate_2_leg1` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
+/// | `rate_1_squared_leg1` | u_i² | its square |
+/// | `rate_dot_1_leg1` | u̇_i | derivative of that rate, eq. (10) |
+/// | `bias_rate_dot_1_leg1` | u̇_i at v̇ = 0 | what is left of the derivative without the platform's acceleration, eq. (10) |
+/// | `g1_vx_leg2` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
+/// | `gq2_vx_leg1` | ∂q̇_i/∂v | the same of the joint's own rate; of an actuated joint a row of J_p^inv, eq. (20) |
+/// | `qd_2_leg1` | q̇_i | rate of a joint, rad/s or m/s, eq. (9) |
+/// | `qdd_2_leg1` | q̈_i | acceleration of a joint, eq. (10) |
+/// | `a_on_f1_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
+/// | `bias_a_on_f1_leg3` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
+/// | `a2_y_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
+/// | `v2_by_1_x_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
+/// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
+/// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
+/// | `tau_2_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
+/// | `bias_a2_x_leg1` | a_j - g at v̇ = 0 | acceleration of the origin of body j, likewise |
+/// | `s_1_2` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
+/// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
+/// | `inv_pivot_1` | 1/d_k | its reciprocal |
+/// | `l_2_1` | L | entry of L |
+/// | `normal_1_1` | (I - J J⁺) e | a vector of the null space of (J_p^inv)ᵀ, before it is made one of length 1, eq. (50) |
+/// | `norm_1` | ‖(I - J J⁺) e‖ | its length |
+/// | `inv_norm_1` | 1/‖(I - J J⁺) e‖ | the reciprocal |
+/// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
+/// | `vx_by_a1` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
+/// | `g1_a1_leg3` | ∂u_i/∂q̇_a | the reduced Jacobian on a kept actuator, eq. (36) |
+///
+/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
+/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
+/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -159,20 +208,30 @@ impl ThreeLegPoint {
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- sines and cosines
         let [(s1_leg2, c1_leg2), (s1_leg1, c1_leg1)] = ::overact::math::sin_cos_all([
             actuators[1], actuators[0],
         ]);
-        let t9 = 0.24 * s1_leg1;
-        let t10 = 0.24 * (0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2)
-            - 0.3031088913245535 + t9;
-        let t19 = 0.35 + 0.24 * c1_leg1;
-        let t20 = 0.175 + 0.24 * (0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2) + t19;
-        let t23 = t10 * t10 + t20 * t20;
-        let t26 = (0.0576 - 0.25 * t23) / t23;
-        ::overact::guard::reach(t26, "leg1")?;
-        let t27 = ::overact::math::sqrt(t26);
+        let l_1_s1_leg1 = L_1 * s1_leg1;
+        let t1 = L_1 * (0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2)
+            - 0.3031088913245535 + l_1_s1_leg1;
+        let radius_plus_l_1_c1_leg1 = RADIUS + L_1 * c1_leg1;
+        let t2 = HALF_RADIUS + L_1 * (0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2)
+            + radius_plus_l_1_c1_leg1;
+        let t3 = t1 * t1 + t2 * t2;
+        let t4 = (L_1_SQUARED - 0.25 * t3) / t3;
+        ::overact::guard::reach(t4, "leg1")?;
+        let t5 = ::overact::math::sqrt(t4);
         ::core::result::Result::Ok([
-            0.5 * t10 - t9 + t20 * t27, t19 - 0.5 * t20 + t10 * t27,
+            0.5 * t1 - l_1_s1_leg1 + t2 * t5, radius_plus_l_1_c1_leg1 - 0.5 * t2 + t1 * t5,
         ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
@@ -189,62 +248,74 @@ impl ThreeLegPoint {
     pub fn joints(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        let t1 = pose[1] - 0.35;
-        let t4 = t1 * t1 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * pose[0] + t1 * t7;
-        let t13 = 0.5 * t1 - pose[0] * t7;
-        let t22 = t4 * t7;
-        let t24 = t4 - 0.1152;
-        let t32 = pose[0] - 0.3031088913245535;
-        let t34 = pose[1] + 0.175;
-        let t36 = 0.5 * t32 + 0.8660254037844386 * t34;
-        let t37 = pose[0] - t36;
-        let t41 = 0.5 * t34;
-        let t42 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t41;
-        let t45 = t42 * t42 + t37 * t37;
-        let t47 = 0.0576 / t45 - 0.25;
-        ::overact::guard::reach(t47, "leg2")?;
-        let t48 = ::overact::math::sqrt(t47);
-        let t50 = 0.5 * t37 + t42 * t48;
-        let t54 = t37 * t48 - 0.5 * t42;
-        let t63 = t45 * t48;
-        let t65 = t45 - 0.1152;
-        let t75 = 0.8660254037844386 * t32 - t41;
-        let t78 = t75 * t75 + t36 * t36;
-        let t80 = 0.0576 / t78 - 0.25;
-        ::overact::guard::reach(t80, "leg3")?;
-        let t81 = ::overact::math::sqrt(t80);
-        let t83 = 0.5 * t36 - t75 * t81;
-        let t87 = 0.5 * t75 + t36 * t81;
-        let t96 = t78 * t81;
-        let t98 = t78 - 0.1152;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        let t2_leg2 = rho_squared_leg2 - TWICE_L_1_SQUARED;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        let t2_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
         ::core::result::Result::Ok([
             ::overact::math::atan2(
-                3.0381944443178988 * t9 - 2.8514006434780375 * t13,
-                -(3.0381944443178988 * t13 + 2.8514006434780375 * t9),
+                3.0381944443178988 * minus_l1_y_leg1 - 2.8514006434780375 * l1_x_leg1,
+                -(3.0381944443178988 * l1_x_leg1 + 2.8514006434780375 * minus_l1_y_leg1),
             ) + 2.387899760924694,
             ::overact::math::atan2(
-                1.1001398520120134 * t22 - 8.66310959353454 * t24,
-                0.5500699260060067 * t24 + 17.32621918706908 * t22,
+                1.1001398520120134 * det_leg1 - 8.66310959353454 * t1_leg1,
+                0.5500699260060067 * t1_leg1 + 17.32621918706908 * det_leg1,
             ) + 1.5073857853212624,
             ::overact::math::atan2(
-                -(3.0381944443178965 * t50 + 2.8514006434780397 * t54),
-                2.8514006434780397 * t50 - 3.0381944443178965 * t54,
+                -(3.0381944443178965 * l1_y_leg2 + 2.8514006434780397 * l1_x_leg2),
+                2.8514006434780397 * l1_y_leg2 - 3.0381944443178965 * l1_x_leg2,
             ) + 2.387899760924693,
             ::overact::math::atan2(
-                1.1001398520120056 * t63 - 8.66310959353454 * t65,
-                0.5500699260060028 * t65 + 17.32621918706908 * t63,
+                1.1001398520120056 * det_leg2 - 8.66310959353454 * t2_leg2,
+                0.5500699260060028 * t2_leg2 + 17.32621918706908 * det_leg2,
             ) + 1.5073857853212629,
             ::overact::math::atan2(
-                -(3.038194444317904 * t83 + 2.851400643478032 * t87),
-                2.851400643478032 * t83 - 3.038194444317904 * t87,
+                -(3.038194444317904 * l1_y_leg3 + 2.851400643478032 * l1_x_leg3),
+                2.851400643478032 * l1_y_leg3 - 3.038194444317904 * l1_x_leg3,
             ) + 2.3878997609246957,
             ::overact::math::atan2(
-                1.1001398520120442 * t96 - 8.663109593534537 * t98,
-                0.5500699260060221 * t98 + 17.326219187069075 * t96,
+                1.1001398520120442 * det_leg3 - 8.663109593534537 * t2_leg3,
+                0.5500699260060221 * t2_leg3 + 17.326219187069075 * det_leg3,
             ) + 1.5073857853212607,
         ])
     }
@@ -262,41 +333,54 @@ impl ThreeLegPoint {
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        let t1 = pose[1] - 0.35;
-        let t6 = 0.0576 / (t1 * t1 + pose[0] * pose[0]) - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * pose[0] + t1 * t7;
-        let t13 = 0.5 * t1 - pose[0] * t7;
-        let t22 = pose[0] - 0.3031088913245535;
-        let t24 = pose[1] + 0.175;
-        let t26 = 0.5 * t22 + 0.8660254037844386 * t24;
-        let t27 = pose[0] - t26;
-        let t31 = 0.5 * t24;
-        let t32 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t31;
-        let t37 = 0.0576 / (t32 * t32 + t27 * t27) - 0.25;
-        ::overact::guard::reach(t37, "leg2")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let t40 = 0.5 * t27 + t32 * t38;
-        let t44 = t27 * t38 - 0.5 * t32;
-        let t55 = 0.8660254037844386 * t22 - t31;
-        let t60 = 0.0576 / (t55 * t55 + t26 * t26) - 0.25;
-        ::overact::guard::reach(t60, "leg3")?;
-        let t61 = ::overact::math::sqrt(t60);
-        let t63 = 0.5 * t26 - t55 * t61;
-        let t67 = 0.5 * t55 + t26 * t61;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         ::core::result::Result::Ok([
             ::overact::math::atan2(
-                3.0381944443178988 * t9 - 2.8514006434780375 * t13,
-                -(3.0381944443178988 * t13 + 2.8514006434780375 * t9),
+                3.0381944443178988 * minus_l1_y_leg1 - 2.8514006434780375 * l1_x_leg1,
+                -(3.0381944443178988 * l1_x_leg1 + 2.8514006434780375 * minus_l1_y_leg1),
             ) + 2.387899760924694,
             ::overact::math::atan2(
-                -(3.0381944443178965 * t40 + 2.8514006434780397 * t44),
-                2.8514006434780397 * t40 - 3.0381944443178965 * t44,
+                -(3.0381944443178965 * l1_y_leg2 + 2.8514006434780397 * l1_x_leg2),
+                2.8514006434780397 * l1_y_leg2 - 3.0381944443178965 * l1_x_leg2,
             ) + 2.387899760924693,
             ::overact::math::atan2(
-                -(3.038194444317904 * t63 + 2.851400643478032 * t67),
-                2.851400643478032 * t63 - 3.038194444317904 * t67,
+                -(3.038194444317904 * l1_y_leg3 + 2.851400643478032 * l1_x_leg3),
+                2.851400643478032 * l1_y_leg3 - 3.038194444317904 * l1_x_leg3,
             ) + 2.3878997609246957,
         ])
     }
@@ -314,47 +398,66 @@ impl ThreeLegPoint {
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
-        let t1 = pose[1] - 0.35;
-        let t4 = t1 * t1 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t10 = t4 * t7;
-        ::overact::guard::leg(t10, 0.05748423696979895, "leg1")?;
-        let t11 = 1.0 / t10;
-        let minus_g1_vx_leg1 = (t1 * t7 - 0.5 * pose[0]) * t11;
-        let t13 = pose[0] - 0.3031088913245535;
-        let t15 = pose[1] + 0.175;
-        let t17 = 0.5 * t13 + 0.8660254037844386 * t15;
-        let t18 = pose[0] - t17;
-        let t21 = 0.5 * t15;
-        let t22 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t21;
-        let t25 = t22 * t22 + t18 * t18;
-        let t27 = 0.0576 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t31 = t18 * t28 + 0.5 * t22;
-        let t35 = 0.5 * t18 - t22 * t28;
-        let t38 = t25 * t28;
-        ::overact::guard::leg(t38, 0.05748423696979895, "leg2")?;
-        let t39 = 0.24 / t38;
-        let g1_vx_leg2 = (3.608439182435161 * t31 + 2.0833333333333335 * t35) * t39;
-        let t42 = 0.8660254037844386 * t13 - t21;
-        let t46 = t42 * t42 + t17 * t17;
-        let t48 = 0.0576 / t46 - 0.25;
-        ::overact::guard::reach(t48, "leg3")?;
-        let t49 = ::overact::math::sqrt(t48);
-        let t51 = 0.5 * t42 - t17 * t49;
-        let t55 = 0.5 * t17 + t42 * t49;
-        let t58 = t46 * t49;
-        ::overact::guard::leg(t58, 0.05748423696979895, "leg3")?;
-        let t59 = 0.24 / t58;
-        let g1_vx_leg3 = (3.608439182435161 * t51 + 2.0833333333333335 * t55) * t59;
-        let g1_vy_leg1 = (0.5 * t1 + pose[0] * t7) * t11;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t35 - 2.0833333333333335 * t31)
-            * t39;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t51 - 3.608439182435161 * t55)
-            * t59;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         ::core::result::Result::Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1], [g1_vx_leg2, -minus_g1_vy_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3],
@@ -376,25 +479,32 @@ impl ThreeLegPoint {
         _pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
-        let t0 = joints[0] + joints[1];
-        let t6 = joints[2] + joints[3];
-        let t15 = joints[4] + joints[5];
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        let q1_plus_q2_leg1 = joints[0] + joints[1];
+        let q1_plus_q2_leg2 = joints[2] + joints[3];
+        let q1_plus_q2_leg3 = joints[4] + joints[5];
+        // --- sines and cosines
         let [(s12_leg1, c12_leg1), (s2_leg1, _), (s12_leg2, c12_leg2), (s2_leg2, _),
         (s12_leg3, c12_leg3), (s2_leg3, _)] = ::overact::math::sin_cos_all([
-            t0, joints[1], t6, joints[3], t15, joints[5],
+            q1_plus_q2_leg1, joints[1], q1_plus_q2_leg2, joints[3], q1_plus_q2_leg3, joints[5],
         ]);
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
-        let t4 = 4.166666666666667 / s2_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * t4;
-        let t13 = 4.166666666666667 / s2_leg2;
-        let g1_vx_leg2 = (0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2) * t13;
-        let t22 = 4.166666666666667 / s2_leg3;
-        let g1_vx_leg3 = (0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3) * t22;
-        let g1_vy_leg1 = c12_leg1 * t4;
-        let minus_g1_vy_leg2 = (0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2) * t13;
-        let minus_g1_vy_leg3 = (0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3) * t22;
+        let k_leg1 = INV_L_1 / s2_leg1;
+        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let k_leg2 = INV_L_1 / s2_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let k_leg3 = INV_L_1 / s2_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let g1_vy_leg1 = c12_leg1 * k_leg1;
+        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         ::core::result::Result::Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1], [g1_vx_leg2, -minus_g1_vy_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3],
@@ -414,67 +524,88 @@ impl ThreeLegPoint {
     pub fn jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 2], ::overact::Error> {
-        let t1 = pose[1] - 0.35;
-        let t4 = t1 * t1 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t10 = t4 * t7;
-        ::overact::guard::leg(t10, 0.05748423696979895, "leg1")?;
-        let t11 = 1.0 / t10;
-        let minus_g1_vx_leg1 = (t1 * t7 - 0.5 * pose[0]) * t11;
-        let g1_vy_leg1 = (0.5 * t1 + pose[0] * t7) * t11;
-        let t18 = pose[0] - 0.3031088913245535;
-        let t20 = pose[1] + 0.175;
-        let t22 = 0.5 * t18 + 0.8660254037844386 * t20;
-        let t23 = pose[0] - t22;
-        let t26 = 0.5 * t20;
-        let t27 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t26;
-        let t30 = t27 * t27 + t23 * t23;
-        let t32 = 0.0576 / t30 - 0.25;
-        ::overact::guard::reach(t32, "leg2")?;
-        let t33 = ::overact::math::sqrt(t32);
-        let t36 = t23 * t33 + 0.5 * t27;
-        let t40 = 0.5 * t23 - t27 * t33;
-        let t43 = t30 * t33;
-        ::overact::guard::leg(t43, 0.05748423696979895, "leg2")?;
-        let t44 = 0.24 / t43;
-        let g1_vx_leg2 = (3.608439182435161 * t36 + 2.0833333333333335 * t40) * t44;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t40 - 2.0833333333333335 * t36)
-            * t44;
-        let t53 = 0.8660254037844386 * t18 - t26;
-        let t57 = t53 * t53 + t22 * t22;
-        let t59 = 0.0576 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg3")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t62 = 0.5 * t53 - t22 * t60;
-        let t66 = 0.5 * t22 + t53 * t60;
-        let t69 = t57 * t60;
-        ::overact::guard::leg(t69, 0.05748423696979895, "leg3")?;
-        let t70 = 0.24 / t69;
-        let g1_vx_leg3 = (3.608439182435161 * t62 + 2.0833333333333335 * t66) * t70;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t62 - 3.608439182435161 * t66)
-            * t70;
-        let t77 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t82 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t82, 26.146658848896372, "actuators")?;
-        let t83 = 1.0 / t82;
-        let t84 = t77 * t83;
-        let t91 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t77 * t84;
-        ::overact::guard::platform(t91, 26.146658848896372, "actuators")?;
-        let t92 = 1.0 / t91;
-        let t95 = t92 * (g1_vy_leg1 - minus_g1_vx_leg1 * t84);
-        let t102 = t92 * (g1_vx_leg2 * t84 - minus_g1_vy_leg2);
-        let t108 = t92 * (g1_vx_leg3 * t84 - minus_g1_vy_leg3);
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t1 = inv_pivot_2 * (g1_vy_leg1 - minus_g1_vx_leg1 * minus_l_2_1);
+        let t2 = inv_pivot_2 * (g1_vx_leg2 * minus_l_2_1 - minus_g1_vy_leg2);
+        let t3 = inv_pivot_2 * (g1_vx_leg3 * minus_l_2_1 - minus_g1_vy_leg3);
         ::core::result::Result::Ok([
             [
-                t84 * t95 - minus_g1_vx_leg1 * t83, g1_vx_leg2 * t83 + t84 * t102,
-                g1_vx_leg3 * t83 + t84 * t108,
+                minus_l_2_1 * t1 - minus_g1_vx_leg1 * inv_pivot_1,
+                g1_vx_leg2 * inv_pivot_1 + minus_l_2_1 * t2,
+                g1_vx_leg3 * inv_pivot_1 + minus_l_2_1 * t3,
             ],
-            [t95, t102, t108],
+            [t1, t2, t3],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -491,36 +622,39 @@ impl ThreeLegPoint {
         _pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> [[::core::primitive::f64; 6]; 6] {
-        let t2 = joints[0] + joints[1];
-        let t16 = joints[2] + joints[3];
-        let t39 = joints[4] + joints[5];
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        let q1_plus_q2_leg1 = joints[0] + joints[1];
+        let q1_plus_q2_leg2 = joints[2] + joints[3];
+        let q1_plus_q2_leg3 = joints[4] + joints[5];
+        // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s12_leg1, c12_leg1), (s1_leg2, c1_leg2),
         (s12_leg2, c12_leg2), (s1_leg3, c1_leg3), (s12_leg3, c12_leg3)] = ::overact::math::sin_cos_all([
-            joints[0], t2, joints[2], t16, joints[4], t39,
+            joints[0], q1_plus_q2_leg1, joints[2], q1_plus_q2_leg2, joints[4], q1_plus_q2_leg3,
         ]);
-        let t21 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let t29 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let t44 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t52 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        // --- leg2
+        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        // --- leg3
+        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
         [
-            [-(0.24 * (c1_leg1 + c12_leg1)), -(0.24 * c12_leg1), 0.0, 0.0, 0.0, 0.0],
-            [-(0.24 * (s1_leg1 + s12_leg1)), -(0.24 * s12_leg1), 0.0, 0.0, 0.0, 0.0],
+            [-(L_1 * (c1_leg1 + c12_leg1)), -(L_1 * c12_leg1), 0.0, 0.0, 0.0, 0.0],
+            [-(L_1 * (s1_leg1 + s12_leg1)), -(L_1 * s12_leg1), 0.0, 0.0, 0.0, 0.0],
             [
-                0.0, 0.0, 0.24 * (0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2 + t21), 0.24 * t21,
-                0.0, 0.0,
+                0.0, 0.0, L_1 * (minus_fk2_y_leg2 + fk1_y_leg2), L_1 * fk1_y_leg2, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.24 * (0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2 + t29), 0.24 * t29,
-                0.0, 0.0,
+                0.0, 0.0, L_1 * (fk2_x_leg2 + minus_fk1_x_leg2), L_1 * minus_fk1_x_leg2, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.24 * (0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3 + t44),
-                0.24 * t44,
+                0.0, 0.0, 0.0, 0.0, L_1 * (fk2_y_leg3 + minus_fk1_y_leg3), L_1 * minus_fk1_y_leg3,
             ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.24 * (0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3 + t52),
-                0.24 * t52,
-            ],
+            [0.0, 0.0, 0.0, 0.0, L_1 * (minus_fk2_x_leg3 + fk1_x_leg3), L_1 * fk1_x_leg3],
         ]
     }
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
@@ -553,22 +687,22 @@ impl ThreeLegPoint {
         _pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> [[::core::primitive::f64; 2]; 3] {
-        let t0 = joints[0] + joints[1];
-        let t4 = joints[2] + joints[3];
-        let t11 = joints[4] + joints[5];
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        let q1_plus_q2_leg1 = joints[0] + joints[1];
+        let q1_plus_q2_leg2 = joints[2] + joints[3];
+        let q1_plus_q2_leg3 = joints[4] + joints[5];
+        // --- sines and cosines
         let [(s12_leg1, c12_leg1), (s12_leg2, c12_leg2), (s12_leg3, c12_leg3)] = ::overact::math::sin_cos_all([
-            t0, t4, t11,
+            q1_plus_q2_leg1, q1_plus_q2_leg2, q1_plus_q2_leg3,
         ]);
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
         [
-            [-(0.24 * s12_leg1), 0.24 * c12_leg1],
-            [
-                0.24 * (0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2),
-                -(0.24 * (0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2)),
-            ],
-            [
-                0.24 * (0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3),
-                -(0.24 * (0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3)),
-            ],
+            [-(L_1 * s12_leg1), L_1 * c12_leg1], [L_1 * minus_fk1_x_leg2, -(L_1 * fk1_y_leg2)],
+            [L_1 * fk1_x_leg3, -(L_1 * minus_fk1_y_leg3)],
         ]
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
@@ -585,12 +719,15 @@ impl ThreeLegPoint {
         _pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> [[::core::primitive::f64; 3]; 3] {
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        // --- sines and cosines
         let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[5],
         ]);
         [
-            [-(0.0576 * s2_leg1), 0.0, 0.0], [0.0, -(0.0576 * s2_leg2), 0.0],
-            [0.0, 0.0, -(0.0576 * s2_leg3)],
+            [-(L_1_SQUARED * s2_leg1), 0.0, 0.0], [0.0, -(L_1_SQUARED * s2_leg2), 0.0],
+            [0.0, 0.0, -(L_1_SQUARED * s2_leg3)],
         ]
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
@@ -609,71 +746,96 @@ impl ThreeLegPoint {
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        let t0 = pose[1] - 0.35;
-        let t4 = t0 * t0 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * t0 - pose[0] * t7;
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let g1_vy_leg1 = (t0 - t9) * t12;
-        let t17 = 0.5 * pose[0] + t0 * t7;
-        let minus_g1_vx_leg1 = (t17 - pose[0]) * t12;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = t17 * t12;
-        let minus_g2_vy_leg1 = t9 * t12;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t30 = pose[1] + 0.175;
-        let t31 = 0.5 * t30;
-        let t32 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t31;
-        let t33 = pose[0] - 0.3031088913245535;
-        let t36 = 0.5 * t33 + 0.8660254037844386 * t30;
-        let t37 = pose[0] - t36;
-        let t40 = t32 * t32 + t37 * t37;
-        let t42 = 0.0576 / t40 - 0.25;
-        ::overact::guard::reach(t42, "leg2")?;
-        let t43 = ::overact::math::sqrt(t42);
-        let t46 = t37 * t43 - 0.5 * t32;
-        let t47 = t32 + t46;
-        let t51 = 0.5 * t37 + t32 * t43;
-        let t52 = t37 - t51;
-        let t55 = t40 * t43;
-        ::overact::guard::leg(t55, 0.05748423696979895, "leg2")?;
-        let t56 = 0.24 / t55;
-        let g1_vx_leg2 = (3.608439182435161 * t47 + 2.0833333333333335 * t52) * t56;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t52 - 2.0833333333333335 * t47)
-            * t56;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let g2_vy_leg2 = (3.608439182435161 * t51 + 2.0833333333333335 * t46) * t56;
-        let minus_g2_vx_leg2 = (2.0833333333333335 * t51 - 3.608439182435161 * t46)
-            * t56;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t78 = 0.8660254037844386 * t33 - t31;
-        let t82 = t78 * t78 + t36 * t36;
-        let t84 = 0.0576 / t82 - 0.25;
-        ::overact::guard::reach(t84, "leg3")?;
-        let t85 = ::overact::math::sqrt(t84);
-        let t87 = 0.5 * t78 + t36 * t85;
-        let t88 = t78 - t87;
-        let t92 = 0.5 * t36 - t78 * t85;
-        let t93 = t36 - t92;
-        let t96 = t82 * t85;
-        ::overact::guard::leg(t96, 0.05748423696979895, "leg3")?;
-        let t97 = 0.24 / t96;
-        let g1_vx_leg3 = (3.608439182435161 * t88 + 2.0833333333333335 * t93) * t97;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t88 - 3.608439182435161 * t93)
-            * t97;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let g2_vy_leg3 = (2.0833333333333335 * t87 - 3.608439182435161 * t92) * t97;
-        let minus_g2_vx_leg3 = (3.608439182435161 * t87 + 2.0833333333333335 * t92)
-            * t97;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         ::core::result::Result::Ok([
-            rate_1_leg1, -(rate_1_leg1 + minus_rate_2_leg1), rate_1_leg2, rate_2_leg2 - rate_1_leg2,
-            rate_1_leg3, rate_2_leg3 - rate_1_leg3,
+            rate_1_leg1, -minus_qd_2_leg1, rate_1_leg2, qd_2_leg2, rate_1_leg3, qd_2_leg3,
         ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -694,101 +856,134 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        let t0 = pose[1] - 0.35;
-        let t3 = t0 * t0 + pose[0] * pose[0];
-        let t5 = 0.0576 / t3 - 0.25;
-        ::overact::guard::reach(t5, "leg1")?;
-        let t6 = ::overact::math::sqrt(t5);
-        let t7 = t3 * t6;
-        ::overact::guard::leg(t7, 0.05748423696979895, "leg1")?;
-        let t8 = 1.0 / t7;
-        let t11 = 0.5 * pose[0] + t0 * t6;
-        let t12 = t11 - pose[0];
-        let t16 = 0.5 * t0 - pose[0] * t6;
-        let t17 = t0 - t16;
-        let minus_g2_vx_leg1 = t11 * t8;
-        let minus_g2_vy_leg1 = t16 * t8;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t25 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let g1_vy_leg1 = t17 * t8;
-        let minus_g1_vx_leg1 = t12 * t8;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t33 = rate_1_leg1 * rate_1_leg1;
-        let t35 = 0.5 * (t3 - 0.1152);
-        let minus_rate_dot_1_leg1 = t8
-            * (t12 * acceleration[0] - t17 * acceleration[1] - 0.0576 * t25 - t33 * t35);
-        let minus_rate_dot_2_leg1 = t8
-            * (t11 * acceleration[0] + t16 * acceleration[1] + 0.0576 * t33 + t25 * t35);
-        let t50 = pose[1] + 0.175;
-        let t51 = 0.5 * t50;
-        let t52 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t51;
-        let t54 = pose[0] - 0.3031088913245535;
-        let t57 = 0.5 * t54 + 0.8660254037844386 * t50;
-        let t58 = pose[0] - t57;
-        let t60 = t52 * t52 + t58 * t58;
-        let t62 = 0.0576 / t60 - 0.25;
-        ::overact::guard::reach(t62, "leg2")?;
-        let t63 = ::overact::math::sqrt(t62);
-        let t64 = t60 * t63;
-        ::overact::guard::leg(t64, 0.05748423696979895, "leg2")?;
-        let t65 = 0.24 / t64;
-        let t68 = 0.5 * t58 + t52 * t63;
-        let t69 = t58 - t68;
-        let t73 = t58 * t63 - 0.5 * t52;
-        let t74 = t52 + t73;
-        let t76 = 3.608439182435161 * t69 - 2.0833333333333335 * t74;
-        let t80 = 3.608439182435161 * t74 + 2.0833333333333335 * t69;
-        let t85 = 3.608439182435161 * t68 + 2.0833333333333335 * t73;
-        let g2_vy_leg2 = t85 * t65;
-        let t90 = 2.0833333333333335 * t68 - 3.608439182435161 * t73;
-        let minus_g2_vx_leg2 = t90 * t65;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let qdd_2_leg1 = minus_rate_dot_1_leg1 - minus_rate_dot_2_leg1;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t94 = rate_2_leg2 * rate_2_leg2;
-        let g1_vx_leg2 = t80 * t65;
-        let minus_g1_vy_leg2 = t76 * t65;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t102 = rate_1_leg2 * rate_1_leg2;
-        let t104 = 2.0833333333333335 * (t60 - 0.1152);
-        let minus_rate_dot_1_leg2 = t65
-            * (t76 * acceleration[1] - t80 * acceleration[0] - 0.24 * t94 - t102 * t104);
-        let minus_rate_dot_2_leg2 = t65
-            * (t90 * acceleration[0] - t85 * acceleration[1] + 0.24 * t102 + t94 * t104);
-        let t118 = 0.8660254037844386 * t54 - t51;
-        let t121 = t118 * t118 + t57 * t57;
-        let t123 = 0.0576 / t121 - 0.25;
-        ::overact::guard::reach(t123, "leg3")?;
-        let t124 = ::overact::math::sqrt(t123);
-        let t125 = t121 * t124;
-        ::overact::guard::leg(t125, 0.05748423696979895, "leg3")?;
-        let t126 = 0.24 / t125;
-        let t129 = 0.5 * t118 + t57 * t124;
-        let t130 = t118 - t129;
-        let t134 = 0.5 * t57 - t118 * t124;
-        let t135 = t57 - t134;
-        let t137 = 3.608439182435161 * t130 + 2.0833333333333335 * t135;
-        let t141 = 2.0833333333333335 * t130 - 3.608439182435161 * t135;
-        let t146 = 2.0833333333333335 * t129 - 3.608439182435161 * t134;
-        let g2_vy_leg3 = t146 * t126;
-        let t151 = 3.608439182435161 * t129 + 2.0833333333333335 * t134;
-        let minus_g2_vx_leg3 = t151 * t126;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let qdd_2_leg2 = minus_rate_dot_1_leg2 - minus_rate_dot_2_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t155 = rate_2_leg3 * rate_2_leg3;
-        let g1_vx_leg3 = t137 * t126;
-        let minus_g1_vy_leg3 = t141 * t126;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t163 = rate_1_leg3 * rate_1_leg3;
-        let t165 = 2.0833333333333335 * (t121 - 0.1152);
-        let rate_dot_1_leg3 = t126
-            * (t137 * acceleration[0] - t141 * acceleration[1] + 0.24 * t155
-                + t163 * t165);
-        let rate_dot_2_leg3 = t126
-            * (t146 * acceleration[1] - t151 * acceleration[0] - 0.24 * t163
-                - t155 * t165);
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let qdd_2_leg3 = rate_dot_2_leg3 - rate_dot_1_leg3;
         ::core::result::Result::Ok([
-            -minus_rate_dot_1_leg1, minus_rate_dot_1_leg1 - minus_rate_dot_2_leg1,
-            -minus_rate_dot_1_leg2, minus_rate_dot_1_leg2 - minus_rate_dot_2_leg2, rate_dot_1_leg3,
-            rate_dot_2_leg3 - rate_dot_1_leg3,
+            -minus_rate_dot_1_leg1, qdd_2_leg1, -minus_rate_dot_1_leg2, qdd_2_leg2, rate_dot_1_leg3,
+            qdd_2_leg3,
         ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -807,64 +1002,85 @@ impl ThreeLegPoint {
         pose: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t0 = pose[0] - 0.3031088913245535;
-        let t2 = pose[1] + 0.175;
-        let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
-        let t5 = pose[0] - t4;
-        let t8 = 0.5 * t2;
-        let t9 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t8;
-        let t12 = t9 * t9 + t5 * t5;
-        let t14 = 0.0576 / t12 - 0.25;
-        ::overact::guard::reach(t14, "leg2")?;
-        let t15 = ::overact::math::sqrt(t14);
-        let t18 = t5 * t15 + 0.5 * t9;
-        let t22 = 0.5 * t5 - t9 * t15;
-        let t25 = t12 * t15;
-        ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
-        let t26 = 0.24 / t25;
-        let g1_vx_leg2 = (3.608439182435161 * t18 + 2.0833333333333335 * t22) * t26;
-        let t30 = pose[1] - 0.35;
-        let t33 = t30 * t30 + pose[0] * pose[0];
-        let t35 = 0.0576 / t33 - 0.25;
-        ::overact::guard::reach(t35, "leg1")?;
-        let t36 = ::overact::math::sqrt(t35);
-        let t39 = t33 * t36;
-        ::overact::guard::leg(t39, 0.05748423696979895, "leg1")?;
-        let t40 = 1.0 / t39;
-        let minus_g1_vx_leg1 = (t30 * t36 - 0.5 * pose[0]) * t40;
-        let t45 = 0.8660254037844386 * t0 - t8;
-        let t49 = t45 * t45 + t4 * t4;
-        let t51 = 0.0576 / t49 - 0.25;
-        ::overact::guard::reach(t51, "leg3")?;
-        let t52 = ::overact::math::sqrt(t51);
-        let t54 = 0.5 * t45 - t4 * t52;
-        let t58 = 0.5 * t4 + t45 * t52;
-        let t61 = t49 * t52;
-        ::overact::guard::leg(t61, 0.05748423696979895, "leg3")?;
-        let t62 = 0.24 / t61;
-        let g1_vx_leg3 = (3.608439182435161 * t54 + 2.0833333333333335 * t58) * t62;
-        let t65 = g1_vx_leg2 * actuator_velocities[1]
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg3
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t70 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t70, 26.146658848896372, "actuators")?;
-        let t71 = 1.0 / t70;
-        let g1_vy_leg1 = (0.5 * t30 + pose[0] * t36) * t40;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t22 - 2.0833333333333335 * t18)
-            * t26;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t54 - 3.608439182435161 * t58)
-            * t62;
-        let t89 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t90 = t89 * t71;
-        let t104 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t89 * t90;
-        ::overact::guard::platform(t104, 26.146658848896372, "actuators")?;
-        let t105 = (g1_vy_leg1 * actuator_velocities[0]
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let t2 = (g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t65 * t90) / t104;
-        ::core::result::Result::Ok([t65 * t71 + t90 * t105, t105])
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 + minus_l_2_1 * t2, t2])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -884,94 +1100,136 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t2 = pose[1] + 0.175;
-        let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t3;
-        let t5 = pose[0] - 0.3031088913245535;
-        let t8 = 0.5 * t5 + 0.8660254037844386 * t2;
-        let t9 = pose[0] - t8;
-        let t12 = t4 * t4 + t9 * t9;
-        let t14 = 0.0576 / t12 - 0.25;
-        ::overact::guard::reach(t14, "leg2")?;
-        let t15 = ::overact::math::sqrt(t14);
-        let t18 = t9 * t15 - 0.5 * t4;
-        let t19 = t4 + t18;
-        let t23 = 0.5 * t9 + t4 * t15;
-        let t24 = t9 - t23;
-        let t27 = t12 * t15;
-        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
-        let t28 = 0.24 / t27;
-        let g1_vx_leg2 = (3.608439182435161 * t19 + 2.0833333333333335 * t24) * t28;
-        let g2_vy_leg2 = (3.608439182435161 * t23 + 2.0833333333333335 * t18) * t28;
-        let minus_g2_vx_leg2 = (2.0833333333333335 * t23 - 3.608439182435161 * t18)
-            * t28;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg2
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let minus_g1_vy_leg2 = (3.608439182435161 * t24 - 2.0833333333333335 * t19)
-            * t28;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_dot_1_leg2 = t28
-            * (0.24 * (rate_2_leg2 * rate_2_leg2)
-                + rate_1_leg2 * rate_1_leg2 * (2.0833333333333335 * (t12 - 0.1152)));
-        let t56 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t59 = pose[1] - 0.35;
-        let t62 = t59 * t59 + pose[0] * pose[0];
-        let t64 = 0.0576 / t62 - 0.25;
-        ::overact::guard::reach(t64, "leg1")?;
-        let t65 = ::overact::math::sqrt(t64);
-        let t67 = 0.5 * pose[0] + t59 * t65;
-        let t69 = t62 * t65;
-        ::overact::guard::leg(t69, 0.05748423696979895, "leg1")?;
-        let t70 = 1.0 / t69;
-        let minus_g1_vx_leg1 = (t67 - pose[0]) * t70;
-        let minus_g2_vx_leg1 = t67 * t70;
-        let t76 = 0.5 * t59 - pose[0] * t65;
-        let minus_g2_vy_leg1 = t76 * t70;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let g1_vy_leg1 = (t59 - t76) * t70;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_dot_1_leg1 = t70
-            * (0.0576 * (minus_rate_2_leg1 * minus_rate_2_leg1)
-                + rate_1_leg1 * rate_1_leg1 * (0.5 * (t62 - 0.1152)));
-        let t93 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t97 = 0.8660254037844386 * t5 - t3;
-        let t101 = t97 * t97 + t8 * t8;
-        let t103 = 0.0576 / t101 - 0.25;
-        ::overact::guard::reach(t103, "leg3")?;
-        let t104 = ::overact::math::sqrt(t103);
-        let t106 = 0.5 * t97 + t8 * t104;
-        let t107 = t97 - t106;
-        let t111 = 0.5 * t8 - t97 * t104;
-        let t112 = t8 - t111;
-        let t115 = t101 * t104;
-        ::overact::guard::leg(t115, 0.05748423696979895, "leg3")?;
-        let t116 = 0.24 / t115;
-        let g1_vx_leg3 = (3.608439182435161 * t107 + 2.0833333333333335 * t112) * t116;
-        let g2_vy_leg3 = (2.0833333333333335 * t106 - 3.608439182435161 * t111) * t116;
-        let minus_g2_vx_leg3 = (3.608439182435161 * t106 + 2.0833333333333335 * t111)
-            * t116;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1
+            * (minus_bias_a_on_f1_leg1
+                + rate_1_squared_leg1 * (0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED)));
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            - bias_rate_dot_1_leg1;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t107 - 3.608439182435161 * t112)
-            * t116;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_dot_1_leg3 = t116
-            * (0.24 * (rate_2_leg3 * rate_2_leg3)
-                + rate_1_leg3 * rate_1_leg3 * (2.0833333333333335 * (t101 - 0.1152)));
-        let t144 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t146 = g1_vx_leg2 * t56 - minus_g1_vx_leg1 * t93 + g1_vx_leg3 * t144;
-        let t151 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            - bias_rate_dot_1_leg3;
+        let t1 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t151, 26.146658848896372, "actuators")?;
-        let t152 = 1.0 / t151;
-        let t158 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t159 = t158 * t152;
-        let t173 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t158 * t159;
-        ::overact::guard::platform(t173, 26.146658848896372, "actuators")?;
-        let t174 = (g1_vy_leg1 * t93 - minus_g1_vy_leg2 * t56 - minus_g1_vy_leg3 * t144
-            + t146 * t159) / t173;
-        ::core::result::Result::Ok([t146 * t152 + t159 * t174, t174])
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let t2 = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + t1 * minus_l_2_1)
+            / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 + minus_l_2_1 * t2, t2])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -992,145 +1250,204 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        let t0 = 0.5 * pose[0];
-        let t1 = pose[1] - 0.35;
-        let t4 = t1 * t1 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = t0 + t1 * t7;
-        let t10 = t9 - pose[0];
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let minus_g1_vx_leg1 = t10 * t12;
-        let t17 = 0.5 * t1 - pose[0] * t7;
-        let t18 = t1 - t17;
-        let minus_g2_vx_leg1 = t9 * t12;
-        let minus_g2_vy_leg1 = t17 * t12;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let half_x = 0.5 * pose[0];
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t26 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t28 = t10 * acceleration[0] - t18 * acceleration[1] - 0.0576 * t26;
-        let g1_vy_leg1 = t18 * t12;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t33 = rate_1_leg1 * rate_1_leg1;
-        let t35 = 0.5 * (t4 - 0.1152);
-        let minus_rate_dot_1_leg1 = t12 * (t28 - t33 * t35);
-        let t39 = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-        let t40 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let t49 = t9 * acceleration[0] + t17 * acceleration[1] + 0.0576 * t33;
-        let minus_rate_dot_2_leg1 = t12 * (t49 + t26 * t35);
-        let t53 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t54 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let t55 = 4.166666666666667 * acceleration[0];
-        let t59 = 4.166666666666667 * acceleration[1];
-        let t63 = 4.166666666666667 * t49;
-        let t65 = 4.166666666666667 * t28;
-        let t74 = rate_1_leg1 + minus_rate_2_leg1;
-        let t79 = t0 + pose[1] * 0.8660254037844386;
-        let t80 = pose[0] - t79;
-        let t81 = pose[0] + 0.3031088913245535;
-        let t83 = pose[1] + 0.175;
-        let t84 = 0.5 * t83;
-        let t85 = 0.8660254037844386 * t81 + t84;
-        let t88 = t85 * t85 + t80 * t80;
-        let t90 = 0.0576 / t88 - 0.25;
-        ::overact::guard::reach(t90, "leg2")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t94 = t80 * t91 + 0.5 * t85;
-        let t98 = 0.5 * t80 - t85 * t91;
-        let t100 = 3.608439182435161 * t94 + 2.0833333333333335 * t98;
-        let t101 = t88 * t91;
-        ::overact::guard::leg(t101, 0.05748423696979895, "leg2")?;
-        let t102 = 0.24 / t101;
-        let g1_vx_leg2 = t100 * t102;
-        let t106 = 3.608439182435161 * t98 - 2.0833333333333335 * t94;
-        let t110 = 4.166666666666667 * t83;
-        let t111 = t106 + t110;
-        let minus_g2_vy_leg2 = t111 * t102;
-        let t115 = 4.166666666666667 * t81 - t100;
-        let minus_g2_vx_leg2 = t115 * t102;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+        let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+        let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let inv_l_1_dvx = INV_L_1 * acceleration[0];
+        let inv_l_1_dvy = INV_L_1 * acceleration[1];
+        let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let gq2_vx_leg1 = minus_g1_vx_leg1 - minus_g2_vx_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = pose[0] + 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let t1_leg3 = INV_L_1 * y_plus_half_radius;
+        let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
+        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = INV_L_1 * t1_leg2 - minus_fk1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
             + minus_g2_vx_leg2 * twist[0];
-        let t119 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t121 = t106 * acceleration[1] - t100 * acceleration[0] - 0.24 * t119;
-        let minus_g1_vy_leg2 = t106 * t102;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t126 = rate_1_leg2 * rate_1_leg2;
-        let t128 = 2.0833333333333335 * (t88 - 0.1152);
-        let minus_rate_dot_1_leg2 = t102 * (t121 - t126 * t128);
-        let t132 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t133 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t142 = t115 * acceleration[0] + t111 * acceleration[1] + 0.24 * t126;
-        let minus_rate_dot_2_leg2 = t102 * (t142 + t119 * t128);
-        let t146 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t147 = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let t164 = -(minus_rate_2_leg2 + rate_1_leg2);
-        let t168 = pose[0] - 0.3031088913245535;
-        let t170 = 0.8660254037844386 * t168 - t84;
-        let t174 = t170 * t170 + t79 * t79;
-        let t176 = 0.0576 / t174 - 0.25;
-        ::overact::guard::reach(t176, "leg3")?;
-        let t177 = ::overact::math::sqrt(t176);
-        let t179 = 0.5 * t170 - t79 * t177;
-        let t183 = 0.5 * t79 + t170 * t177;
-        let t185 = 3.608439182435161 * t179 + 2.0833333333333335 * t183;
-        let t186 = t174 * t177;
-        ::overact::guard::leg(t186, 0.05748423696979895, "leg3")?;
-        let t187 = 0.24 / t186;
-        let g1_vx_leg3 = t185 * t187;
-        let t192 = 2.0833333333333335 * t179 - 3.608439182435161 * t183;
-        let t195 = t192 + t110;
-        let minus_g2_vy_leg3 = t195 * t187;
-        let t199 = 4.166666666666667 * t168 - t185;
-        let minus_g2_vx_leg3 = t199 * t187;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0] + fk2_y_leg2 * acceleration[1]
+            + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+        let qd_2_leg2 = -minus_qd_2_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 - minus_g2_vy_leg2;
+        // --- leg3
+        let t2_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = INV_L_1 * t2_leg3 - fk1_x_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
             + minus_g2_vx_leg3 * twist[0];
-        let t203 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t205 = t185 * acceleration[0] - t192 * acceleration[1] + 0.24 * t203;
-        let minus_g1_vy_leg3 = t192 * t187;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t210 = rate_1_leg3 * rate_1_leg3;
-        let t212 = 2.0833333333333335 * (t174 - 0.1152);
-        let rate_dot_1_leg3 = t187 * (t205 + t210 * t212);
-        let t216 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t217 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let t226 = t195 * acceleration[1] + t199 * acceleration[0] + 0.24 * t210;
-        let minus_rate_dot_2_leg3 = t187 * (t226 + t203 * t212);
-        let t230 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t231 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let t248 = -(minus_rate_2_leg3 + rate_1_leg3);
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+        let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+            + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k_leg3
+            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let qd_2_leg3 = -minus_qd_2_leg3;
+        let gq2_vy_leg3 = minus_g1_vy_leg3 - minus_g2_vy_leg3;
         ::core::result::Result::Ok([
             [
-                t39, t39, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t53,
-                t55 - 0.24 * (t39 + t53), -(minus_g1_vx_leg1 * t63 + minus_g2_vx_leg1 * t65),
-                0.0576 * t39, -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t74),
-                -t132, -t132, g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t146,
-                t55 - 0.24 * (t146 - t132), g1_vx_leg2 * t142 - minus_g2_vx_leg2 * t121,
-                -(0.0576 * t132), -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t164),
-                t216, t216, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, t230,
-                t55 - 0.24 * (t216 + t230), minus_g2_vx_leg3 * t205 + g1_vx_leg3 * t226,
-                0.0576 * t216, -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t248),
+                zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1,
+                zz_2_leg1_on_vx, inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
+                -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                    + minus_g2_vx_leg1 * minus_a2_x_leg1),
+                L_1_SQUARED * zz_1_leg1_on_vx,
+                -::overact::math::signed(gq2_vx_leg1, minus_qd_2_leg1),
+                -minus_zz_1_leg2_on_vx,
+                -minus_zz_1_leg2_on_vx,
+                g1_vx_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
+                g1_vx_leg2,
+                zz_2_leg2_on_vx,
+                inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx),
+                g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
+                -(L_1_SQUARED * minus_zz_1_leg2_on_vx),
+                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
+                zz_1_leg3_on_vx,
+                zz_1_leg3_on_vx,
+                g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3,
+                zz_2_leg3_on_vx,
+                inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
+                minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
+                L_1_SQUARED * zz_1_leg3_on_vx,
+                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
                 acceleration[0],
             ],
             [
-                -t40, -t40, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t54,
-                t59 - 0.24 * (t54 - t40), g1_vy_leg1 * t63 - minus_g2_vy_leg1 * t65,
-                -(0.0576 * t40), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t74), t133,
-                t133, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, t147,
-                t59 - 0.24 * (t133 + t147), -(minus_g2_vy_leg2 * t121 + minus_g1_vy_leg2 * t142),
-                0.0576 * t133, ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t164),
-                -t217, -t217, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t231,
-                t59 - 0.24 * (t231 - t217), minus_g2_vy_leg3 * t205 - minus_g1_vy_leg3 * t226,
-                -(0.0576 * t217),
-                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t248), acceleration[1],
+                -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
+                inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
+                g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
+                -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1), zz_1_leg2_on_vy,
+                zz_1_leg2_on_vy, -(minus_g1_vy_leg2 * rate_1_leg2),
+                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
+                zz_2_leg2_on_vy, inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
+                -(minus_g2_vy_leg2 * a_on_f1_leg2 + minus_g1_vy_leg2 * a_on_f2_leg2),
+                L_1_SQUARED * zz_1_leg2_on_vy, ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
+                -minus_zz_1_leg3_on_vy, -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
+                zz_2_leg3_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
+                minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
+                -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
+                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3), acceleration[1],
             ],
         ])
     }
@@ -1155,6 +1472,13 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -1162,105 +1486,146 @@ impl ThreeLegPoint {
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+        // --- leg1
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t10 = 4.166666666666667 / s2_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * t10;
-        let g2_vx_leg1 = s1_leg1 * t10;
-        let minus_g2_vy_leg1 = c1_leg1 * t10;
+        let k_leg1 = INV_L_1 / s2_leg1;
+        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
+        let g2_vx_leg1 = s1_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let t21 = 0.24 * (rate_2_leg1 * rate_2_leg1);
-        let t22 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - t21;
-        let g1_vy_leg1 = c12_leg1 * t10;
+        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+        let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
+        let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+        let g1_vy_leg1 = c12_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t28 = 0.24 * (rate_1_leg1 * rate_1_leg1);
-        let minus_rate_dot_1_leg1 = t10 * (t22 - c2_leg1 * t28);
-        let t32 = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-        let t33 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let t41 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + t28;
-        let minus_rate_dot_2_leg1 = t10 * (t41 + t21 * c2_leg1);
-        let t45 = g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t46 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let t47 = 4.166666666666667 * acceleration[0];
-        let t51 = 4.166666666666667 * acceleration[1];
-        let t64 = rate_2_leg1 - rate_1_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
+        let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+        let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+            + l_1_rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
+        let minus_zz_2_leg1_on_vx = g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let inv_l_1_dvx = INV_L_1 * acceleration[0];
+        let inv_l_1_dvy = INV_L_1 * acceleration[1];
+        let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
+        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t80 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let t81 = 4.166666666666667 / s2_leg2;
-        let g1_vx_leg2 = t80 * t81;
-        let t85 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let t91 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t91 * t81;
-        let t96 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t96 * t81;
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let k_leg2 = INV_L_1 / s2_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t101 = 0.24 * (rate_2_leg2 * rate_2_leg2);
-        let t102 = t85 * acceleration[1] - t80 * acceleration[0] - t101;
-        let minus_g1_vy_leg2 = t85 * t81;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t108 = 0.24 * (rate_1_leg2 * rate_1_leg2);
-        let minus_rate_dot_1_leg2 = t81 * (t102 - c2_leg2 * t108);
-        let t112 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t113 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t121 = t96 * acceleration[0] - t91 * acceleration[1] + t108;
-        let minus_rate_dot_2_leg2 = t81 * (t121 + t101 * c2_leg2);
-        let t125 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t126 = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let t142 = rate_2_leg2 - rate_1_leg2;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - c2_leg2 * l_1_rate_1_squared_leg2);
+        let minus_zz_1_leg2_on_vx = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
+        let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        // --- leg3
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t158 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let t159 = 4.166666666666667 / s2_leg3;
-        let g1_vx_leg3 = t158 * t159;
-        let t164 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t169 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t169 * t159;
-        let t174 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t174 * t159;
+        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let k_leg3 = INV_L_1 / s2_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t179 = 0.24 * (rate_2_leg3 * rate_2_leg3);
-        let t180 = t158 * acceleration[0] - t164 * acceleration[1] + t179;
-        let minus_g1_vy_leg3 = t164 * t159;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t186 = 0.24 * (rate_1_leg3 * rate_1_leg3);
-        let rate_dot_1_leg3 = t159 * (t180 + c2_leg3 * t186);
-        let t190 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t191 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let t199 = t169 * acceleration[1] - t174 * acceleration[0] - t186;
-        let rate_dot_2_leg3 = t159 * (t199 - t179 * c2_leg3);
-        let t203 = minus_g2_vx_leg3 * rate_dot_2_leg3;
-        let t204 = g2_vy_leg3 * rate_dot_2_leg3;
-        let t220 = rate_2_leg3 - rate_1_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
+        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+        let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
+        let minus_zz_2_leg3_on_vx = minus_g2_vx_leg3 * rate_dot_2_leg3;
+        let zz_2_leg3_on_vy = g2_vy_leg3 * rate_dot_2_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
         ::core::result::Result::Ok([
             [
-                t32, t32, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, -t45,
-                t47 - 0.24 * (t32 - t45), g2_vx_leg1 * t22 - minus_g1_vx_leg1 * t41, 0.0576 * t32,
-                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t64), -t112, -t112,
-                g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2, t125, t47 - 0.24 * (t125 - t112),
-                g1_vx_leg2 * t121 - minus_g2_vx_leg2 * t102, -(0.0576 * t112),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t142), t190, t190,
-                g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, -t203, t47 - 0.24 * (t190 - t203),
-                minus_g2_vx_leg3 * t180 - g1_vx_leg3 * t199, 0.0576 * t190,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t220), acceleration[0],
+                zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1,
+                -minus_zz_2_leg1_on_vx,
+                inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx - minus_zz_2_leg1_on_vx),
+                g2_vx_leg1 * a_on_f1_leg1 - minus_g1_vx_leg1 * a_on_f2_leg1,
+                L_1_SQUARED * zz_1_leg1_on_vx, ::overact::math::signed(gq2_vx_leg1, qd_2_leg1),
+                -minus_zz_1_leg2_on_vx, -minus_zz_1_leg2_on_vx, g1_vx_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, zz_2_leg2_on_vx,
+                inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx),
+                g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
+                -(L_1_SQUARED * minus_zz_1_leg2_on_vx),
+                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2), zz_1_leg3_on_vx,
+                zz_1_leg3_on_vx, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3,
+                -minus_zz_2_leg3_on_vx,
+                inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx - minus_zz_2_leg3_on_vx),
+                minus_g2_vx_leg3 * a_on_f1_leg3 - g1_vx_leg3 * a_on_f2_leg3,
+                L_1_SQUARED * zz_1_leg3_on_vx,
+                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3), acceleration[0],
             ],
             [
-                -t33, -t33, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t46,
-                t51 - 0.24 * (t46 - t33), g1_vy_leg1 * t41 - minus_g2_vy_leg1 * t22,
-                -(0.0576 * t33), -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t64), t113,
-                t113, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, -t126,
-                t51 - 0.24 * (t113 - t126), g2_vy_leg2 * t102 - minus_g1_vy_leg2 * t121,
-                0.0576 * t113, ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t142), -t191,
-                -t191, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t204,
-                t51 - 0.24 * (t204 - t191), minus_g1_vy_leg3 * t199 - g2_vy_leg3 * t180,
-                -(0.0576 * t191), ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t220),
-                acceleration[1],
+                -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
+                inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
+                g1_vy_leg1 * a_on_f2_leg1 - minus_g2_vy_leg1 * a_on_f1_leg1,
+                -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
+                -::overact::math::signed(minus_gq2_vy_leg1, qd_2_leg1), zz_1_leg2_on_vy,
+                zz_1_leg2_on_vy, -(minus_g1_vy_leg2 * rate_1_leg2),
+                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
+                -minus_zz_2_leg2_on_vy,
+                inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy),
+                g2_vy_leg2 * a_on_f1_leg2 - minus_g1_vy_leg2 * a_on_f2_leg2,
+                L_1_SQUARED * zz_1_leg2_on_vy, ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
+                -minus_zz_1_leg3_on_vy, -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
+                zz_2_leg3_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
+                minus_g1_vy_leg3 * a_on_f2_leg3 - g2_vy_leg3 * a_on_f1_leg3,
+                -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
+                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3), acceleration[1],
             ],
         ])
     }
@@ -1286,177 +1651,249 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = 0.5 * pose[0];
-        let t1 = pose[1] - 0.35;
-        let t4 = t1 * t1 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = t0 + t1 * t7;
-        let t10 = t9 - pose[0];
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let minus_g1_vx_leg1 = t10 * t12;
-        let t14 = pose[0] + 0.3031088913245535;
-        let t16 = pose[1] + 0.175;
-        let t17 = 0.5 * t16;
-        let t18 = 0.8660254037844386 * t14 + t17;
-        let t20 = t0 + pose[1] * 0.8660254037844386;
-        let t21 = pose[0] - t20;
-        let t24 = t18 * t18 + t21 * t21;
-        let t26 = 0.0576 / t24 - 0.25;
-        ::overact::guard::reach(t26, "leg2")?;
-        let t27 = ::overact::math::sqrt(t26);
-        let t30 = t21 * t27 - 0.5 * t18;
-        let t35 = 0.5 * t21 + t18 * t27;
-        let t38 = 3.608439182435161 * (t18 + t30) + 2.0833333333333335 * (t21 - t35);
-        let t39 = t24 * t27;
-        ::overact::guard::leg(t39, 0.05748423696979895, "leg2")?;
-        let t40 = 0.24 / t39;
-        let g1_vx_leg2 = t38 * t40;
-        let t44 = 3.608439182435161 * t35 + 2.0833333333333335 * t30;
-        let g2_vy_leg2 = t44 * t40;
-        let t48 = 0.5 * t1 - pose[0] * t7;
-        let t49 = t1 - t48;
-        let g1_vy_leg1 = t49 * t12;
-        let t52 = t16 * 4.166666666666667;
-        let t53 = t44 + t52;
-        let minus_minus_g1_vy_leg2 = t53 * t40;
-        let t57 = pose[0] - 0.3031088913245535;
-        let t59 = 0.8660254037844386 * t57 - t17;
-        let t63 = t59 * t59 + t20 * t20;
-        let t65 = 0.0576 / t63 - 0.25;
-        ::overact::guard::reach(t65, "leg3")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t68 = 0.5 * t59 - t20 * t66;
-        let t72 = 0.5 * t20 + t59 * t66;
-        let t74 = 2.0833333333333335 * t68 - 3.608439182435161 * t72;
-        let t75 = t63 * t66;
-        ::overact::guard::leg(t75, 0.05748423696979895, "leg3")?;
-        let t76 = 0.24 / t75;
-        let minus_g1_vy_leg3 = t74 * t76;
-        let t85 = 3.608439182435161 * t68 + 2.0833333333333335 * t72;
-        let g1_vx_leg3 = t85 * t76;
-        let t88 = g1_vx_leg2 * actuator_velocities[1]
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let half_x = 0.5 * pose[0];
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        // --- leg2
+        let t1_leg2 = pose[0] + 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let t1_leg3 = y_plus_half_radius * INV_L_1;
+        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t1_leg3;
+        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+        // --- leg3
+        let t2_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t93 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * minus_minus_g1_vy_leg2
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t98 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        let t99 = t93 / t98;
-        let t108 = g1_vy_leg1 * g1_vy_leg1
-            + minus_minus_g1_vy_leg2 * minus_minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t93 * t99;
-        ::overact::guard::platform(t108, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t108, 26.146658848896372, "actuators")?;
-        let t109 = (g1_vy_leg1 * actuator_velocities[0]
-            + minus_minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t88 * t99) / t108;
-        let t112 = t14 * 4.166666666666667 - t38;
-        let minus_g2_vx_leg2 = t112 * t40;
-        let t116 = t88 / t98 + t99 * t109;
-        let rate_2_leg2 = g2_vy_leg2 * t109 - minus_g2_vx_leg2 * t116;
-        let t119 = rate_2_leg2 * rate_2_leg2;
-        let t120 = 0.24 * t119;
-        let rate_1_leg2 = g1_vx_leg2 * t116 + minus_minus_g1_vy_leg2 * t109;
-        let t124 = rate_1_leg2 * rate_1_leg2;
-        let t126 = 2.0833333333333335 * (t24 - 0.1152);
-        let t127 = t124 * t126;
-        let rate_dot_1_leg2 = t40 * (t120 + t127);
-        let t130 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t9 * t12;
-        let minus_g2_vy_leg1 = t48 * t12;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t116 + minus_g2_vy_leg1 * t109;
-        let t137 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t138 = 0.0576 * t137;
-        let rate_1_leg1 = g1_vy_leg1 * t109 - minus_g1_vx_leg1 * t116;
-        let t142 = rate_1_leg1 * rate_1_leg1;
-        let t144 = 0.5 * (t4 - 0.1152);
-        let t145 = t142 * t144;
-        let rate_dot_1_leg1 = t12 * (t138 + t145);
-        let t148 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t151 = t74 + t52;
-        let minus_g2_vy_leg3 = t151 * t76;
-        let t155 = t57 * 4.166666666666667 - t85;
-        let minus_g2_vx_leg3 = t155 * t76;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * t109 + minus_g2_vx_leg3 * t116;
-        let t159 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t160 = 0.24 * t159;
-        let rate_1_leg3 = g1_vx_leg3 * t116 - minus_g1_vy_leg3 * t109;
-        let t164 = rate_1_leg3 * rate_1_leg3;
-        let t166 = 2.0833333333333335 * (t63 - 0.1152);
-        let t167 = t164 * t166;
-        let rate_dot_1_leg3 = t76 * (t160 + t167);
-        let t170 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t172 = g1_vx_leg2 * t130 - minus_g1_vx_leg1 * t148 + g1_vx_leg3 * t170;
-        let t181 = (g1_vy_leg1 * t148 + minus_minus_g1_vy_leg2 * t130
-            - minus_g1_vy_leg3 * t170 + t99 * t172) / t108;
-        let t183 = t172 / t98 + t99 * t181;
-        let t187 = t10 * t183 - t49 * t181 - t138;
-        let minus_rate_dot_1_leg1 = t12 * (t187 - t145);
-        let t190 = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-        let t191 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let t200 = t9 * t183 + t48 * t181 + 0.0576 * t142;
-        let minus_rate_dot_2_leg1 = t12 * (t200 + t137 * t144);
-        let t204 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t205 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let t206 = 4.166666666666667 * t183;
-        let t210 = 4.166666666666667 * t181;
-        let t214 = 4.166666666666667 * t200;
-        let t216 = 4.166666666666667 * t187;
-        let t225 = rate_1_leg1 + minus_rate_2_leg1;
-        let t232 = t53 * t181 + t38 * t183 + t120;
-        let minus_minus_rate_dot_1_leg2 = t40 * (t232 + t127);
-        let t235 = g1_vx_leg2 * minus_minus_rate_dot_1_leg2;
-        let t236 = minus_minus_g1_vy_leg2 * minus_minus_rate_dot_1_leg2;
-        let t245 = t112 * t183 - t44 * t181 + 0.24 * t124;
-        let minus_rate_dot_2_leg2 = t40 * (t245 + t119 * t126);
-        let t249 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t250 = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let t266 = rate_2_leg2 - rate_1_leg2;
-        let t273 = t85 * t183 - t74 * t181 + t160;
-        let rate_dot_1_leg3_2 = t76 * (t273 + t167);
-        let t276 = g1_vx_leg3 * rate_dot_1_leg3_2;
-        let t277 = minus_g1_vy_leg3 * rate_dot_1_leg3_2;
-        let t286 = t151 * t181 + t155 * t183 + 0.24 * t164;
-        let minus_rate_dot_2_leg3 = t76 * (t286 + t159 * t166);
-        let t290 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t291 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let t308 = -(minus_rate_2_leg3 + rate_1_leg3);
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let minus_l_2_1 = minus_s_1_2 / s_1_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let vy = (g1_vy_leg1 * actuator_velocities[0]
+            + g1_vy_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
+        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let vx = t1 / s_1_1 + minus_l_2_1 * vy;
+        // --- leg2
+        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            - bias_rate_dot_1_leg1;
+        // --- leg3
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            - bias_rate_dot_1_leg3;
+        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2)
+            / pivot_2;
+        let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
+        // --- leg1
+        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+        let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+        let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let zz_2_leg1_on_vx = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let zz_2_leg1_on_vy = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let inv_l_1_dvx = INV_L_1 * dvx;
+        let inv_l_1_dvy = INV_L_1 * dvy;
+        let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let gq2_vx_leg1 = minus_g1_vx_leg1 - minus_g2_vx_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        // --- leg2
+        let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
+        let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
+        let rate_dot_1_leg2 = k_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+        let zz_1_leg2_on_vx = g1_vx_leg2 * rate_dot_1_leg2;
+        let zz_1_leg2_on_vy = g1_vy_leg2 * rate_dot_1_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let gq2_vy_leg2 = g2_vy_leg2 - g1_vy_leg2;
+        // --- leg3
+        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let zz_1_leg3_on_vx = g1_vx_leg3 * rate_dot_1_leg3;
+        let minus_zz_1_leg3_on_vy = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+            + minus_bias_a_on_f2_leg3;
+        let minus_rate_dot_2_leg3 = k_leg3
+            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let qd_2_leg3 = -minus_qd_2_leg3;
+        let gq2_vy_leg3 = minus_g1_vy_leg3 - minus_g2_vy_leg3;
         ::core::result::Result::Ok([
             [
-                t190, t190, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t204,
-                t206 - 0.24 * (t190 + t204), -(minus_g1_vx_leg1 * t214 + minus_g2_vx_leg1 * t216),
-                0.0576 * t190, -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t225),
-                t235, t235, g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t249,
-                t206 - 0.24 * (t249 + t235), g1_vx_leg2 * t245 + minus_g2_vx_leg2 * t232,
-                0.0576 * t235, -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t266), t276,
-                t276, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t290, t206 - 0.24 * (t276 + t290),
-                minus_g2_vx_leg3 * t273 + g1_vx_leg3 * t286, 0.0576 * t276,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t308), t183,
+                zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1,
+                zz_2_leg1_on_vx, inv_l_1_dvx - L_1 * (zz_1_leg1_on_vx + zz_2_leg1_on_vx),
+                -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                    + minus_g2_vx_leg1 * minus_a2_x_leg1),
+                L_1_SQUARED * zz_1_leg1_on_vx,
+                -::overact::math::signed(gq2_vx_leg1, minus_qd_2_leg1),
+                zz_1_leg2_on_vx,
+                zz_1_leg2_on_vx,
+                g1_vx_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
+                g1_vx_leg2,
+                zz_2_leg2_on_vx,
+                inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx + zz_1_leg2_on_vx),
+                g1_vx_leg2 * a_on_f2_leg2 + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
+                L_1_SQUARED * zz_1_leg2_on_vx,
+                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
+                zz_1_leg3_on_vx,
+                zz_1_leg3_on_vx,
+                g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3,
+                zz_2_leg3_on_vx,
+                inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
+                minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
+                L_1_SQUARED * zz_1_leg3_on_vx,
+                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
+                dvx,
             ],
             [
-                -t191, -t191, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t205,
-                t210 - 0.24 * (t205 - t191), g1_vy_leg1 * t214 - minus_g2_vy_leg1 * t216,
-                -(0.0576 * t191), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t225),
-                t236, t236, minus_minus_g1_vy_leg2 * rate_1_leg2,
-                ::overact::math::signed(minus_minus_g1_vy_leg2, rate_1_leg2),
-                minus_minus_g1_vy_leg2, -t250, t210 - 0.24 * (t236 - t250),
-                minus_minus_g1_vy_leg2 * t245 - g2_vy_leg2 * t232, 0.0576 * t236,
-                ::overact::math::signed(g2_vy_leg2 - minus_minus_g1_vy_leg2, t266), -t277, -t277,
-                -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t291,
-                t210 - 0.24 * (t291 - t277), minus_g2_vy_leg3 * t273 - minus_g1_vy_leg3 * t286,
-                -(0.0576 * t277),
-                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t308), t181,
+                -minus_zz_1_leg1_on_vy, -minus_zz_1_leg1_on_vy, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
+                inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
+                g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
+                -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1), zz_1_leg2_on_vy,
+                zz_1_leg2_on_vy, g1_vy_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vy_leg2, rate_1_leg2), g1_vy_leg2,
+                -minus_zz_2_leg2_on_vy,
+                inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy),
+                g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
+                L_1_SQUARED * zz_1_leg2_on_vy, ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
+                -minus_zz_1_leg3_on_vy, -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
+                zz_2_leg3_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
+                minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
+                -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
+                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3), dvy,
             ],
         ])
     }
@@ -1479,148 +1916,200 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        let t0 = pose[1] - 0.35;
-        let t3 = t0 * t0 + pose[0] * pose[0];
-        let t5 = 0.0576 / t3 - 0.25;
-        ::overact::guard::reach(t5, "leg1")?;
-        let t6 = ::overact::math::sqrt(t5);
-        let t7 = t3 * t6;
-        ::overact::guard::leg(t7, 0.05748423696979895, "leg1")?;
-        let t8 = 1.0 / t7;
-        let t11 = 0.5 * pose[0] + t0 * t6;
-        let t12 = t11 - pose[0];
-        let t16 = 0.5 * t0 - pose[0] * t6;
-        let t17 = t0 - t16;
-        let minus_g2_vx_leg1 = t11 * t8;
-        let minus_g2_vy_leg1 = t16 * t8;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t25 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t27 = t12 * acceleration[0] - t17 * acceleration[1] - 0.0576 * t25;
-        let g1_vy_leg1 = t17 * t8;
-        let minus_g1_vx_leg1 = t12 * t8;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t33 = rate_1_leg1 * rate_1_leg1;
-        let t35 = 0.5 * (t3 - 0.1152);
-        let minus_rate_dot_1_leg1 = t8 * (t27 - t33 * t35);
-        let t40 = pose[0] - 0.3031088913245535;
-        let t42 = pose[1] + 0.175;
-        let t44 = 0.5 * t40 + 0.8660254037844386 * t42;
-        let t45 = pose[0] - t44;
-        let t49 = 0.5 * t42;
-        let t50 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t49;
-        let t53 = t50 * t50 + t45 * t45;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg2")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = 0.5 * t45 + t50 * t56;
-        let t59 = t45 - t58;
-        let t63 = t45 * t56 - 0.5 * t50;
-        let t64 = t50 + t63;
-        let t66 = 3.608439182435161 * t59 - 2.0833333333333335 * t64;
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg2")?;
-        let t68 = 0.24 / t67;
-        let minus_g1_vy_leg2 = t66 * t68;
-        let t73 = 3.608439182435161 * t64 + 2.0833333333333335 * t59;
-        let g1_vx_leg2 = t73 * t68;
-        let t76 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t76, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t76, 15.09578052481963, "kept actuators")?;
-        let t77 = 1.0 / t76;
-        let t78 = minus_g1_vy_leg2 * t77;
-        let t80 = g1_vx_leg2 * t77;
-        let t82 = minus_g2_vx_leg1 * t78 + minus_g2_vy_leg1 * t80;
-        let t87 = t11 * acceleration[0] + t16 * acceleration[1] + 0.0576 * t33;
-        let minus_rate_dot_2_leg1 = t8 * (t87 + t25 * t35);
-        let t91 = t82 * minus_rate_dot_2_leg1;
-        let t92 = t8 * t77;
-        let t93 = t92 * minus_rate_dot_2_leg1;
-        let t98 = t78 * acceleration[0] + t80 * acceleration[1];
-        let t99 = 4.166666666666667 * t98;
-        let t102 = g1_vy_leg1 * t77;
-        let t104 = minus_g1_vx_leg1 * t77;
-        let t106 = t102 * acceleration[0] + t104 * acceleration[1];
-        let t107 = 4.166666666666667 * t106;
-        let t110 = 4.166666666666667 * t27;
-        let t116 = rate_1_leg1 + minus_rate_2_leg1;
-        let t124 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
-        let g2_vy_leg2 = t124 * t68;
-        let t129 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let minus_g2_vx_leg2 = t129 * t68;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+        let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+            + minus_g2_vy_leg1 * minus_vy_by_a1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+        let g2_a2_leg1 = k_leg1 * inv_det_ja;
+        let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+        let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
+            + minus_vy_by_a1 * acceleration[1];
+        let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+        let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
+            + minus_vy_by_a2 * acceleration[1];
+        let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t133 = rate_2_leg2 * rate_2_leg2;
-        let t135 = t66 * acceleration[1] - t73 * acceleration[0] - 0.24 * t133;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t139 = rate_1_leg2 * rate_1_leg2;
-        let t141 = 2.0833333333333335 * (t53 - 0.1152);
-        let minus_rate_dot_1_leg2 = t68 * (t135 - t139 * t141);
-        let t146 = t77 / t67;
-        let t151 = t129 * acceleration[0] - t124 * acceleration[1] + 0.24 * t139;
-        let minus_rate_dot_2_leg2 = t68 * (t151 + t133 * t141);
-        let t155 = t146 * minus_rate_dot_2_leg2;
-        let t158 = minus_g2_vx_leg2 * t102 - g2_vy_leg2 * t104;
-        let t159 = t158 * minus_rate_dot_2_leg2;
-        let t169 = rate_2_leg2 - rate_1_leg2;
-        let t174 = 0.8660254037844386 * t40 - t49;
-        let t178 = t174 * t174 + t44 * t44;
-        let t180 = 0.0576 / t178 - 0.25;
-        ::overact::guard::reach(t180, "leg3")?;
-        let t181 = ::overact::math::sqrt(t180);
-        let t183 = 0.5 * t174 + t44 * t181;
-        let t184 = t174 - t183;
-        let t188 = 0.5 * t44 - t174 * t181;
-        let t189 = t44 - t188;
-        let t191 = 2.0833333333333335 * t184 - 3.608439182435161 * t189;
-        let t192 = t178 * t181;
-        ::overact::guard::leg(t192, 0.05748423696979895, "leg3")?;
-        let t193 = 0.24 / t192;
-        let minus_g1_vy_leg3 = t191 * t193;
-        let t198 = 3.608439182435161 * t184 + 2.0833333333333335 * t189;
-        let g1_vx_leg3 = t198 * t193;
-        let t201 = minus_g1_vy_leg3 * t80 - g1_vx_leg3 * t78;
-        let t207 = 2.0833333333333335 * t183 - 3.608439182435161 * t188;
-        let g2_vy_leg3 = t207 * t193;
-        let t212 = 3.608439182435161 * t183 + 2.0833333333333335 * t188;
-        let minus_g2_vx_leg3 = t212 * t193;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
+        let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t216 = rate_2_leg3 * rate_2_leg3;
-        let t218 = t198 * acceleration[0] - t191 * acceleration[1] + 0.24 * t216;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t222 = rate_1_leg3 * rate_1_leg3;
-        let t224 = 2.0833333333333335 * (t178 - 0.1152);
-        let rate_dot_1_leg3 = t193 * (t218 + t222 * t224);
-        let t228 = t201 * rate_dot_1_leg3;
-        let t231 = minus_g1_vy_leg3 * t104 - g1_vx_leg3 * t102;
-        let t232 = t231 * rate_dot_1_leg3;
-        let t239 = minus_g2_vx_leg3 * t78 - g2_vy_leg3 * t80;
-        let t244 = t207 * acceleration[1] - t212 * acceleration[0] - 0.24 * t222;
-        let rate_dot_2_leg3 = t193 * (t244 - t216 * t224);
-        let t248 = t239 * rate_dot_2_leg3;
-        let t251 = minus_g2_vx_leg3 * t102 - g2_vy_leg3 * t104;
-        let t252 = t251 * rate_dot_2_leg3;
-        let t268 = rate_2_leg3 - rate_1_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
+        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
+        let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
+        let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         ::core::result::Result::Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -t91,
-                0.24 * (minus_rate_dot_1_leg1 + t91) - t99, 4.166666666666667 * t87 + t82 * t110,
-                -(0.0576 * minus_rate_dot_1_leg1), -::overact::math::signed(t82 - 1.0, t116), 0.0,
-                0.0, 0.0, 0.0, 0.0, t155, -(0.24 * t155 + t99), -(t146 * t135), 0.0,
-                -::overact::math::signed(t146, t169), t228, t228, t201 * rate_1_leg3,
-                ::overact::math::signed(t201, rate_1_leg3), t201, t248,
-                -(t99 + 0.24 * (t228 + t248)), -(t201 * t244 + t239 * t218), 0.0576 * t228,
-                ::overact::math::signed(t239 - t201, t268), -t98,
+                ::overact::math::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
+                L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) - t1_platform,
+                INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
+                -(L_1_SQUARED * minus_rate_dot_1_leg1),
+                -::overact::math::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1), 0.0, 0.0, 0.0, 0.0,
+                0.0, zz_2_leg2_on_q1_leg1, -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform),
+                -(minus_g2_a1_leg2 * a_on_f1_leg2), 0.0,
+                -::overact::math::signed(minus_g2_a1_leg2, qd_2_leg2), zz_1_leg3_on_q1_leg1,
+                zz_1_leg3_on_q1_leg1, g1_a1_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), g1_a1_leg3, zz_2_leg3_on_q1_leg1,
+                -(t1_platform + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
+                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                L_1_SQUARED * zz_1_leg3_on_q1_leg1,
+                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
+                -minus_m_platform_on_q1_leg1,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t93, 0.24 * t93 - t107, t92 * t110, 0.0,
-                -::overact::math::signed(t92, t116), -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2,
-                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t159,
-                0.24 * (minus_rate_dot_1_leg2 + t159) - t107, t151 + t158 * t135,
-                -(0.0576 * minus_rate_dot_1_leg2), ::overact::math::signed(t158 - 1.0, t169), t232,
-                t232, t231 * rate_1_leg3, ::overact::math::signed(t231, rate_1_leg3), t231, t252,
-                -(t107 + 0.24 * (t232 + t252)), -(t231 * t244 + t251 * t218), 0.0576 * t232,
-                ::overact::math::signed(t251 - t231, t268), -t106,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
+                L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * minus_a2_x_leg1, 0.0,
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1), -minus_rate_dot_1_leg2,
+                -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0,
+                -minus_zz_2_leg2_on_q1_leg2,
+                L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform,
+                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2, -(L_1_SQUARED * minus_rate_dot_1_leg2),
+                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2), zz_1_leg3_on_q1_leg2,
+                zz_1_leg3_on_q1_leg2, g1_a2_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), g1_a2_leg3, zz_2_leg3_on_q1_leg2,
+                -(t2_platform + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
+                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                L_1_SQUARED * zz_1_leg3_on_q1_leg2,
+                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
+                -minus_m_platform_on_q1_leg2,
             ],
         ])
     }
@@ -1645,6 +2134,13 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        // --- sines and cosines
         let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[1], joints[0], joints[2], joints[3], joints[4], joints[5],
@@ -1652,114 +2148,147 @@ impl ThreeLegPoint {
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
-        let t2 = 4.166666666666667 / s2_leg1;
+        // --- leg1
+        let k_leg1 = INV_L_1 / s2_leg1;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let g2_vx_leg1 = s1_leg1 * t2;
-        let minus_g2_vy_leg1 = c1_leg1 * t2;
+        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
+        let g2_vx_leg1 = s1_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let t19 = rate_2_leg1 * rate_2_leg1;
-        let t21 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - 0.24 * t19;
-        let g1_vy_leg1 = c12_leg1 * t2;
-        let minus_g1_vx_leg1 = s12_leg1 * t2;
+        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+        let g1_vy_leg1 = c12_leg1 * k_leg1;
+        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t27 = rate_1_leg1 * rate_1_leg1;
-        let t28 = 0.24 * c2_leg1;
-        let minus_rate_dot_1_leg1 = t2 * (t21 - t27 * t28);
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let v2_by_1_y_leg1 = L_1 * c2_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+        // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t45 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let t46 = 4.166666666666667 / s2_leg2;
-        let g1_vx_leg2 = t45 * t46;
-        let t50 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let minus_g1_vy_leg2 = t50 * t46;
-        let t54 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t54, 15.095780524666612, "kept actuators")?;
-        ::overact::guard::platform(t54, 15.095780524666612, "kept actuators")?;
-        let t55 = 1.0 / t54;
-        let t56 = g1_vx_leg2 * t55;
-        let t58 = minus_g1_vy_leg2 * t55;
-        let t60 = minus_g2_vy_leg1 * t56 - g2_vx_leg1 * t58;
-        let t65 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + 0.24 * t27;
-        let minus_rate_dot_2_leg1 = t2 * (t65 + t19 * t28);
-        let t69 = t60 * minus_rate_dot_2_leg1;
-        let t70 = minus_g1_vx_leg1 * t55;
-        let t72 = g1_vy_leg1 * t55;
-        let t74 = minus_g2_vy_leg1 * t70 - g2_vx_leg1 * t72;
-        let t75 = t74 * minus_rate_dot_2_leg1;
-        let t80 = t58 * acceleration[0] + t56 * acceleration[1];
-        let t81 = 4.166666666666667 * t80;
-        let t86 = t72 * acceleration[0] + t70 * acceleration[1];
-        let t87 = 4.166666666666667 * t86;
-        let t94 = rate_2_leg1 - rate_1_leg1;
-        let t102 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t102 * t46;
-        let t107 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t107 * t46;
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let k_leg2 = INV_L_1 / s2_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(det_ja, 15.095780524666612, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 15.095780524666612, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - g2_vx_leg1 * minus_vx_by_a1;
+        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+            + L_1 * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+        let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+        let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2 - g2_vx_leg1 * minus_vx_by_a2;
+        let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+        // --- platform
+        let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * acceleration[0]
+            + minus_vy_by_a1 * acceleration[1];
+        let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+        let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * acceleration[0]
+            + minus_vy_by_a2 * acceleration[1];
+        let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
+        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+        // --- leg2
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t111 = rate_2_leg2 * rate_2_leg2;
-        let t113 = t50 * acceleration[1] - t45 * acceleration[0] - 0.24 * t111;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t117 = rate_1_leg2 * rate_1_leg2;
-        let t118 = 0.24 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t46 * (t113 - t117 * t118);
-        let t125 = minus_g2_vx_leg2 * t58 - g2_vy_leg2 * t56;
-        let t130 = t107 * acceleration[0] - t102 * acceleration[1] + 0.24 * t117;
-        let minus_rate_dot_2_leg2 = t46 * (t130 + t111 * t118);
-        let t134 = t125 * minus_rate_dot_2_leg2;
-        let t137 = minus_g2_vx_leg2 * t72 - g2_vy_leg2 * t70;
-        let t138 = t137 * minus_rate_dot_2_leg2;
-        let t148 = rate_2_leg2 - rate_1_leg2;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = L_1 * c2_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
+        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
+        let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        // --- leg3
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t164 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t165 = 4.166666666666667 / s2_leg3;
-        let minus_g1_vy_leg3 = t164 * t165;
-        let t170 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let g1_vx_leg3 = t170 * t165;
-        let t173 = minus_g1_vy_leg3 * t56 - g1_vx_leg3 * t58;
-        let t179 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t179 * t165;
-        let t184 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t184 * t165;
+        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let k_leg3 = INV_L_1 / s2_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t188 = rate_2_leg3 * rate_2_leg3;
-        let t190 = t170 * acceleration[0] - t164 * acceleration[1] + 0.24 * t188;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t194 = rate_1_leg3 * rate_1_leg3;
-        let t195 = 0.24 * c2_leg3;
-        let rate_dot_1_leg3 = t165 * (t190 + t194 * t195);
-        let t199 = t173 * rate_dot_1_leg3;
-        let t202 = minus_g1_vy_leg3 * t70 - g1_vx_leg3 * t72;
-        let t203 = t202 * rate_dot_1_leg3;
-        let t210 = minus_g2_vx_leg3 * t58 - g2_vy_leg3 * t56;
-        let t215 = t179 * acceleration[1] - t184 * acceleration[0] - 0.24 * t194;
-        let rate_dot_2_leg3 = t165 * (t215 - t188 * t195);
-        let t219 = t210 * rate_dot_2_leg3;
-        let t222 = minus_g2_vx_leg3 * t72 - g2_vy_leg3 * t70;
-        let t223 = t222 * rate_dot_2_leg3;
-        let t239 = rate_2_leg3 - rate_1_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = L_1 * c2_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
+        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
+        let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
+        let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         ::core::result::Result::Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -t69,
-                0.24 * (minus_rate_dot_1_leg1 + t69) - t81, t65 + t60 * t21,
-                -(0.0576 * minus_rate_dot_1_leg1), ::overact::math::signed(t60 - 1.0, t94), 0.0,
-                0.0, 0.0, 0.0, 0.0, -t134, 0.24 * t134 - t81, t125 * t113, 0.0,
-                ::overact::math::signed(t125, t148), t199, t199, t173 * rate_1_leg3,
-                ::overact::math::signed(t173, rate_1_leg3), t173, t219,
-                -(t81 + 0.24 * (t199 + t219)), -(t173 * t215 + t210 * t190), 0.0576 * t199,
-                ::overact::math::signed(t210 - t173, t239), -t80,
+                ::overact::math::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
+                L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) - t1_platform,
+                a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1, -(L_1_SQUARED * minus_rate_dot_1_leg1),
+                ::overact::math::signed(g2_a1_leg1 - 1.0, qd_2_leg1), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -minus_zz_2_leg2_on_q1_leg1, L_1 * minus_zz_2_leg2_on_q1_leg1 - t1_platform,
+                g2_a1_leg2 * a_on_f1_leg2, 0.0, ::overact::math::signed(g2_a1_leg2, qd_2_leg2),
+                zz_1_leg3_on_q1_leg1, zz_1_leg3_on_q1_leg1, g1_a1_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), g1_a1_leg3, zz_2_leg3_on_q1_leg1,
+                -(t1_platform + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
+                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                L_1_SQUARED * zz_1_leg3_on_q1_leg1,
+                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
+                -minus_m_platform_on_q1_leg1,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t75, 0.24 * t75 - t87, t74 * t21, 0.0,
-                ::overact::math::signed(t74, t94), -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2,
-                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t138,
-                0.24 * (minus_rate_dot_1_leg2 + t138) - t87, t130 + t137 * t113,
-                -(0.0576 * minus_rate_dot_1_leg2), ::overact::math::signed(t137 - 1.0, t148), t203,
-                t203, t202 * rate_1_leg3, ::overact::math::signed(t202, rate_1_leg3), t202, t223,
-                -(t87 + 0.24 * (t203 + t223)), -(t202 * t215 + t222 * t190), 0.0576 * t203,
-                ::overact::math::signed(t222 - t202, t239), -t86,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
+                L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * a_on_f1_leg1, 0.0,
+                ::overact::math::signed(g2_a2_leg1, qd_2_leg1), -minus_rate_dot_1_leg2,
+                -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0,
+                -minus_zz_2_leg2_on_q1_leg2,
+                L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform,
+                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2, -(L_1_SQUARED * minus_rate_dot_1_leg2),
+                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2), zz_1_leg3_on_q1_leg2,
+                zz_1_leg3_on_q1_leg2, g1_a2_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), g1_a2_leg3, zz_2_leg3_on_q1_leg2,
+                -(t2_platform + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
+                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                L_1_SQUARED * zz_1_leg3_on_q1_leg2,
+                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
+                -minus_m_platform_on_q1_leg2,
             ],
         ])
     }
@@ -1785,185 +2314,246 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[1] - 0.35;
-        let t3 = t0 * t0 + pose[0] * pose[0];
-        let t5 = 0.0576 / t3 - 0.25;
-        ::overact::guard::reach(t5, "leg1")?;
-        let t6 = ::overact::math::sqrt(t5);
-        let t7 = t3 * t6;
-        ::overact::guard::leg(t7, 0.05748423696979895, "leg1")?;
-        let t8 = 1.0 / t7;
-        let t11 = 0.5 * pose[0] + t0 * t6;
-        let t12 = t11 - pose[0];
-        let minus_g1_vx_leg1 = t12 * t8;
-        let t17 = pose[1] + 0.175;
-        let t18 = 0.5 * t17;
-        let t19 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t18;
-        let t20 = pose[0] - 0.3031088913245535;
-        let t23 = 0.5 * t20 + 0.8660254037844386 * t17;
-        let t24 = pose[0] - t23;
-        let t27 = t19 * t19 + t24 * t24;
-        let t29 = 0.0576 / t27 - 0.25;
-        ::overact::guard::reach(t29, "leg2")?;
-        let t30 = ::overact::math::sqrt(t29);
-        let t33 = t24 * t30 - 0.5 * t19;
-        let t34 = t19 + t33;
-        let t38 = 0.5 * t24 + t19 * t30;
-        let t39 = t24 - t38;
-        let t41 = 3.608439182435161 * t34 + 2.0833333333333335 * t39;
-        let t42 = t27 * t30;
-        ::overact::guard::leg(t42, 0.05748423696979895, "leg2")?;
-        let t43 = 0.24 / t42;
-        let g1_vx_leg2 = t41 * t43;
-        let t48 = 0.8660254037844386 * t20 - t18;
-        let t52 = t48 * t48 + t23 * t23;
-        let t54 = 0.0576 / t52 - 0.25;
-        ::overact::guard::reach(t54, "leg3")?;
-        let t55 = ::overact::math::sqrt(t54);
-        let t57 = 0.5 * t48 + t23 * t55;
-        let t58 = t48 - t57;
-        let t62 = 0.5 * t23 - t48 * t55;
-        let t63 = t23 - t62;
-        let t65 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
-        let t66 = t52 * t55;
-        ::overact::guard::leg(t66, 0.05748423696979895, "leg3")?;
-        let t67 = 0.24 / t66;
-        let g1_vx_leg3 = t65 * t67;
-        let t70 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t70, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t70, 26.146658848896372, "actuators")?;
-        let t71 = 1.0 / t70;
-        let t74 = 3.608439182435161 * t38 + 2.0833333333333335 * t33;
-        let g2_vy_leg2 = t74 * t43;
-        let t78 = 0.5 * t0 - pose[0] * t6;
-        let t79 = t0 - t78;
-        let g1_vy_leg1 = t79 * t8;
-        let t84 = 3.608439182435161 * t39 - 2.0833333333333335 * t34;
-        let minus_g1_vy_leg2 = t84 * t43;
-        let t90 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let minus_g1_vy_leg3 = t90 * t67;
-        let t98 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t99 = t98 * t71;
-        let t101 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t98 * t99;
-        ::overact::guard::platform(t101, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t101, 26.146658848896372, "actuators")?;
-        let t102 = 1.0 / t101;
-        let t112 = g1_vx_leg2 * actuator_velocities[1]
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t115 = t102
+        let vy = inv_pivot_2
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t112 * t99);
-        let t119 = 2.0833333333333335 * t38 - 3.608439182435161 * t33;
-        let minus_g2_vx_leg2 = t119 * t43;
-        let t123 = t112 * t71 + t99 * t115;
-        let rate_2_leg2 = g2_vy_leg2 * t115 - minus_g2_vx_leg2 * t123;
-        let t126 = rate_2_leg2 * rate_2_leg2;
-        let t127 = 0.24 * t126;
-        let rate_1_leg2 = g1_vx_leg2 * t123 - minus_g1_vy_leg2 * t115;
-        let t131 = rate_1_leg2 * rate_1_leg2;
-        let t133 = 2.0833333333333335 * (t27 - 0.1152);
-        let t134 = t131 * t133;
-        let rate_dot_1_leg2 = t43 * (t127 + t134);
-        let t137 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t11 * t8;
-        let minus_g2_vy_leg1 = t78 * t8;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t123 + minus_g2_vy_leg1 * t115;
-        let t144 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t145 = 0.0576 * t144;
-        let rate_1_leg1 = g1_vy_leg1 * t115 - minus_g1_vx_leg1 * t123;
-        let t149 = rate_1_leg1 * rate_1_leg1;
-        let t151 = 0.5 * (t3 - 0.1152);
-        let t152 = t149 * t151;
-        let rate_dot_1_leg1 = t8 * (t145 + t152);
-        let t155 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t160 = 2.0833333333333335 * t57 - 3.608439182435161 * t62;
-        let g2_vy_leg3 = t160 * t67;
-        let t165 = 3.608439182435161 * t57 + 2.0833333333333335 * t62;
-        let minus_g2_vx_leg3 = t165 * t67;
-        let rate_2_leg3 = g2_vy_leg3 * t115 - minus_g2_vx_leg3 * t123;
-        let t169 = rate_2_leg3 * rate_2_leg3;
-        let t170 = 0.24 * t169;
-        let rate_1_leg3 = g1_vx_leg3 * t123 - minus_g1_vy_leg3 * t115;
-        let t174 = rate_1_leg3 * rate_1_leg3;
-        let t176 = 2.0833333333333335 * (t52 - 0.1152);
-        let t177 = t174 * t176;
-        let rate_dot_1_leg3 = t67 * (t170 + t177);
-        let t180 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t182 = g1_vx_leg2 * t137 - minus_g1_vx_leg1 * t155 + g1_vx_leg3 * t180;
-        let t191 = t102
-            * (g1_vy_leg1 * t155 - minus_g1_vy_leg2 * t137 - minus_g1_vy_leg3 * t180
-                + t99 * t182);
-        let t193 = t71 * t182 + t99 * t191;
-        let t197 = t12 * t193 - t79 * t191 - t145;
-        let minus_rate_dot_1_leg1 = t8 * (t197 - t152);
-        let t203 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t203, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t203, 15.09578052481963, "kept actuators")?;
-        let t204 = 1.0 / t203;
-        let t205 = minus_g1_vy_leg2 * t204;
-        let t207 = g1_vx_leg2 * t204;
-        let t209 = minus_g2_vx_leg1 * t205 + minus_g2_vy_leg1 * t207;
-        let t214 = t11 * t193 + t78 * t191 + 0.0576 * t149;
-        let minus_rate_dot_2_leg1 = t8 * (t214 + t144 * t151);
-        let t218 = t209 * minus_rate_dot_2_leg1;
-        let t219 = t8 * t204;
-        let t220 = t219 * minus_rate_dot_2_leg1;
-        let t225 = t205 * t193 + t207 * t191;
-        let t226 = 4.166666666666667 * t225;
-        let t229 = g1_vy_leg1 * t204;
-        let t231 = minus_g1_vx_leg1 * t204;
-        let t233 = t229 * t193 + t231 * t191;
-        let t234 = 4.166666666666667 * t233;
-        let t237 = 4.166666666666667 * t197;
-        let t243 = rate_1_leg1 + minus_rate_2_leg1;
-        let t249 = t84 * t191 - t41 * t193 - t127;
-        let minus_rate_dot_1_leg2 = t43 * (t249 - t134);
-        let t253 = t204 / t42;
-        let t258 = t119 * t193 - t74 * t191 + 0.24 * t131;
-        let minus_rate_dot_2_leg2 = t43 * (t258 + t126 * t133);
-        let t262 = t253 * minus_rate_dot_2_leg2;
-        let t265 = minus_g2_vx_leg2 * t229 - g2_vy_leg2 * t231;
-        let t266 = t265 * minus_rate_dot_2_leg2;
-        let t276 = rate_2_leg2 - rate_1_leg2;
-        let t282 = minus_g1_vy_leg3 * t207 - g1_vx_leg3 * t205;
-        let t286 = t65 * t193 - t90 * t191 + t170;
-        let rate_dot_1_leg3_2 = t67 * (t286 + t177);
-        let t289 = t282 * rate_dot_1_leg3_2;
-        let t292 = minus_g1_vy_leg3 * t231 - g1_vx_leg3 * t229;
-        let t293 = t292 * rate_dot_1_leg3_2;
-        let t300 = minus_g2_vx_leg3 * t205 - g2_vy_leg3 * t207;
-        let t305 = t160 * t191 - t165 * t193 - 0.24 * t174;
-        let rate_dot_2_leg3 = t67 * (t305 - t169 * t176);
-        let t309 = t300 * rate_dot_2_leg3;
-        let t312 = minus_g2_vx_leg3 * t229 - g2_vy_leg3 * t231;
-        let t313 = t312 * rate_dot_2_leg3;
-        let t329 = rate_2_leg3 - rate_1_leg3;
+                - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1);
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let vx = t1 * inv_pivot_1 + minus_l_2_1 * vy;
+        // --- leg2
+        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            - bias_rate_dot_1_leg1;
+        // --- leg3
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            - bias_rate_dot_1_leg3;
+        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+        let dvy = inv_pivot_2
+            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
+        let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+        let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+            + minus_g2_vy_leg1 * minus_vy_by_a1;
+        // --- leg1
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let minus_zz_2_leg1_on_q1_leg1 = g2_a1_leg1 * minus_rate_dot_2_leg1;
+        let g2_a2_leg1 = k_leg1 * inv_det_ja;
+        let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
+        let minus_m_platform_on_q1_leg1 = minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy;
+        let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
+        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+        let minus_m_platform_on_q1_leg2 = minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy;
+        let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+        let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+        // --- leg2
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
+        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
+        let minus_zz_2_leg2_on_q1_leg2 = g2_a2_leg2 * minus_rate_dot_2_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
+        // --- leg3
+        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let zz_1_leg3_on_q1_leg1 = g1_a1_leg3 * rate_dot_1_leg3;
+        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
+        let zz_1_leg3_on_q1_leg2 = g1_a2_leg3 * rate_dot_1_leg3;
+        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
+            - minus_bias_a_on_f2_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let zz_2_leg3_on_q1_leg1 = g2_a1_leg3 * rate_dot_2_leg3;
+        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
+        let zz_2_leg3_on_q1_leg2 = g2_a2_leg3 * rate_dot_2_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         ::core::result::Result::Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -t218,
-                0.24 * (minus_rate_dot_1_leg1 + t218) - t226,
-                4.166666666666667 * t214 + t209 * t237, -(0.0576 * minus_rate_dot_1_leg1),
-                -::overact::math::signed(t209 - 1.0, t243), 0.0, 0.0, 0.0, 0.0, 0.0, t262,
-                -(0.24 * t262 + t226), -(t253 * t249), 0.0, -::overact::math::signed(t253, t276),
-                t289, t289, t282 * rate_1_leg3, ::overact::math::signed(t282, rate_1_leg3), t282,
-                t309, -(t226 + 0.24 * (t289 + t309)), -(t282 * t305 + t300 * t286), 0.0576 * t289,
-                ::overact::math::signed(t300 - t282, t329), -t225,
+                ::overact::math::sign(rate_1_leg1), 1.0, -minus_zz_2_leg1_on_q1_leg1,
+                L_1 * (minus_rate_dot_1_leg1 + minus_zz_2_leg1_on_q1_leg1) - t1_platform,
+                INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
+                -(L_1_SQUARED * minus_rate_dot_1_leg1),
+                -::overact::math::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1), 0.0, 0.0, 0.0, 0.0,
+                0.0, zz_2_leg2_on_q1_leg1, -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform),
+                -(minus_g2_a1_leg2 * a_on_f1_leg2), 0.0,
+                -::overact::math::signed(minus_g2_a1_leg2, qd_2_leg2), zz_1_leg3_on_q1_leg1,
+                zz_1_leg3_on_q1_leg1, g1_a1_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), g1_a1_leg3, zz_2_leg3_on_q1_leg1,
+                -(t1_platform + L_1 * (zz_1_leg3_on_q1_leg1 + zz_2_leg3_on_q1_leg1)),
+                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                L_1_SQUARED * zz_1_leg3_on_q1_leg1,
+                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
+                -minus_m_platform_on_q1_leg1,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t220, 0.24 * t220 - t234, t219 * t237, 0.0,
-                -::overact::math::signed(t219, t243), -minus_rate_dot_1_leg2,
-                -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t266,
-                0.24 * (minus_rate_dot_1_leg2 + t266) - t234, t258 + t265 * t249,
-                -(0.0576 * minus_rate_dot_1_leg2), ::overact::math::signed(t265 - 1.0, t276), t293,
-                t293, t292 * rate_1_leg3, ::overact::math::signed(t292, rate_1_leg3), t292, t313,
-                -(t234 + 0.24 * (t293 + t313)), -(t292 * t305 + t312 * t286), 0.0576 * t293,
-                ::overact::math::signed(t312 - t292, t329), -t233,
+                0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_leg1_on_q1_leg2,
+                L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform, g2_a2_leg1 * minus_a2_x_leg1, 0.0,
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1), -minus_rate_dot_1_leg2,
+                -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0,
+                -minus_zz_2_leg2_on_q1_leg2,
+                L_1 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform,
+                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2, -(L_1_SQUARED * minus_rate_dot_1_leg2),
+                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2), zz_1_leg3_on_q1_leg2,
+                zz_1_leg3_on_q1_leg2, g1_a2_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), g1_a2_leg3, zz_2_leg3_on_q1_leg2,
+                -(t2_platform + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)),
+                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                L_1_SQUARED * zz_1_leg3_on_q1_leg2,
+                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
+                -minus_m_platform_on_q1_leg2,
             ],
         ])
     }
@@ -1986,102 +2576,143 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        let t0 = 0.5 * pose[0];
-        let t1 = pose[1] - 0.35;
-        let t4 = t1 * t1 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = t0 + t1 * t7;
-        let t10 = t9 - pose[0];
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let minus_g1_vx_leg1 = t10 * t12;
-        let t17 = 0.5 * t1 - pose[0] * t7;
-        let t18 = t1 - t17;
-        let minus_g2_vx_leg1 = t9 * t12;
-        let minus_g2_vy_leg1 = t17 * t12;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let half_x = 0.5 * pose[0];
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t26 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t28 = t10 * acceleration[0] - t18 * acceleration[1] - 0.0576 * t26;
-        let g1_vy_leg1 = t18 * t12;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t33 = rate_1_leg1 * rate_1_leg1;
-        let t35 = 0.5 * (t4 - 0.1152);
-        let minus_rate_dot_1_leg1 = t12 * (t28 - t33 * t35);
-        let t41 = pose[1] * 0.8660254037844386;
-        let t42 = t0 - t41;
-        let t43 = pose[0] + 0.3031088913245535;
-        let t45 = pose[1] + 0.175;
-        let t46 = 0.5 * t45;
-        let t47 = 0.8660254037844386 * t43 + t46;
-        let t50 = t47 * t47 + t42 * t42;
-        let t52 = 0.0576 / t50 - 0.25;
-        ::overact::guard::reach(t52, "leg2")?;
-        let t53 = ::overact::math::sqrt(t52);
-        let t56 = t42 * t53 + 0.5 * t47;
-        let t60 = 0.5 * t42 - t47 * t53;
-        let t62 = 3.608439182435161 * t56 + 2.0833333333333335 * t60;
-        let t63 = t50 * t53;
-        ::overact::guard::leg(t63, 0.05748423696979895, "leg2")?;
-        let t64 = 0.24 / t63;
-        let g1_vx_leg2 = t62 * t64;
-        let t68 = 3.608439182435161 * t60 - 2.0833333333333335 * t56;
-        let t72 = t45 * 4.166666666666667;
-        let t73 = t68 + t72;
-        let minus_g2_vy_leg2 = t73 * t64;
-        let t77 = t43 * 4.166666666666667 - t62;
-        let minus_g2_vx_leg2 = t77 * t64;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+        let t1_leg3 = pose[1] * 0.8660254037844386;
+        // --- leg2
+        let d_y_leg2 = half_x - t1_leg3;
+        let t1_leg2 = pose[0] + 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let t2_leg3 = y_plus_half_radius * INV_L_1;
+        let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
+        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
             + minus_g2_vx_leg2 * twist[0];
-        let t81 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t83 = t68 * acceleration[1] - t62 * acceleration[0] - 0.24 * t81;
-        let minus_g1_vy_leg2 = t68 * t64;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t88 = rate_1_leg2 * rate_1_leg2;
-        let t90 = 2.0833333333333335 * (t50 - 0.1152);
-        let minus_rate_dot_1_leg2 = t64 * (t83 - t88 * t90);
-        let t96 = pose[0] - 0.3031088913245535;
-        let t98 = 0.8660254037844386 * t96 - t46;
-        let t100 = t0 + t41;
-        let t103 = t98 * t98 + t100 * t100;
-        let t105 = 0.0576 / t103 - 0.25;
-        ::overact::guard::reach(t105, "leg3")?;
-        let t106 = ::overact::math::sqrt(t105);
-        let t108 = 0.5 * t98 - t100 * t106;
-        let t112 = 0.5 * t100 + t98 * t106;
-        let t114 = 3.608439182435161 * t108 + 2.0833333333333335 * t112;
-        let t115 = t103 * t106;
-        ::overact::guard::leg(t115, 0.05748423696979895, "leg3")?;
-        let t116 = 0.24 / t115;
-        let g1_vx_leg3 = t114 * t116;
-        let t121 = 2.0833333333333335 * t108 - 3.608439182435161 * t112;
-        let t124 = t121 + t72;
-        let minus_g2_vy_leg3 = t124 * t116;
-        let t128 = t96 * 4.166666666666667 - t114;
-        let minus_g2_vx_leg3 = t128 * t116;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        // --- leg3
+        let t3_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
+        let d_y_leg3 = half_x + t1_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = t3_leg3 * INV_L_1 - fk1_x_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
             + minus_g2_vx_leg3 * twist[0];
-        let t132 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t134 = t114 * acceleration[0] - t121 * acceleration[1] + 0.24 * t132;
-        let minus_g1_vy_leg3 = t121 * t116;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t139 = rate_1_leg3 * rate_1_leg3;
-        let t141 = 2.0833333333333335 * (t103 - 0.1152);
-        let rate_dot_1_leg3 = t116 * (t134 + t139 * t141);
-        let t163 = t9 * acceleration[0] + t17 * acceleration[1] + 0.0576 * t33;
-        let minus_rate_dot_2_leg1 = t12 * (t163 + t26 * t35);
-        let t173 = t77 * acceleration[0] + t73 * acceleration[1] + 0.24 * t88;
-        let minus_rate_dot_2_leg2 = t64 * (t173 + t81 * t90);
-        let t183 = t124 * acceleration[1] + t128 * acceleration[0] + 0.24 * t139;
-        let minus_rate_dot_2_leg3 = t116 * (t183 + t132 * t141);
-        let t189 = 4.166666666666667 * t163;
-        let t191 = 4.166666666666667 * t28;
-        let t210 = rate_1_leg1 + minus_rate_2_leg1;
-        let t216 = -(minus_rate_2_leg2 + rate_1_leg2);
-        let t222 = -(minus_rate_2_leg3 + rate_1_leg3);
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0] + fk2_y_leg2 * acceleration[1]
+            + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
+            + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k_leg3
+            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        // --- leg1
+        let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let gq2_vx_leg1 = minus_g1_vx_leg1 - minus_g2_vx_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+        let qd_2_leg2 = -minus_qd_2_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 - minus_g2_vy_leg2;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let qd_2_leg3 = -minus_qd_2_leg3;
+        let gq2_vy_leg3 = minus_g1_vy_leg3 - minus_g2_vy_leg3;
         ::core::result::Result::Ok([
             [
                 acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
@@ -2092,12 +2723,13 @@ impl ThreeLegPoint {
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(minus_g1_vx_leg1 * t189 + minus_g2_vx_leg1 * t191),
-                g1_vx_leg2 * t173 - minus_g2_vx_leg2 * t83,
-                minus_g2_vx_leg3 * t134 + g1_vx_leg3 * t183,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t210),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t216),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t222),
+                -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                    + minus_g2_vx_leg1 * minus_a2_x_leg1),
+                g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
+                minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
+                -::overact::math::signed(gq2_vx_leg1, minus_qd_2_leg1),
+                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
+                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
             ],
             [
                 acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
@@ -2108,12 +2740,12 @@ impl ThreeLegPoint {
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg1 * t189 - minus_g2_vy_leg1 * t191,
-                -(minus_g2_vy_leg2 * t83 + minus_g1_vy_leg2 * t173),
-                minus_g2_vy_leg3 * t134 - minus_g1_vy_leg3 * t183,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t210),
-                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t216),
-                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t222),
+                g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
+                -(minus_g2_vy_leg2 * a_on_f1_leg2 + minus_g1_vy_leg2 * a_on_f2_leg2),
+                minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
+                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3),
             ],
         ])
     }
@@ -2138,6 +2770,11 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -2145,63 +2782,90 @@ impl ThreeLegPoint {
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+        // --- leg1
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t10 = 4.166666666666667 / s2_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * t10;
-        let g2_vx_leg1 = s1_leg1 * t10;
-        let minus_g2_vy_leg1 = c1_leg1 * t10;
+        let k_leg1 = INV_L_1 / s2_leg1;
+        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
+        let g2_vx_leg1 = s1_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let t21 = 0.24 * (rate_2_leg1 * rate_2_leg1);
-        let t22 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - t21;
-        let g1_vy_leg1 = c12_leg1 * t10;
+        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+        let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
+        let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+        let g1_vy_leg1 = c12_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t28 = 0.24 * (rate_1_leg1 * rate_1_leg1);
-        let minus_rate_dot_1_leg1 = t10 * (t22 - c2_leg1 * t28);
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
+        // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t46 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let t47 = 4.166666666666667 / s2_leg2;
-        let g1_vx_leg2 = t46 * t47;
-        let t51 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let t57 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t57 * t47;
-        let t62 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t62 * t47;
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let k_leg2 = INV_L_1 / s2_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t66 = rate_2_leg2 * rate_2_leg2;
-        let t68 = t51 * acceleration[1] - t46 * acceleration[0] - 0.24 * t66;
-        let minus_g1_vy_leg2 = t51 * t47;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t73 = rate_1_leg2 * rate_1_leg2;
-        let t74 = 0.24 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t47 * (t68 - t73 * t74);
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = L_1 * c2_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        // --- leg3
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t92 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let t93 = 4.166666666666667 / s2_leg3;
-        let g1_vx_leg3 = t92 * t93;
-        let t98 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t103 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t103 * t93;
-        let t108 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t108 * t93;
+        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let k_leg3 = INV_L_1 / s2_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t113 = 0.24 * (rate_2_leg3 * rate_2_leg3);
-        let t114 = t92 * acceleration[0] - t98 * acceleration[1] + t113;
-        let minus_g1_vy_leg3 = t98 * t93;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t120 = 0.24 * (rate_1_leg3 * rate_1_leg3);
-        let rate_dot_1_leg3 = t93 * (t114 + c2_leg3 * t120);
-        let t141 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + t28;
-        let minus_rate_dot_2_leg1 = t10 * (t141 + t21 * c2_leg1);
-        let t151 = t62 * acceleration[0] - t57 * acceleration[1] + 0.24 * t73;
-        let minus_rate_dot_2_leg2 = t47 * (t151 + t66 * t74);
-        let t160 = t103 * acceleration[1] - t108 * acceleration[0] - t120;
-        let rate_dot_2_leg3 = t93 * (t160 - t113 * c2_leg3);
-        let t185 = rate_2_leg1 - rate_1_leg1;
-        let t190 = rate_2_leg2 - rate_1_leg2;
-        let t195 = rate_2_leg3 - rate_1_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
+        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+            + l_1_rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - l_1_rate_2_squared_leg3 * c2_leg3);
+        let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
+        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
         ::core::result::Result::Ok([
             [
                 acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
@@ -2212,12 +2876,12 @@ impl ThreeLegPoint {
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, -(g2_vx_leg1 * minus_rate_dot_2_leg1),
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                g2_vx_leg1 * t22 - minus_g1_vx_leg1 * t141,
-                g1_vx_leg2 * t151 - minus_g2_vx_leg2 * t68,
-                minus_g2_vx_leg3 * t114 - g1_vx_leg3 * t160,
-                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t185),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t190),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t195),
+                g2_vx_leg1 * a_on_f1_leg1 - minus_g1_vx_leg1 * a_on_f2_leg1,
+                g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
+                minus_g2_vx_leg3 * a_on_f1_leg3 - g1_vx_leg3 * a_on_f2_leg3,
+                ::overact::math::signed(gq2_vx_leg1, qd_2_leg1),
+                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
+                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
             ],
             [
                 acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
@@ -2228,12 +2892,12 @@ impl ThreeLegPoint {
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                g1_vy_leg1 * t141 - minus_g2_vy_leg1 * t22,
-                g2_vy_leg2 * t68 - minus_g1_vy_leg2 * t151,
-                minus_g1_vy_leg3 * t160 - g2_vy_leg3 * t114,
-                -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t185),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t190),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t195),
+                g1_vy_leg1 * a_on_f2_leg1 - minus_g2_vy_leg1 * a_on_f1_leg1,
+                g2_vy_leg2 * a_on_f1_leg2 - minus_g1_vy_leg2 * a_on_f2_leg2,
+                minus_g1_vy_leg3 * a_on_f2_leg3 - g2_vy_leg3 * a_on_f1_leg3,
+                -::overact::math::signed(minus_gq2_vy_leg1, qd_2_leg1),
+                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
+                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3),
             ],
         ])
     }
@@ -2259,167 +2923,217 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.3031088913245535;
-        let t2 = pose[1] + 0.175;
-        let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * t0 + t3;
-        let t5 = 0.5 * pose[0];
-        let t6 = pose[1] * 0.8660254037844386;
-        let t7 = t5 - t6;
-        let t10 = t4 * t4 + t7 * t7;
-        let t12 = 0.0576 / t10 - 0.25;
-        ::overact::guard::reach(t12, "leg2")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t16 = t7 * t13 - 0.5 * t4;
-        let t21 = 0.5 * t7 + t4 * t13;
-        let t24 = 3.608439182435161 * (t4 + t16) + 2.0833333333333335 * (t7 - t21);
-        let t25 = t10 * t13;
-        ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
-        let t26 = 0.24 / t25;
-        let g1_vx_leg2 = t24 * t26;
-        let t30 = 3.608439182435161 * t21 + 2.0833333333333335 * t16;
-        let g2_vy_leg2 = t30 * t26;
-        let t32 = pose[1] - 0.35;
-        let t36 = t32 * t32 + pose[0] * pose[0];
-        let t38 = 0.0576 / t36 - 0.25;
-        ::overact::guard::reach(t38, "leg1")?;
-        let t39 = ::overact::math::sqrt(t38);
-        let t41 = 0.5 * t32 - pose[0] * t39;
-        let t42 = t32 - t41;
-        let t43 = t36 * t39;
-        ::overact::guard::leg(t43, 0.05748423696979895, "leg1")?;
-        let t44 = 1.0 / t43;
-        let g1_vy_leg1 = t42 * t44;
-        let t47 = t2 * 4.166666666666667;
-        let t48 = t30 + t47;
-        let minus_minus_g1_vy_leg2 = t48 * t26;
-        let t52 = pose[0] - 0.3031088913245535;
-        let t54 = 0.8660254037844386 * t52 - t3;
-        let t56 = t5 + t6;
-        let t59 = t54 * t54 + t56 * t56;
-        let t61 = 0.0576 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg3")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.5 * t54 - t56 * t62;
-        let t68 = 0.5 * t56 + t54 * t62;
-        let t70 = 2.0833333333333335 * t64 - 3.608439182435161 * t68;
-        let t71 = t59 * t62;
-        ::overact::guard::leg(t71, 0.05748423696979895, "leg3")?;
-        let t72 = 0.24 / t71;
-        let minus_g1_vy_leg3 = t70 * t72;
-        let t78 = t5 + t32 * t39;
-        let t79 = t78 - pose[0];
-        let minus_g1_vx_leg1 = t79 * t44;
-        let t85 = 3.608439182435161 * t64 + 2.0833333333333335 * t68;
-        let g1_vx_leg3 = t85 * t72;
-        let t88 = g1_vx_leg2 * actuator_velocities[1]
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg2
+        let t1_leg2 = pose[0] + 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
+        let half_x = 0.5 * pose[0];
+        let t1_leg3 = pose[1] * 0.8660254037844386;
+        let d_y_leg2 = half_x - t1_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let t2_leg3 = y_plus_half_radius * INV_L_1;
+        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t2_leg3;
+        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+        // --- leg3
+        let t3_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
+        let d_y_leg3 = half_x + t1_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t93 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * minus_minus_g1_vy_leg2
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t98 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        let t99 = t93 / t98;
-        let t108 = g1_vy_leg1 * g1_vy_leg1
-            + minus_minus_g1_vy_leg2 * minus_minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t93 * t99;
-        ::overact::guard::platform(t108, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t108, 26.146658848896372, "actuators")?;
-        let t109 = (g1_vy_leg1 * actuator_velocities[0]
-            + minus_minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t88 * t99) / t108;
-        let t112 = t0 * 4.166666666666667 - t24;
-        let minus_g2_vx_leg2 = t112 * t26;
-        let t116 = t88 / t98 + t99 * t109;
-        let rate_2_leg2 = g2_vy_leg2 * t109 - minus_g2_vx_leg2 * t116;
-        let t119 = rate_2_leg2 * rate_2_leg2;
-        let t120 = 0.24 * t119;
-        let rate_1_leg2 = g1_vx_leg2 * t116 + minus_minus_g1_vy_leg2 * t109;
-        let t124 = rate_1_leg2 * rate_1_leg2;
-        let t126 = 2.0833333333333335 * (t10 - 0.1152);
-        let t127 = t124 * t126;
-        let rate_dot_1_leg2 = t26 * (t120 + t127);
-        let t130 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t78 * t44;
-        let minus_g2_vy_leg1 = t41 * t44;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t116 + minus_g2_vy_leg1 * t109;
-        let t137 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t138 = 0.0576 * t137;
-        let rate_1_leg1 = g1_vy_leg1 * t109 - minus_g1_vx_leg1 * t116;
-        let t142 = rate_1_leg1 * rate_1_leg1;
-        let t144 = 0.5 * (t36 - 0.1152);
-        let t145 = t142 * t144;
-        let rate_dot_1_leg1 = t44 * (t138 + t145);
-        let t148 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t151 = t70 + t47;
-        let minus_g2_vy_leg3 = t151 * t72;
-        let t155 = t52 * 4.166666666666667 - t85;
-        let minus_g2_vx_leg3 = t155 * t72;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * t109 + minus_g2_vx_leg3 * t116;
-        let t159 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t160 = 0.24 * t159;
-        let rate_1_leg3 = g1_vx_leg3 * t116 - minus_g1_vy_leg3 * t109;
-        let t164 = rate_1_leg3 * rate_1_leg3;
-        let t166 = 2.0833333333333335 * (t59 - 0.1152);
-        let t167 = t164 * t166;
-        let rate_dot_1_leg3 = t72 * (t160 + t167);
-        let t170 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t172 = g1_vx_leg2 * t130 - minus_g1_vx_leg1 * t148 + g1_vx_leg3 * t170;
-        let t181 = (g1_vy_leg1 * t148 + minus_minus_g1_vy_leg2 * t130
-            - minus_g1_vy_leg3 * t170 + t99 * t172) / t108;
-        let t183 = t172 / t98 + t99 * t181;
-        let t187 = t79 * t183 - t42 * t181 - t138;
-        let minus_rate_dot_1_leg1 = t44 * (t187 - t145);
-        let t195 = t48 * t181 + t24 * t183 + t120;
-        let minus_minus_rate_dot_1_leg2 = t26 * (t195 + t127);
-        let t203 = t85 * t183 - t70 * t181 + t160;
-        let rate_dot_1_leg3_2 = t72 * (t203 + t167);
-        let t224 = t78 * t183 + t41 * t181 + 0.0576 * t142;
-        let minus_rate_dot_2_leg1 = t44 * (t224 + t137 * t144);
-        let t234 = t112 * t183 - t30 * t181 + 0.24 * t124;
-        let minus_rate_dot_2_leg2 = t26 * (t234 + t119 * t126);
-        let t244 = t151 * t181 + t155 * t183 + 0.24 * t164;
-        let minus_rate_dot_2_leg3 = t72 * (t244 + t159 * t166);
-        let t250 = 4.166666666666667 * t224;
-        let t252 = 4.166666666666667 * t187;
-        let t271 = rate_1_leg1 + minus_rate_2_leg1;
-        let t276 = rate_2_leg2 - rate_1_leg2;
-        let t282 = -(minus_rate_2_leg3 + rate_1_leg3);
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let minus_l_2_1 = minus_s_1_2 / s_1_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let vy = (g1_vy_leg1 * actuator_velocities[0]
+            + g1_vy_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
+        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let vx = t1 / s_1_1 + minus_l_2_1 * vy;
+        // --- leg2
+        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            - bias_rate_dot_1_leg1;
+        // --- leg3
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = t3_leg3 * INV_L_1 - fk1_x_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            - bias_rate_dot_1_leg3;
+        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2)
+            / pivot_2;
+        let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
+        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+        let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
+        let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
+        let rate_dot_1_leg2 = k_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
+            + minus_bias_a_on_f2_leg3;
+        let minus_rate_dot_2_leg3 = k_leg3
+            * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        // --- leg1
+        let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let gq2_vx_leg1 = minus_g1_vx_leg1 - minus_g2_vx_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let gq2_vy_leg2 = g2_vy_leg2 - g1_vy_leg2;
+        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let qd_2_leg3 = -minus_qd_2_leg3;
+        let gq2_vy_leg3 = minus_g1_vy_leg3 - minus_g2_vy_leg3;
         ::core::result::Result::Ok([
             [
-                t183, minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
-                g1_vx_leg2 * minus_minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3_2,
-                -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
-                g1_vx_leg3 * rate_1_leg3, -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
+                dvx, minus_g1_vx_leg1 * minus_rate_dot_1_leg1, g1_vx_leg2 * rate_dot_1_leg2,
+                g1_vx_leg3 * rate_dot_1_leg3, -(minus_g1_vx_leg1 * rate_1_leg1),
+                g1_vx_leg2 * rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(minus_g1_vx_leg1 * t250 + minus_g2_vx_leg1 * t252),
-                g1_vx_leg2 * t234 + minus_g2_vx_leg2 * t195,
-                minus_g2_vx_leg3 * t203 + g1_vx_leg3 * t244,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t271),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t276),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t282),
+                -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
+                    + minus_g2_vx_leg1 * minus_a2_x_leg1),
+                g1_vx_leg2 * a_on_f2_leg2 + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
+                minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
+                -::overact::math::signed(gq2_vx_leg1, minus_qd_2_leg1),
+                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
+                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
             ],
             [
-                t181, -(g1_vy_leg1 * minus_rate_dot_1_leg1),
-                minus_minus_g1_vy_leg2 * minus_minus_rate_dot_1_leg2,
-                -(minus_g1_vy_leg3 * rate_dot_1_leg3_2), g1_vy_leg1 * rate_1_leg1,
-                minus_minus_g1_vy_leg2 * rate_1_leg2, -(minus_g1_vy_leg3 * rate_1_leg3),
+                dvy, -(g1_vy_leg1 * minus_rate_dot_1_leg1), g1_vy_leg2 * rate_dot_1_leg2,
+                -(minus_g1_vy_leg3 * rate_dot_1_leg3), g1_vy_leg1 * rate_1_leg1,
+                g1_vy_leg2 * rate_1_leg2, -(minus_g1_vy_leg3 * rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
-                ::overact::math::signed(minus_minus_g1_vy_leg2, rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
-                minus_minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
+                ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1, g1_vy_leg2,
+                -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg1 * t250 - minus_g2_vy_leg1 * t252,
-                minus_minus_g1_vy_leg2 * t234 - g2_vy_leg2 * t195,
-                minus_g2_vy_leg3 * t203 - minus_g1_vy_leg3 * t244,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t271),
-                ::overact::math::signed(g2_vy_leg2 - minus_minus_g1_vy_leg2, t276),
-                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t282),
+                g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
+                g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
+                minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
+                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
+                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3),
             ],
         ])
     }
@@ -2442,134 +3156,179 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        let t0 = pose[0] - 0.3031088913245535;
-        let t2 = pose[1] + 0.175;
-        let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
-        let t5 = pose[0] - t4;
-        let t9 = 0.5 * t2;
-        let t10 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t9;
-        let t13 = t10 * t10 + t5 * t5;
-        let t15 = 0.0576 / t13 - 0.25;
-        ::overact::guard::reach(t15, "leg2")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let t18 = 0.5 * t5 + t10 * t16;
-        let t19 = t5 - t18;
-        let t23 = t5 * t16 - 0.5 * t10;
-        let t24 = t10 + t23;
-        let t26 = 3.608439182435161 * t19 - 2.0833333333333335 * t24;
-        let t27 = t13 * t16;
-        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
-        let t28 = 0.24 / t27;
-        let minus_g1_vy_leg2 = t26 * t28;
-        let t31 = pose[1] - 0.35;
-        let t34 = t31 * t31 + pose[0] * pose[0];
-        let t36 = 0.0576 / t34 - 0.25;
-        ::overact::guard::reach(t36, "leg1")?;
-        let t37 = ::overact::math::sqrt(t36);
-        let t39 = 0.5 * pose[0] + t31 * t37;
-        let t40 = t39 - pose[0];
-        let t41 = t34 * t37;
-        ::overact::guard::leg(t41, 0.05748423696979895, "leg1")?;
-        let t42 = 1.0 / t41;
-        let minus_g1_vx_leg1 = t40 * t42;
-        let t47 = 0.5 * t31 - pose[0] * t37;
-        let t48 = t31 - t47;
-        let g1_vy_leg1 = t48 * t42;
-        let t52 = 3.608439182435161 * t24 + 2.0833333333333335 * t19;
-        let g1_vx_leg2 = t52 * t28;
-        let t55 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t55, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t55, 15.09578052481963, "kept actuators")?;
-        let t56 = 1.0 / t55;
-        let t57 = minus_g1_vy_leg2 * t56;
-        let t59 = g1_vx_leg2 * t56;
-        let t62 = g1_vy_leg1 * t56;
-        let t64 = minus_g1_vx_leg1 * t56;
-        let minus_g2_vx_leg1 = t39 * t42;
-        let minus_g2_vy_leg1 = t47 * t42;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg3
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t75 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t77 = t40 * acceleration[0] - t48 * acceleration[1] - 0.0576 * t75;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t81 = rate_1_leg1 * rate_1_leg1;
-        let t83 = 0.5 * (t34 - 0.1152);
-        let minus_rate_dot_1_leg1 = t42 * (t77 - t81 * t83);
-        let t92 = 3.608439182435161 * t18 + 2.0833333333333335 * t23;
-        let g2_vy_leg2 = t92 * t28;
-        let t97 = 2.0833333333333335 * t18 - 3.608439182435161 * t23;
-        let minus_g2_vx_leg2 = t97 * t28;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+        // --- leg2
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t101 = rate_2_leg2 * rate_2_leg2;
-        let t103 = t26 * acceleration[1] - t52 * acceleration[0] - 0.24 * t101;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t107 = rate_1_leg2 * rate_1_leg2;
-        let t109 = 2.0833333333333335 * (t13 - 0.1152);
-        let minus_rate_dot_1_leg2 = t28 * (t103 - t107 * t109);
-        let t114 = 0.8660254037844386 * t0 - t9;
-        let t118 = t114 * t114 + t4 * t4;
-        let t120 = 0.0576 / t118 - 0.25;
-        ::overact::guard::reach(t120, "leg3")?;
-        let t121 = ::overact::math::sqrt(t120);
-        let t123 = 0.5 * t114 + t4 * t121;
-        let t124 = t114 - t123;
-        let t128 = 0.5 * t4 - t114 * t121;
-        let t129 = t4 - t128;
-        let t131 = 2.0833333333333335 * t124 - 3.608439182435161 * t129;
-        let t132 = t118 * t121;
-        ::overact::guard::leg(t132, 0.05748423696979895, "leg3")?;
-        let t133 = 0.24 / t132;
-        let minus_g1_vy_leg3 = t131 * t133;
-        let t138 = 3.608439182435161 * t124 + 2.0833333333333335 * t129;
-        let g1_vx_leg3 = t138 * t133;
-        let t141 = minus_g1_vy_leg3 * t59 - g1_vx_leg3 * t57;
-        let t147 = 2.0833333333333335 * t123 - 3.608439182435161 * t128;
-        let g2_vy_leg3 = t147 * t133;
-        let t152 = 3.608439182435161 * t123 + 2.0833333333333335 * t128;
-        let minus_g2_vx_leg3 = t152 * t133;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t156 = rate_2_leg3 * rate_2_leg3;
-        let t158 = t138 * acceleration[0] - t131 * acceleration[1] + 0.24 * t156;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t162 = rate_1_leg3 * rate_1_leg3;
-        let t164 = 2.0833333333333335 * (t118 - 0.1152);
-        let rate_dot_1_leg3 = t133 * (t158 + t162 * t164);
-        let t171 = minus_g1_vy_leg3 * t64 - g1_vx_leg3 * t62;
-        let t181 = minus_g2_vx_leg1 * t57 + minus_g2_vy_leg1 * t59;
-        let t186 = t39 * acceleration[0] + t47 * acceleration[1] + 0.0576 * t81;
-        let minus_rate_dot_2_leg1 = t42 * (t186 + t75 * t83);
-        let t191 = t42 * t56;
-        let t193 = t56 / t27;
-        let t198 = t97 * acceleration[0] - t92 * acceleration[1] + 0.24 * t107;
-        let minus_rate_dot_2_leg2 = t28 * (t198 + t101 * t109);
-        let t205 = minus_g2_vx_leg2 * t62 - g2_vy_leg2 * t64;
-        let t209 = minus_g2_vx_leg3 * t57 - g2_vy_leg3 * t59;
-        let t214 = t147 * acceleration[1] - t152 * acceleration[0] - 0.24 * t162;
-        let rate_dot_2_leg3 = t133 * (t214 - t156 * t164);
-        let t221 = minus_g2_vx_leg3 * t62 - g2_vy_leg3 * t64;
-        let t224 = 4.166666666666667 * t77;
-        let t238 = rate_1_leg1 + minus_rate_2_leg1;
-        let t241 = rate_2_leg2 - rate_1_leg2;
-        let t246 = rate_2_leg3 - rate_1_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
+        let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+            + minus_g2_vy_leg1 * minus_vy_by_a1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let g2_a2_leg1 = k_leg1 * inv_det_ja;
+        let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
+        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         ::core::result::Result::Ok([
             [
-                -(t57 * acceleration[0] + t59 * acceleration[1]), -minus_rate_dot_1_leg1, 0.0,
-                t141 * rate_dot_1_leg3, rate_1_leg1, 0.0, t141 * rate_1_leg3,
-                ::overact::math::sign(rate_1_leg1), 0.0, ::overact::math::signed(t141, rate_1_leg3),
-                1.0, 0.0, t141, -(t181 * minus_rate_dot_2_leg1), t193 * minus_rate_dot_2_leg2,
-                t209 * rate_dot_2_leg3, 4.166666666666667 * t186 + t181 * t224, -(t193 * t103),
-                -(t141 * t214 + t209 * t158), -::overact::math::signed(t181 - 1.0, t238),
-                -::overact::math::signed(t193, t241), ::overact::math::signed(t209 - t141, t246),
+                -(minus_vx_by_a1 * acceleration[0] + minus_vy_by_a1 * acceleration[1]),
+                -minus_rate_dot_1_leg1, 0.0, g1_a1_leg3 * rate_dot_1_leg3, rate_1_leg1, 0.0,
+                g1_a1_leg3 * rate_1_leg3, ::overact::math::sign(rate_1_leg1), 0.0,
+                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), 1.0, 0.0, g1_a1_leg3,
+                -(g2_a1_leg1 * minus_rate_dot_2_leg1), minus_g2_a1_leg2 * minus_rate_dot_2_leg2,
+                g2_a1_leg3 * rate_dot_2_leg3, INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
+                -(minus_g2_a1_leg2 * a_on_f1_leg2),
+                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                -::overact::math::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1),
+                -::overact::math::signed(minus_g2_a1_leg2, qd_2_leg2),
+                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
             ],
             [
-                -(t62 * acceleration[0] + t64 * acceleration[1]), 0.0, -minus_rate_dot_1_leg2,
-                t171 * rate_dot_1_leg3, 0.0, rate_1_leg2, t171 * rate_1_leg3, 0.0,
-                ::overact::math::sign(rate_1_leg2), ::overact::math::signed(t171, rate_1_leg3), 0.0,
-                1.0, t171, -(t191 * minus_rate_dot_2_leg1), -(t205 * minus_rate_dot_2_leg2),
-                t221 * rate_dot_2_leg3, t191 * t224, t198 + t205 * t103,
-                -(t171 * t214 + t221 * t158), -::overact::math::signed(t191, t238),
-                ::overact::math::signed(t205 - 1.0, t241),
-                ::overact::math::signed(t221 - t171, t246),
+                -(minus_vx_by_a2 * acceleration[0] + minus_vy_by_a2 * acceleration[1]), 0.0,
+                -minus_rate_dot_1_leg2, g1_a2_leg3 * rate_dot_1_leg3, 0.0, rate_1_leg2,
+                g1_a2_leg3 * rate_1_leg3, 0.0, ::overact::math::sign(rate_1_leg2),
+                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), 0.0, 1.0, g1_a2_leg3,
+                -(g2_a2_leg1 * minus_rate_dot_2_leg1), -(g2_a2_leg2 * minus_rate_dot_2_leg2),
+                g2_a2_leg3 * rate_dot_2_leg3, g2_a2_leg1 * minus_a2_x_leg1,
+                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
+                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
+                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
             ],
         ])
     }
@@ -2594,6 +3353,11 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        // --- sines and cosines
         let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg1, c1_leg1),
         (s2_leg1, c2_leg1), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[2], joints[3], joints[0], joints[1], joints[4], joints[5],
@@ -2601,99 +3365,124 @@ impl ThreeLegPoint {
         ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
         ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+        // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t12 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let t13 = 4.166666666666667 / s2_leg2;
-        let minus_g1_vy_leg2 = t12 * t13;
+        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let k_leg2 = INV_L_1 / s2_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        // --- leg1
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t25 = 4.166666666666667 / s2_leg1;
-        let minus_g1_vx_leg1 = s12_leg1 * t25;
-        let g1_vy_leg1 = c12_leg1 * t25;
-        let t31 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let g1_vx_leg2 = t31 * t13;
-        let t34 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t34, 15.095780524666612, "kept actuators")?;
-        ::overact::guard::platform(t34, 15.095780524666612, "kept actuators")?;
-        let t35 = 1.0 / t34;
-        let t36 = minus_g1_vy_leg2 * t35;
-        let t38 = g1_vx_leg2 * t35;
-        let t41 = g1_vy_leg1 * t35;
-        let t43 = minus_g1_vx_leg1 * t35;
-        let g2_vx_leg1 = s1_leg1 * t25;
-        let minus_g2_vy_leg1 = c1_leg1 * t25;
+        let k_leg1 = INV_L_1 / s2_leg1;
+        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+        let g1_vy_leg1 = c12_leg1 * k_leg1;
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(det_ja, 15.095780524666612, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 15.095780524666612, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
+        let g2_vx_leg1 = s1_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let t54 = rate_2_leg1 * rate_2_leg1;
-        let t56 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - 0.24 * t54;
+        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t60 = rate_1_leg1 * rate_1_leg1;
-        let t61 = 0.24 * c2_leg1;
-        let minus_rate_dot_1_leg1 = t25 * (t56 - t60 * t61);
-        let t70 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t70 * t13;
-        let t75 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t75 * t13;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let v2_by_1_y_leg1 = L_1 * c2_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+        // --- leg2
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t79 = rate_2_leg2 * rate_2_leg2;
-        let t81 = t12 * acceleration[1] - t31 * acceleration[0] - 0.24 * t79;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t85 = rate_1_leg2 * rate_1_leg2;
-        let t86 = 0.24 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t13 * (t81 - t85 * t86);
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = L_1 * c2_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        // --- leg3
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t102 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t103 = 4.166666666666667 / s2_leg3;
-        let minus_g1_vy_leg3 = t102 * t103;
-        let t108 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let g1_vx_leg3 = t108 * t103;
-        let t111 = minus_g1_vy_leg3 * t38 - g1_vx_leg3 * t36;
-        let t117 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t117 * t103;
-        let t122 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t122 * t103;
+        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let k_leg3 = INV_L_1 / s2_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t126 = rate_2_leg3 * rate_2_leg3;
-        let t128 = t108 * acceleration[0] - t102 * acceleration[1] + 0.24 * t126;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t132 = rate_1_leg3 * rate_1_leg3;
-        let t133 = 0.24 * c2_leg3;
-        let rate_dot_1_leg3 = t103 * (t128 + t132 * t133);
-        let t140 = minus_g1_vy_leg3 * t43 - g1_vx_leg3 * t41;
-        let t150 = minus_g2_vy_leg1 * t38 - g2_vx_leg1 * t36;
-        let t155 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + 0.24 * t60;
-        let minus_rate_dot_2_leg1 = t25 * (t155 + t54 * t61);
-        let t162 = minus_g2_vy_leg1 * t43 - g2_vx_leg1 * t41;
-        let t166 = minus_g2_vx_leg2 * t36 - g2_vy_leg2 * t38;
-        let t171 = t75 * acceleration[0] - t70 * acceleration[1] + 0.24 * t85;
-        let minus_rate_dot_2_leg2 = t13 * (t171 + t79 * t86);
-        let t178 = minus_g2_vx_leg2 * t41 - g2_vy_leg2 * t43;
-        let t182 = minus_g2_vx_leg3 * t36 - g2_vy_leg3 * t38;
-        let t187 = t117 * acceleration[1] - t122 * acceleration[0] - 0.24 * t132;
-        let rate_dot_2_leg3 = t103 * (t187 - t126 * t133);
-        let t194 = minus_g2_vx_leg3 * t41 - g2_vy_leg3 * t43;
-        let t209 = rate_2_leg1 - rate_1_leg1;
-        let t212 = rate_2_leg2 - rate_1_leg2;
-        let t217 = rate_2_leg3 - rate_1_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = L_1 * c2_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
+        let g2_a1_leg1 = minus_g2_vy_leg1 * minus_vy_by_a1 - g2_vx_leg1 * minus_vx_by_a1;
+        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+            + L_1 * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+        let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2 - g2_vx_leg1 * minus_vx_by_a2;
+        let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1 - g2_vy_leg2 * minus_vy_by_a1;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
+        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
+        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         ::core::result::Result::Ok([
             [
-                -(t36 * acceleration[0] + t38 * acceleration[1]), -minus_rate_dot_1_leg1, 0.0,
-                t111 * rate_dot_1_leg3, rate_1_leg1, 0.0, t111 * rate_1_leg3,
-                ::overact::math::sign(rate_1_leg1), 0.0, ::overact::math::signed(t111, rate_1_leg3),
-                1.0, 0.0, t111, -(t150 * minus_rate_dot_2_leg1), -(t166 * minus_rate_dot_2_leg2),
-                t182 * rate_dot_2_leg3, t155 + t150 * t56, t166 * t81, -(t111 * t187 + t182 * t128),
-                ::overact::math::signed(t150 - 1.0, t209), ::overact::math::signed(t166, t212),
-                ::overact::math::signed(t182 - t111, t217),
+                -(minus_vx_by_a1 * acceleration[0] + minus_vy_by_a1 * acceleration[1]),
+                -minus_rate_dot_1_leg1, 0.0, g1_a1_leg3 * rate_dot_1_leg3, rate_1_leg1, 0.0,
+                g1_a1_leg3 * rate_1_leg3, ::overact::math::sign(rate_1_leg1), 0.0,
+                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), 1.0, 0.0, g1_a1_leg3,
+                -(g2_a1_leg1 * minus_rate_dot_2_leg1), -(g2_a1_leg2 * minus_rate_dot_2_leg2),
+                g2_a1_leg3 * rate_dot_2_leg3, a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1,
+                g2_a1_leg2 * a_on_f1_leg2, -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                ::overact::math::signed(g2_a1_leg1 - 1.0, qd_2_leg1),
+                ::overact::math::signed(g2_a1_leg2, qd_2_leg2),
+                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
             ],
             [
-                -(t41 * acceleration[0] + t43 * acceleration[1]), 0.0, -minus_rate_dot_1_leg2,
-                t140 * rate_dot_1_leg3, 0.0, rate_1_leg2, t140 * rate_1_leg3, 0.0,
-                ::overact::math::sign(rate_1_leg2), ::overact::math::signed(t140, rate_1_leg3), 0.0,
-                1.0, t140, -(t162 * minus_rate_dot_2_leg1), -(t178 * minus_rate_dot_2_leg2),
-                t194 * rate_dot_2_leg3, t162 * t56, t171 + t178 * t81, -(t140 * t187 + t194 * t128),
-                ::overact::math::signed(t162, t209), ::overact::math::signed(t178 - 1.0, t212),
-                ::overact::math::signed(t194 - t140, t217),
+                -(minus_vx_by_a2 * acceleration[0] + minus_vy_by_a2 * acceleration[1]), 0.0,
+                -minus_rate_dot_1_leg2, g1_a2_leg3 * rate_dot_1_leg3, 0.0, rate_1_leg2,
+                g1_a2_leg3 * rate_1_leg3, 0.0, ::overact::math::sign(rate_1_leg2),
+                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), 0.0, 1.0, g1_a2_leg3,
+                -(g2_a2_leg1 * minus_rate_dot_2_leg1), -(g2_a2_leg2 * minus_rate_dot_2_leg2),
+                g2_a2_leg3 * rate_dot_2_leg3, g2_a2_leg1 * a_on_f1_leg1,
+                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
+                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                ::overact::math::signed(g2_a2_leg1, qd_2_leg1),
+                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
+                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
             ],
         ])
     }
@@ -2719,171 +3508,223 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] - 0.3031088913245535;
-        let t2 = pose[1] + 0.175;
-        let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
-        let t5 = pose[0] - t4;
-        let t9 = 0.5 * t2;
-        let t10 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t9;
-        let t13 = t10 * t10 + t5 * t5;
-        let t15 = 0.0576 / t13 - 0.25;
-        ::overact::guard::reach(t15, "leg2")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let t18 = 0.5 * t5 + t10 * t16;
-        let t19 = t5 - t18;
-        let t23 = t5 * t16 - 0.5 * t10;
-        let t24 = t10 + t23;
-        let t26 = 3.608439182435161 * t19 - 2.0833333333333335 * t24;
-        let t27 = t13 * t16;
-        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
-        let t28 = 0.24 / t27;
-        let minus_g1_vy_leg2 = t26 * t28;
-        let t31 = pose[1] - 0.35;
-        let t34 = t31 * t31 + pose[0] * pose[0];
-        let t36 = 0.0576 / t34 - 0.25;
-        ::overact::guard::reach(t36, "leg1")?;
-        let t37 = ::overact::math::sqrt(t36);
-        let t39 = 0.5 * pose[0] + t31 * t37;
-        let t40 = t39 - pose[0];
-        let t41 = t34 * t37;
-        ::overact::guard::leg(t41, 0.05748423696979895, "leg1")?;
-        let t42 = 1.0 / t41;
-        let minus_g1_vx_leg1 = t40 * t42;
-        let t47 = 0.5 * t31 - pose[0] * t37;
-        let t48 = t31 - t47;
-        let g1_vy_leg1 = t48 * t42;
-        let t52 = 3.608439182435161 * t24 + 2.0833333333333335 * t19;
-        let g1_vx_leg2 = t52 * t28;
-        let t55 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t55, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t55, 15.09578052481963, "kept actuators")?;
-        let t56 = 1.0 / t55;
-        let t57 = minus_g1_vy_leg2 * t56;
-        let t62 = 0.8660254037844386 * t0 - t9;
-        let t66 = t62 * t62 + t4 * t4;
-        let t68 = 0.0576 / t66 - 0.25;
-        ::overact::guard::reach(t68, "leg3")?;
-        let t69 = ::overact::math::sqrt(t68);
-        let t71 = 0.5 * t62 + t4 * t69;
-        let t72 = t62 - t71;
-        let t76 = 0.5 * t4 - t62 * t69;
-        let t77 = t4 - t76;
-        let t79 = 3.608439182435161 * t72 + 2.0833333333333335 * t77;
-        let t80 = t66 * t69;
-        ::overact::guard::leg(t80, 0.05748423696979895, "leg3")?;
-        let t81 = 0.24 / t80;
-        let g1_vx_leg3 = t79 * t81;
-        let t84 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg3
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t84, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t84, 26.146658848896372, "actuators")?;
-        let t85 = 1.0 / t84;
-        let t88 = 3.608439182435161 * t18 + 2.0833333333333335 * t23;
-        let g2_vy_leg2 = t88 * t28;
-        let t95 = 2.0833333333333335 * t72 - 3.608439182435161 * t77;
-        let minus_g1_vy_leg3 = t95 * t81;
-        let t103 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t104 = t103 * t85;
-        let t106 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t103 * t104;
-        ::overact::guard::platform(t106, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t106, 26.146658848896372, "actuators")?;
-        let t107 = 1.0 / t106;
-        let t117 = g1_vx_leg2 * actuator_velocities[1]
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t120 = t107
+        let vy = inv_pivot_2
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t117 * t104);
-        let t124 = 2.0833333333333335 * t18 - 3.608439182435161 * t23;
-        let minus_g2_vx_leg2 = t124 * t28;
-        let t128 = t117 * t85 + t104 * t120;
-        let rate_2_leg2 = g2_vy_leg2 * t120 - minus_g2_vx_leg2 * t128;
-        let t131 = rate_2_leg2 * rate_2_leg2;
-        let t132 = 0.24 * t131;
-        let rate_1_leg2 = g1_vx_leg2 * t128 - minus_g1_vy_leg2 * t120;
-        let t136 = rate_1_leg2 * rate_1_leg2;
-        let t138 = 2.0833333333333335 * (t13 - 0.1152);
-        let t139 = t136 * t138;
-        let rate_dot_1_leg2 = t28 * (t132 + t139);
-        let t142 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t39 * t42;
-        let minus_g2_vy_leg1 = t47 * t42;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t128 + minus_g2_vy_leg1 * t120;
-        let t149 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t150 = 0.0576 * t149;
-        let rate_1_leg1 = g1_vy_leg1 * t120 - minus_g1_vx_leg1 * t128;
-        let t154 = rate_1_leg1 * rate_1_leg1;
-        let t156 = 0.5 * (t34 - 0.1152);
-        let t157 = t154 * t156;
-        let rate_dot_1_leg1 = t42 * (t150 + t157);
-        let t160 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t165 = 2.0833333333333335 * t71 - 3.608439182435161 * t76;
-        let g2_vy_leg3 = t165 * t81;
-        let t170 = 3.608439182435161 * t71 + 2.0833333333333335 * t76;
-        let minus_g2_vx_leg3 = t170 * t81;
-        let rate_2_leg3 = g2_vy_leg3 * t120 - minus_g2_vx_leg3 * t128;
-        let t174 = rate_2_leg3 * rate_2_leg3;
-        let t175 = 0.24 * t174;
-        let rate_1_leg3 = g1_vx_leg3 * t128 - minus_g1_vy_leg3 * t120;
-        let t179 = rate_1_leg3 * rate_1_leg3;
-        let t181 = 2.0833333333333335 * (t66 - 0.1152);
-        let t182 = t179 * t181;
-        let rate_dot_1_leg3 = t81 * (t175 + t182);
-        let t185 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t187 = g1_vx_leg2 * t142 - minus_g1_vx_leg1 * t160 + g1_vx_leg3 * t185;
-        let t196 = t107
-            * (g1_vy_leg1 * t160 - minus_g1_vy_leg2 * t142 - minus_g1_vy_leg3 * t185
-                + t104 * t187);
-        let t198 = t85 * t187 + t104 * t196;
-        let t200 = g1_vx_leg2 * t56;
-        let t203 = g1_vy_leg1 * t56;
-        let t205 = minus_g1_vx_leg1 * t56;
-        let t211 = t40 * t198 - t48 * t196 - t150;
-        let minus_rate_dot_1_leg1 = t42 * (t211 - t157);
-        let t217 = t26 * t196 - t52 * t198 - t132;
-        let minus_rate_dot_1_leg2 = t28 * (t217 - t139);
-        let t222 = minus_g1_vy_leg3 * t200 - g1_vx_leg3 * t57;
-        let t226 = t79 * t198 - t95 * t196 + t175;
-        let rate_dot_1_leg3_2 = t81 * (t226 + t182);
-        let t232 = minus_g1_vy_leg3 * t205 - g1_vx_leg3 * t203;
-        let t242 = minus_g2_vx_leg1 * t57 + minus_g2_vy_leg1 * t200;
-        let t247 = t39 * t198 + t47 * t196 + 0.0576 * t154;
-        let minus_rate_dot_2_leg1 = t42 * (t247 + t149 * t156);
-        let t252 = t42 * t56;
-        let t254 = t56 / t27;
-        let t259 = t124 * t198 - t88 * t196 + 0.24 * t136;
-        let minus_rate_dot_2_leg2 = t28 * (t259 + t131 * t138);
-        let t266 = minus_g2_vx_leg2 * t203 - g2_vy_leg2 * t205;
-        let t270 = minus_g2_vx_leg3 * t57 - g2_vy_leg3 * t200;
-        let t275 = t165 * t196 - t170 * t198 - 0.24 * t179;
-        let rate_dot_2_leg3 = t81 * (t275 - t174 * t181);
-        let t282 = minus_g2_vx_leg3 * t203 - g2_vy_leg3 * t205;
-        let t285 = 4.166666666666667 * t211;
-        let t299 = rate_1_leg1 + minus_rate_2_leg1;
-        let t302 = rate_2_leg2 - rate_1_leg2;
-        let t307 = rate_2_leg3 - rate_1_leg3;
+                - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1);
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let vx = t1 * inv_pivot_1 + minus_l_2_1 * vy;
+        // --- leg2
+        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            - bias_rate_dot_1_leg1;
+        // --- leg3
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            - bias_rate_dot_1_leg3;
+        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+        let dvy = inv_pivot_2
+            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
+        let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+        let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
+        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
+        let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
+            + minus_g2_vy_leg1 * minus_vy_by_a1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let g2_a2_leg1 = k_leg1 * inv_det_ja;
+        let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let g2_a2_leg2 = minus_g2_vx_leg2 * minus_vx_by_a2 - g2_vy_leg2 * minus_vy_by_a2;
+        let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1 - g2_vy_leg3 * minus_vy_by_a1;
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
+            - minus_bias_a_on_f2_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2 - g2_vy_leg3 * minus_vy_by_a2;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         ::core::result::Result::Ok([
             [
-                -(t57 * t198 + t200 * t196), -minus_rate_dot_1_leg1, 0.0, t222 * rate_dot_1_leg3_2,
-                rate_1_leg1, 0.0, t222 * rate_1_leg3, ::overact::math::sign(rate_1_leg1), 0.0,
-                ::overact::math::signed(t222, rate_1_leg3), 1.0, 0.0, t222,
-                -(t242 * minus_rate_dot_2_leg1), t254 * minus_rate_dot_2_leg2,
-                t270 * rate_dot_2_leg3, 4.166666666666667 * t247 + t242 * t285, -(t254 * t217),
-                -(t222 * t275 + t270 * t226), -::overact::math::signed(t242 - 1.0, t299),
-                -::overact::math::signed(t254, t302), ::overact::math::signed(t270 - t222, t307),
+                -(minus_vx_by_a1 * dvx + minus_vy_by_a1 * dvy), -minus_rate_dot_1_leg1, 0.0,
+                g1_a1_leg3 * rate_dot_1_leg3, rate_1_leg1, 0.0, g1_a1_leg3 * rate_1_leg3,
+                ::overact::math::sign(rate_1_leg1), 0.0,
+                ::overact::math::signed(g1_a1_leg3, rate_1_leg3), 1.0, 0.0, g1_a1_leg3,
+                -(g2_a1_leg1 * minus_rate_dot_2_leg1), minus_g2_a1_leg2 * minus_rate_dot_2_leg2,
+                g2_a1_leg3 * rate_dot_2_leg3, INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1,
+                -(minus_g2_a1_leg2 * a_on_f1_leg2),
+                -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3),
+                -::overact::math::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1),
+                -::overact::math::signed(minus_g2_a1_leg2, qd_2_leg2),
+                ::overact::math::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3),
             ],
             [
-                -(t203 * t198 + t205 * t196), 0.0, -minus_rate_dot_1_leg2, t232 * rate_dot_1_leg3_2,
-                0.0, rate_1_leg2, t232 * rate_1_leg3, 0.0, ::overact::math::sign(rate_1_leg2),
-                ::overact::math::signed(t232, rate_1_leg3), 0.0, 1.0, t232,
-                -(t252 * minus_rate_dot_2_leg1), -(t266 * minus_rate_dot_2_leg2),
-                t282 * rate_dot_2_leg3, t252 * t285, t259 + t266 * t217,
-                -(t232 * t275 + t282 * t226), -::overact::math::signed(t252, t299),
-                ::overact::math::signed(t266 - 1.0, t302),
-                ::overact::math::signed(t282 - t232, t307),
+                -(minus_vx_by_a2 * dvx + minus_vy_by_a2 * dvy), 0.0, -minus_rate_dot_1_leg2,
+                g1_a2_leg3 * rate_dot_1_leg3, 0.0, rate_1_leg2, g1_a2_leg3 * rate_1_leg3, 0.0,
+                ::overact::math::sign(rate_1_leg2),
+                ::overact::math::signed(g1_a2_leg3, rate_1_leg3), 0.0, 1.0, g1_a2_leg3,
+                -(g2_a2_leg1 * minus_rate_dot_2_leg1), -(g2_a2_leg2 * minus_rate_dot_2_leg2),
+                g2_a2_leg3 * rate_dot_2_leg3, g2_a2_leg1 * minus_a2_x_leg1,
+                a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2,
+                -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3),
+                -::overact::math::signed(g2_a2_leg1, minus_qd_2_leg1),
+                ::overact::math::signed(g2_a2_leg2 - 1.0, qd_2_leg2),
+                ::overact::math::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3),
             ],
         ])
     }
@@ -2903,47 +3744,67 @@ impl ThreeLegPoint {
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t0 = pose[0] - 0.3031088913245535;
-        let t2 = pose[1] + 0.175;
-        let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
-        let t5 = pose[0] - t4;
-        let t8 = 0.5 * t2;
-        let t9 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t8;
-        let t12 = t9 * t9 + t5 * t5;
-        let t14 = 0.0576 / t12 - 0.25;
-        ::overact::guard::reach(t14, "leg2")?;
-        let t15 = ::overact::math::sqrt(t14);
-        let t18 = t5 * t15 + 0.5 * t9;
-        let t22 = 0.5 * t5 - t9 * t15;
-        let t25 = t12 * t15;
-        ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
-        let t26 = 0.24 / t25;
-        let g1_vx_leg2 = (3.608439182435161 * t18 + 2.0833333333333335 * t22) * t26;
-        let t30 = pose[1] - 0.35;
-        let t33 = t30 * t30 + pose[0] * pose[0];
-        let t35 = 0.0576 / t33 - 0.25;
-        ::overact::guard::reach(t35, "leg1")?;
-        let t36 = ::overact::math::sqrt(t35);
-        let t39 = t33 * t36;
-        ::overact::guard::leg(t39, 0.05748423696979895, "leg1")?;
-        let t40 = 1.0 / t39;
-        let minus_g1_vx_leg1 = (t30 * t36 - 0.5 * pose[0]) * t40;
-        let t45 = 0.8660254037844386 * t0 - t8;
-        let t49 = t45 * t45 + t4 * t4;
-        let t51 = 0.0576 / t49 - 0.25;
-        ::overact::guard::reach(t51, "leg3")?;
-        let t52 = ::overact::math::sqrt(t51);
-        let t54 = 0.5 * t45 - t4 * t52;
-        let t58 = 0.5 * t4 + t45 * t52;
-        let t61 = t49 * t52;
-        ::overact::guard::leg(t61, 0.05748423696979895, "leg3")?;
-        let t62 = 0.24 / t61;
-        let g1_vx_leg3 = (3.608439182435161 * t54 + 2.0833333333333335 * t58) * t62;
-        let g1_vy_leg1 = (0.5 * t30 + pose[0] * t36) * t40;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t22 - 2.0833333333333335 * t18)
-            * t26;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t54 - 3.608439182435161 * t58)
-            * t62;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg3
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         ::core::result::Result::Ok([
             g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
                 + g1_vx_leg3 * torques[2],
@@ -2967,60 +3828,78 @@ impl ThreeLegPoint {
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t2 = pose[1] + 0.175;
-        let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t3;
-        let t6 = pose[0] + 0.3031088913245535;
-        let t9 = 0.5 * t6 - 0.8660254037844386 * t2;
-        let t10 = pose[0] - t9;
-        let t13 = t4 * t4 + t10 * t10;
-        let t15 = 0.0576 / t13 - 0.25;
-        ::overact::guard::reach(t15, "leg3")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let t18 = 0.5 * t4 - t10 * t16;
-        let t22 = 0.5 * t10 + t4 * t16;
-        let t25 = t13 * t16;
-        ::overact::guard::leg(t25, 0.05748423696979895, "leg3")?;
-        let t26 = 0.24 / t25;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t18 - 3.608439182435161 * t22)
-            * t26;
-        let t29 = 0.8660254037844386 * t6 + t3;
-        let t32 = t29 * t29 + t9 * t9;
-        let t34 = 0.0576 / t32 - 0.25;
-        ::overact::guard::reach(t34, "leg2")?;
-        let t35 = ::overact::math::sqrt(t34);
-        let t38 = t9 * t35 + 0.5 * t29;
-        let t42 = 0.5 * t9 - t29 * t35;
-        let t45 = t32 * t35;
-        ::overact::guard::leg(t45, 0.05748423696979895, "leg2")?;
-        let t46 = 0.24 / t45;
-        let g1_vx_leg2 = (3.608439182435161 * t38 + 2.0833333333333335 * t42) * t46;
-        let t49 = pose[1] - 0.35;
-        let t52 = t49 * t49 + pose[0] * pose[0];
-        let t54 = 0.0576 / t52 - 0.25;
-        ::overact::guard::reach(t54, "leg1")?;
-        let t55 = ::overact::math::sqrt(t54);
-        let t58 = t52 * t55;
-        ::overact::guard::leg(t58, 0.05748423696979895, "leg1")?;
-        let t59 = 1.0 / t58;
-        let minus_g1_vx_leg1 = (t49 * t55 - 0.5 * pose[0]) * t59;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t42 - 2.0833333333333335 * t38)
-            * t46;
-        let g1_vy_leg1 = (0.5 * t49 + pose[0] * t55) * t59;
-        let t71 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t71, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t71, 15.09578052481963, "kept actuators")?;
-        let t72 = 1.0 / t71;
-        let g1_vx_leg3 = (3.608439182435161 * t18 + 2.0833333333333335 * t22) * t26;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg2
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let d_x_leg3 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t1_leg2;
+        let t2_leg2 = pose[0] + 0.3031088913245535;
+        let d_y_leg2 = 0.5 * t2_leg2 - 0.8660254037844386 * y_plus_half_radius;
+        // --- leg3
+        let d_y_leg3 = pose[0] - d_y_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        // --- leg2
+        let minus_d_x_leg2 = 0.8660254037844386 * t2_leg2 + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        let inv_det_ja = 1.0 / det_ja;
+        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+        let g1_a1_leg3 = minus_g1_vy_leg3 * minus_vy_by_a1 - g1_vx_leg3 * minus_vx_by_a1;
+        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+        let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
         ::core::result::Result::Ok([
-            torques[0]
-                + torques[2]
-                    * (minus_g1_vy_leg3 * (g1_vx_leg2 * t72)
-                        - g1_vx_leg3 * (minus_g1_vy_leg2 * t72)),
-            torques[1]
-                + torques[2]
-                    * (minus_g1_vy_leg3 * (minus_g1_vx_leg1 * t72)
-                        - g1_vx_leg3 * (g1_vy_leg1 * t72)),
+            torques[0] + torques[2] * g1_a1_leg3, torques[1] + torques[2] * g1_a2_leg3,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3043,168 +3922,216 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        let t0 = pose[1] - 0.35;
-        let t4 = t0 * t0 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * t0 - pose[0] * t7;
-        let t10 = t0 - t9;
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let g1_vy_leg1 = t10 * t12;
-        let t17 = 0.5 * pose[0] + t0 * t7;
-        let t18 = t17 - pose[0];
-        let minus_g1_vx_leg1 = t18 * t12;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = t17 * t12;
-        let minus_g2_vy_leg1 = t9 * t12;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t31 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t33 = t18 * acceleration[0] - t10 * acceleration[1] - 0.0576 * t31;
-        let t34 = rate_1_leg1 * rate_1_leg1;
-        let t35 = t4 - 0.1152;
-        let t36 = 0.5 * t35;
-        let minus_rate_dot_1_leg1 = t12 * (t33 - t34 * t36);
-        let t47 = 4.166666666666667 * t11;
-        let minus_rate_dot_2_leg1 = t12
-            * (t17 * acceleration[0] + t9 * acceleration[1] + 0.0576 * t34 + t31 * t36);
-        let t59 = 4.166666666666667 * t33;
-        let t63 = 2.0833333333333335 * t35;
-        let t66 = t34 * t47 - minus_rate_dot_1_leg1 * t63;
-        let t73 = t47
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t31
-                - parameters[8] * t59)
-            + t63
-                * (parameters[8] * t66
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t31));
-        let t76 = ::overact::math::signed(
-            parameters[9],
-            rate_1_leg1 + minus_rate_2_leg1,
-        );
-        let t77 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t73 + t76;
-        let t84 = parameters[6] * t66 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t59 - t76;
-        let t87 = pose[0] - 0.3031088913245535;
-        let t89 = pose[1] + 0.175;
-        let t91 = 0.5 * t87 + 0.8660254037844386 * t89;
-        let t92 = pose[0] - t91;
-        let t96 = 0.5 * t89;
-        let t97 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t96;
-        let t100 = t97 * t97 + t92 * t92;
-        let t102 = 0.0576 / t100 - 0.25;
-        ::overact::guard::reach(t102, "leg2")?;
-        let t103 = ::overact::math::sqrt(t102);
-        let t105 = 0.5 * t92 + t97 * t103;
-        let t109 = t92 * t103 - 0.5 * t97;
-        let t111 = 3.608439182435161 * t105 + 2.0833333333333335 * t109;
-        let t112 = t100 * t103;
-        ::overact::guard::leg(t112, 0.05748423696979895, "leg2")?;
-        let t113 = 0.24 / t112;
-        let g2_vy_leg2 = t111 * t113;
-        let t115 = t97 + t109;
-        let t117 = t92 - t105;
-        let t119 = 3.608439182435161 * t115 + 2.0833333333333335 * t117;
-        let g1_vx_leg2 = t119 * t113;
-        let t124 = 3.608439182435161 * t117 - 2.0833333333333335 * t115;
-        let minus_g1_vy_leg2 = t124 * t113;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+        let tau_1_leg1 = parameters[2] * rate_1_leg1
+            - parameters[1] * minus_rate_dot_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let minus_moment1_z_leg1 = parameters[0] * minus_rate_dot_1_leg1;
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 - parameters[8] * minus_a2_x_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
+        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
+            - minus_rate_dot_1_leg1 * v2_by_1_y_leg1;
+        let force2_y_leg1 = parameters[8] * a2_y_leg1
+            - (parameters[6] * minus_rate_dot_2_leg1
+                + parameters[7] * rate_2_squared_leg1);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            + minus_tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1
+            - parameters[5] * minus_rate_dot_2_leg1 + parameters[7] * minus_a2_x_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t128 = rate_1_leg2 * rate_1_leg2;
-        let t129 = 4.166666666666667 * t112;
-        let t132 = 2.0833333333333335 * (t100 - 0.1152);
-        let t139 = 2.0833333333333335 * t105 - 3.608439182435161 * t109;
-        let minus_g2_vx_leg2 = t139 * t113;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t143 = rate_2_leg2 * rate_2_leg2;
-        let t145 = t124 * acceleration[1] - t119 * acceleration[0] - 0.24 * t143;
-        let minus_rate_dot_1_leg2 = t113 * (t145 - t128 * t132);
-        let t150 = t128 * t129 - t132 * minus_rate_dot_1_leg2;
-        let minus_rate_dot_2_leg2 = t113
-            * (t139 * acceleration[0] - t111 * acceleration[1] + 0.24 * t128
-                + t143 * t132);
-        let t165 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t166 = parameters[16] * t150 - parameters[15] * minus_rate_dot_2_leg2
-            + parameters[17] * t145 + t165;
-        let t188 = t129
-            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t143
-                - parameters[18] * t145)
-            + t132
-                * (parameters[18] * t150
-                    - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t143));
-        let t190 = parameters[12] * rate_1_leg2 - parameters[11] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14]
-            - parameters[10] * minus_rate_dot_1_leg2 + t188 - t165;
-        let t195 = 0.8660254037844386 * t87 - t96;
-        let t199 = t195 * t195 + t91 * t91;
-        let t201 = 0.0576 / t199 - 0.25;
-        ::overact::guard::reach(t201, "leg3")?;
-        let t202 = ::overact::math::sqrt(t201);
-        let t204 = 0.5 * t195 + t91 * t202;
-        let t208 = 0.5 * t91 - t195 * t202;
-        let t210 = 2.0833333333333335 * t204 - 3.608439182435161 * t208;
-        let t211 = t199 * t202;
-        ::overact::guard::leg(t211, 0.05748423696979895, "leg3")?;
-        let t212 = 0.24 / t211;
-        let g2_vy_leg3 = t210 * t212;
-        let t217 = 3.608439182435161 * t204 + 2.0833333333333335 * t208;
-        let t220 = t195 - t204;
-        let t222 = t91 - t208;
-        let t224 = 3.608439182435161 * t220 + 2.0833333333333335 * t222;
-        let g1_vx_leg3 = t224 * t212;
-        let t229 = 2.0833333333333335 * t220 - 3.608439182435161 * t222;
-        let minus_g1_vy_leg3 = t229 * t212;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
+            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let moment2_z_leg2 = parameters[16] * a2_y_leg2
+            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let tau_1_leg2 = parameters[12] * rate_1_leg2
+            - parameters[11] * minus_rate_dot_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
+        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
+        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
+            - parameters[16] * rate_2_squared_leg2 - parameters[18] * a_on_f1_leg2;
+        let force2_y_leg2 = parameters[18] * a2_y_leg2
+            - (parameters[16] * minus_rate_dot_2_leg2
+                + parameters[17] * rate_2_squared_leg2);
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t233 = rate_1_leg3 * rate_1_leg3;
-        let minus_g2_vx_leg3 = t217 * t212;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t240 = rate_2_leg3 * rate_2_leg3;
-        let t242 = 2.0833333333333335 * (t199 - 0.1152);
-        let rate_dot_2_leg3 = t212
-            * (t210 * acceleration[1] - t217 * acceleration[0] - 0.24 * t233
-                - t240 * t242);
-        let t247 = 4.166666666666667 * t211;
-        let t253 = t224 * acceleration[0] - t229 * acceleration[1] + 0.24 * t240;
-        let rate_dot_1_leg3 = t212 * (t253 + t233 * t242);
-        let t258 = t233 * t247 + t242 * rate_dot_1_leg3;
-        let t264 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t265 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t258
-            - parameters[27] * t253 + t264;
-        let t287 = t247
-            * (parameters[28] * t253
-                - (parameters[26] * t240 + parameters[27] * rate_dot_2_leg3))
-            + t242
-                * (parameters[26] * rate_dot_2_leg3 - parameters[27] * t240
-                    + parameters[28] * t258);
-        let t289 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
-            + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t287 - t264;
-        let t292 = g1_vy_leg1 * t77 - minus_g2_vy_leg1 * t84 + g2_vy_leg2 * t166
-            - minus_g1_vy_leg2 * t190 + g2_vy_leg3 * t265 - minus_g1_vy_leg3 * t289;
-        let t305 = g1_vx_leg2 * t190 - minus_g2_vx_leg2 * t166
-            - (minus_g1_vx_leg1 * t77 + minus_g2_vx_leg1 * t84) + g1_vx_leg3 * t289
-            - minus_g2_vx_leg3 * t265;
-        let t307 = t305 + acceleration[0] * parameters[30];
-        let t312 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
+            + v2_by_1_y_leg3 * rate_dot_1_leg3;
+        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
+            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let moment1_z_leg3 = parameters[20] * rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
+        let force2_x_leg3 = parameters[28] * a_on_f1_leg3
+            - (parameters[26] * rate_2_squared_leg3 + parameters[27] * rate_dot_2_leg3);
+        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
+            - parameters[27] * rate_2_squared_leg3 + parameters[28] * a2_y_leg3;
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let force_y_platform = acceleration[1] * parameters[30];
+        let t2 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let force_x_platform = acceleration[0] * parameters[30];
+        let t3 = t2 + force_x_platform;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t317 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t317, 26.146658848896372, "actuators")?;
-        let t318 = 1.0 / t317;
-        let t319 = t312 * t318;
-        let t328 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t312 * t319;
-        ::overact::guard::platform(t328, 26.146658848896372, "actuators")?;
-        let t329 = (t292 + acceleration[1] * parameters[30] + t307 * t319) / t328;
-        let t333 = t307 * t318 + t319 * t329;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
+        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t329 - minus_g1_vx_leg1 * t333,
-            g1_vx_leg2 * t333 - minus_g1_vy_leg2 * t329,
-            g1_vx_leg3 * t333 - minus_g1_vy_leg3 * t329,
+            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
+            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3229,6 +4156,11 @@ impl ThreeLegPoint {
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -3236,126 +4168,165 @@ impl ThreeLegPoint {
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+        // --- leg1
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t10 = 4.166666666666667 / s2_leg1;
-        let g1_vy_leg1 = c12_leg1 * t10;
-        let minus_g1_vx_leg1 = s12_leg1 * t10;
+        let k_leg1 = INV_L_1 / s2_leg1;
+        let g1_vy_leg1 = c12_leg1 * k_leg1;
+        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let g2_vx_leg1 = s1_leg1 * t10;
-        let minus_g2_vy_leg1 = c1_leg1 * t10;
+        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
+        let g2_vx_leg1 = s1_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let t25 = rate_2_leg1 * rate_2_leg1;
-        let t27 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - 0.24 * t25;
-        let t28 = rate_1_leg1 * rate_1_leg1;
-        let t29 = 0.24 * c2_leg1;
-        let minus_rate_dot_1_leg1 = t10 * (t27 - t28 * t29);
-        let t44 = 0.24 * t28;
-        let minus_rate_dot_2_leg1 = t10
-            * (c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + t44 + t25 * t29);
-        let t57 = s2_leg1 * t44 - t29 * minus_rate_dot_1_leg1;
-        let t64 = 0.24 * s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t25
-                - parameters[8] * t27)
-            + t29
-                * (parameters[8] * t57
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t25));
-        let t67 = ::overact::math::signed(parameters[9], rate_2_leg1 - rate_1_leg1);
-        let t68 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t64 - t67;
-        let t75 = parameters[6] * t57 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t27 + t67;
-        let t82 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let t85 = 4.166666666666667 / s2_leg2;
-        let g2_vy_leg2 = t82 * t85;
+        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let v2_by_1_y_leg1 = L_1 * c2_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+        let tau_1_leg1 = parameters[2] * rate_1_leg1
+            - parameters[1] * minus_rate_dot_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let minus_moment1_z_leg1 = parameters[0] * minus_rate_dot_1_leg1;
+        let v2_by_1_x_leg1 = L_1 * s2_leg1;
+        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+            + l_1_rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 - parameters[8] * a_on_f1_leg1;
+        let a2_y_leg1 = s2_leg1 * l_1_rate_1_squared_leg1
+            - v2_by_1_y_leg1 * minus_rate_dot_1_leg1;
+        let force2_y_leg1 = parameters[8] * a2_y_leg1
+            - (parameters[6] * minus_rate_dot_2_leg1
+                + parameters[7] * rate_2_squared_leg1);
+        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+        let tau_2_leg1 = ::overact::math::signed(parameters[9], qd_2_leg1);
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            - tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1
+            - parameters[5] * minus_rate_dot_2_leg1 + parameters[7] * a_on_f1_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
+        // --- leg2
+        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let k_leg2 = INV_L_1 / s2_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t95 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let g1_vx_leg2 = t95 * t85;
-        let t100 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let minus_g1_vy_leg2 = t100 * t85;
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t104 = rate_1_leg2 * rate_1_leg2;
-        let t105 = 0.24 * t104;
-        let t107 = 0.24 * c2_leg2;
-        let t114 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t114 * t85;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
+        let v2_by_1_y_leg2 = L_1 * c2_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t118 = rate_2_leg2 * rate_2_leg2;
-        let t120 = t100 * acceleration[1] - t95 * acceleration[0] - 0.24 * t118;
-        let minus_rate_dot_1_leg2 = t85 * (t120 - t104 * t107);
-        let t125 = s2_leg2 * t105 - t107 * minus_rate_dot_1_leg2;
-        let minus_rate_dot_2_leg2 = t85
-            * (t114 * acceleration[0] - t82 * acceleration[1] + t105 + t118 * t107);
-        let t139 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t140 = parameters[16] * t125 - parameters[15] * minus_rate_dot_2_leg2
-            + parameters[17] * t120 + t139;
-        let t163 = 0.24 * s2_leg2
-            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t118
-                - parameters[18] * t120)
-            + t107
-                * (parameters[18] * t125
-                    - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t118));
-        let t165 = parameters[12] * rate_1_leg2 - parameters[11] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14]
-            - parameters[10] * minus_rate_dot_1_leg2 + t163 - t139;
-        let t173 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let t176 = 4.166666666666667 / s2_leg3;
-        let g2_vy_leg3 = t173 * t176;
-        let t181 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let a2_y_leg2 = s2_leg2 * l_1_rate_1_squared_leg2
+            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let moment2_z_leg2 = parameters[16] * a2_y_leg2
+            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let tau_1_leg2 = parameters[12] * rate_1_leg2
+            - parameters[11] * minus_rate_dot_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
+        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
+        let v2_by_1_x_leg2 = L_1 * s2_leg2;
+        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
+            - parameters[16] * rate_2_squared_leg2 - parameters[18] * a_on_f1_leg2;
+        let force2_y_leg2 = parameters[18] * a2_y_leg2
+            - (parameters[16] * minus_rate_dot_2_leg2
+                + parameters[17] * rate_2_squared_leg2);
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        // --- leg3
+        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let k_leg3 = INV_L_1 / s2_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t192 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let g1_vx_leg3 = t192 * t176;
-        let t197 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let minus_g1_vy_leg3 = t197 * t176;
+        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t201 = rate_1_leg3 * rate_1_leg3;
-        let t202 = 0.24 * t201;
-        let minus_g2_vx_leg3 = t181 * t176;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - l_1_rate_1_squared_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t208 = rate_2_leg3 * rate_2_leg3;
-        let t209 = 0.24 * c2_leg3;
-        let rate_dot_2_leg3 = t176
-            * (t173 * acceleration[1] - t181 * acceleration[0] - t202 - t208 * t209);
-        let t219 = t192 * acceleration[0] - t197 * acceleration[1] + 0.24 * t208;
-        let rate_dot_1_leg3 = t176 * (t219 + t201 * t209);
-        let t224 = s2_leg3 * t202 + t209 * rate_dot_1_leg3;
-        let t230 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t231 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t224
-            - parameters[27] * t219 + t230;
-        let t254 = 0.24 * s2_leg3
-            * (parameters[28] * t219
-                - (parameters[26] * t208 + parameters[27] * rate_dot_2_leg3))
-            + t209
-                * (parameters[26] * rate_dot_2_leg3 - parameters[27] * t208
-                    + parameters[28] * t224);
-        let t256 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
-            + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t254 - t230;
-        let t259 = g1_vy_leg1 * t68 - minus_g2_vy_leg1 * t75 + g2_vy_leg2 * t140
-            - minus_g1_vy_leg2 * t165 + g2_vy_leg3 * t231 - minus_g1_vy_leg3 * t256;
-        let t272 = g2_vx_leg1 * t75 - minus_g1_vx_leg1 * t68 + g1_vx_leg2 * t165
-            - minus_g2_vx_leg2 * t140 + g1_vx_leg3 * t256 - minus_g2_vx_leg3 * t231;
-        let t274 = t272 + acceleration[0] * parameters[30];
-        let t279 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let v2_by_1_y_leg3 = L_1 * c2_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let a2_y_leg3 = s2_leg3 * l_1_rate_1_squared_leg3
+            + v2_by_1_y_leg3 * rate_dot_1_leg3;
+        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
+            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let moment1_z_leg3 = parameters[20] * rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
+        let v2_by_1_x_leg3 = L_1 * s2_leg3;
+        let force2_x_leg3 = parameters[28] * a_on_f1_leg3
+            - (parameters[26] * rate_2_squared_leg3 + parameters[27] * rate_dot_2_leg3);
+        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
+            - parameters[27] * rate_2_squared_leg3 + parameters[28] * a2_y_leg3;
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let force_y_platform = acceleration[1] * parameters[30];
+        let t2 = g2_vx_leg1 * force_on_u2_leg1 - minus_g1_vx_leg1 * force_on_u1_leg1
+            + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let force_x_platform = acceleration[0] * parameters[30];
+        let t3 = t2 + force_x_platform;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t284 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t284, 26.146658848631333, "actuators")?;
-        let t285 = 1.0 / t284;
-        let t286 = t279 * t285;
-        let t295 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t279 * t286;
-        ::overact::guard::platform(t295, 26.146658848631322, "actuators")?;
-        let t296 = (t259 + acceleration[1] * parameters[30] + t274 * t286) / t295;
-        let t300 = t274 * t285 + t286 * t296;
+        ::overact::guard::platform(s_1_1, 26.146658848631333, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848631322, "actuators")?;
+        let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
+        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t296 - minus_g1_vx_leg1 * t300,
-            g1_vx_leg2 * t300 - minus_g1_vy_leg2 * t296,
-            g1_vx_leg3 * t300 - minus_g1_vy_leg3 * t296,
+            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
+            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3381,195 +4352,255 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[1] - 0.35;
-        let t4 = t0 * t0 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * t0 - pose[0] * t7;
-        let t10 = t0 - t9;
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let g1_vy_leg1 = t10 * t12;
-        let t15 = pose[0] - 0.3031088913245535;
-        let t17 = pose[1] + 0.175;
-        let t19 = 0.5 * t15 + 0.8660254037844386 * t17;
-        let t20 = pose[0] - t19;
-        let t24 = 0.5 * t17;
-        let t25 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t24;
-        let t28 = t25 * t25 + t20 * t20;
-        let t30 = 0.0576 / t28 - 0.25;
-        ::overact::guard::reach(t30, "leg2")?;
-        let t31 = ::overact::math::sqrt(t30);
-        let t33 = 0.5 * t20 + t25 * t31;
-        let t34 = t20 - t33;
-        let t38 = t20 * t31 - 0.5 * t25;
-        let t39 = t25 + t38;
-        let t41 = 3.608439182435161 * t34 - 2.0833333333333335 * t39;
-        let t42 = t28 * t31;
-        ::overact::guard::leg(t42, 0.05748423696979895, "leg2")?;
-        let t43 = 0.24 / t42;
-        let minus_g1_vy_leg2 = t41 * t43;
-        let t48 = 0.8660254037844386 * t15 - t24;
-        let t52 = t48 * t48 + t19 * t19;
-        let t54 = 0.0576 / t52 - 0.25;
-        ::overact::guard::reach(t54, "leg3")?;
-        let t55 = ::overact::math::sqrt(t54);
-        let t57 = 0.5 * t48 + t19 * t55;
-        let t58 = t48 - t57;
-        let t62 = 0.5 * t19 - t48 * t55;
-        let t63 = t19 - t62;
-        let t65 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let t66 = t52 * t55;
-        ::overact::guard::leg(t66, 0.05748423696979895, "leg3")?;
-        let t67 = 0.24 / t66;
-        let minus_g1_vy_leg3 = t65 * t67;
-        let t73 = 0.5 * pose[0] + t0 * t7;
-        let t74 = t73 - pose[0];
-        let minus_g1_vx_leg1 = t74 * t12;
-        let t79 = 3.608439182435161 * t39 + 2.0833333333333335 * t34;
-        let g1_vx_leg2 = t79 * t43;
-        let t85 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
-        let g1_vx_leg3 = t85 * t67;
-        let t88 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t93 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
-        let t94 = 1.0 / t93;
-        let t95 = t88 * t94;
-        let t97 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t88 * t95;
-        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
-        let t98 = 1.0 / t97;
-        let t108 = g1_vx_leg2 * actuator_velocities[1]
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t111 = t98
+        let vy = inv_pivot_2
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t108 * t95);
-        let t115 = t108 * t94 + t95 * t111;
-        let rate_1_leg1 = g1_vy_leg1 * t111 - minus_g1_vx_leg1 * t115;
-        let t121 = 3.608439182435161 * t33 + 2.0833333333333335 * t38;
-        let g2_vy_leg2 = t121 * t43;
-        let t126 = 2.0833333333333335 * t33 - 3.608439182435161 * t38;
-        let minus_g2_vx_leg2 = t126 * t43;
-        let rate_2_leg2 = g2_vy_leg2 * t111 - minus_g2_vx_leg2 * t115;
-        let t130 = rate_2_leg2 * rate_2_leg2;
-        let t131 = 0.24 * t130;
-        let rate_1_leg2 = g1_vx_leg2 * t115 - minus_g1_vy_leg2 * t111;
-        let t135 = rate_1_leg2 * rate_1_leg2;
-        let t137 = 2.0833333333333335 * (t28 - 0.1152);
-        let t138 = t135 * t137;
-        let rate_dot_1_leg2 = t43 * (t131 + t138);
-        let t141 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t73 * t12;
-        let minus_g2_vy_leg1 = t9 * t12;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t115 + minus_g2_vy_leg1 * t111;
-        let t148 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t149 = 0.0576 * t148;
-        let t150 = rate_1_leg1 * rate_1_leg1;
-        let t151 = t4 - 0.1152;
-        let t152 = 0.5 * t151;
-        let t153 = t150 * t152;
-        let rate_dot_1_leg1 = t12 * (t149 + t153);
-        let t156 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t161 = 2.0833333333333335 * t57 - 3.608439182435161 * t62;
-        let g2_vy_leg3 = t161 * t67;
-        let t166 = 3.608439182435161 * t57 + 2.0833333333333335 * t62;
-        let minus_g2_vx_leg3 = t166 * t67;
-        let rate_2_leg3 = g2_vy_leg3 * t111 - minus_g2_vx_leg3 * t115;
-        let t170 = rate_2_leg3 * rate_2_leg3;
-        let t171 = 0.24 * t170;
-        let rate_1_leg3 = g1_vx_leg3 * t115 - minus_g1_vy_leg3 * t111;
-        let t175 = rate_1_leg3 * rate_1_leg3;
-        let t177 = 2.0833333333333335 * (t52 - 0.1152);
-        let t178 = t175 * t177;
-        let rate_dot_1_leg3 = t67 * (t171 + t178);
-        let t181 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t183 = g1_vx_leg2 * t141 - minus_g1_vx_leg1 * t156 + g1_vx_leg3 * t181;
-        let t192 = t98
-            * (g1_vy_leg1 * t156 - minus_g1_vy_leg2 * t141 - minus_g1_vy_leg3 * t181
-                + t95 * t183);
-        let t194 = t94 * t183 + t95 * t192;
-        let t198 = t74 * t194 - t10 * t192 - t149;
-        let minus_rate_dot_1_leg1 = t12 * (t198 - t153);
-        let t208 = 4.166666666666667 * t11;
-        let minus_rate_dot_2_leg1 = t12
-            * (t73 * t194 + t9 * t192 + 0.0576 * t150 + t148 * t152);
-        let t220 = 4.166666666666667 * t198;
-        let t224 = 2.0833333333333335 * t151;
-        let t227 = t150 * t208 - minus_rate_dot_1_leg1 * t224;
-        let t234 = t208
-            * (parameters[7] * minus_rate_dot_2_leg1 - t148 * parameters[6]
-                - parameters[8] * t220)
-            + t224
-                * (parameters[8] * t227
-                    - (parameters[6] * minus_rate_dot_2_leg1 + t148 * parameters[7]));
-        let t237 = ::overact::math::signed(
-            parameters[9],
-            rate_1_leg1 + minus_rate_2_leg1,
-        );
-        let t238 = rate_1_leg1 * parameters[2] - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t234 + t237;
-        let t245 = parameters[6] * t227 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t220 - t237;
-        let t248 = 4.166666666666667 * t42;
-        let t253 = t41 * t192 - t79 * t194 - t131;
-        let minus_rate_dot_1_leg2 = t43 * (t253 - t138);
-        let t257 = t135 * t248 - t137 * minus_rate_dot_1_leg2;
-        let minus_rate_dot_2_leg2 = t43
-            * (t126 * t194 - t121 * t192 + 0.24 * t135 + t130 * t137);
-        let t272 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t273 = parameters[16] * t257 - parameters[15] * minus_rate_dot_2_leg2
-            + parameters[17] * t253 + t272;
-        let t295 = t248
-            * (parameters[17] * minus_rate_dot_2_leg2 - t130 * parameters[16]
-                - parameters[18] * t253)
-            + t137
-                * (parameters[18] * t257
-                    - (parameters[16] * minus_rate_dot_2_leg2 + t130 * parameters[17]));
-        let t297 = rate_1_leg2 * parameters[12] - parameters[11] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14]
-            - parameters[10] * minus_rate_dot_1_leg2 + t295 - t272;
-        let rate_dot_2_leg3 = t67
-            * (t161 * t192 - t166 * t194 - 0.24 * t175 - t170 * t177);
-        let t310 = 4.166666666666667 * t66;
-        let t315 = t85 * t194 - t65 * t192 + t171;
-        let rate_dot_1_leg3_2 = t67 * (t315 + t178);
-        let t319 = t175 * t310 + t177 * rate_dot_1_leg3_2;
-        let t325 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t326 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t319
-            - parameters[27] * t315 + t325;
-        let t348 = t310
-            * (parameters[28] * t315
-                - (t170 * parameters[26] + parameters[27] * rate_dot_2_leg3))
-            + t177
-                * (parameters[26] * rate_dot_2_leg3 - t170 * parameters[27]
-                    + parameters[28] * t319);
-        let t350 = parameters[20] * rate_dot_1_leg3_2
-            + parameters[21] * rate_dot_1_leg3_2 + rate_1_leg3 * parameters[22]
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t348 - t325;
-        let t353 = g1_vy_leg1 * t238 - minus_g2_vy_leg1 * t245 + g2_vy_leg2 * t273
-            - minus_g1_vy_leg2 * t297 + g2_vy_leg3 * t326 - minus_g1_vy_leg3 * t350;
-        let t366 = g1_vx_leg2 * t297 - minus_g2_vx_leg2 * t273
-            - (minus_g1_vx_leg1 * t238 + minus_g2_vx_leg1 * t245) + g1_vx_leg3 * t350
-            - minus_g2_vx_leg3 * t326;
-        let t368 = t366 + t194 * parameters[30];
-        let t371 = t98 * (t353 + t192 * parameters[30] + t95 * t368);
-        let t375 = t94 * t368 + t95 * t371;
+                - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1);
+        let vx = t1 * inv_pivot_1 + minus_l_2_1 * vy;
+        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+        // --- leg2
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            - bias_rate_dot_1_leg1;
+        // --- leg3
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            - bias_rate_dot_1_leg3;
+        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+        let dvy = inv_pivot_2
+            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
+        let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
+        let tau_1_leg1 = rate_1_leg1 * parameters[2]
+            - parameters[1] * minus_rate_dot_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let minus_moment1_z_leg1 = parameters[0] * minus_rate_dot_1_leg1;
+        // --- leg1
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
+            - rate_2_squared_leg1 * parameters[6] - parameters[8] * minus_a2_x_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
+        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
+            - minus_rate_dot_1_leg1 * v2_by_1_y_leg1;
+        let force2_y_leg1 = parameters[8] * a2_y_leg1
+            - (parameters[6] * minus_rate_dot_2_leg1
+                + rate_2_squared_leg1 * parameters[7]);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            + minus_tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1
+            - parameters[5] * minus_rate_dot_2_leg1 + parameters[7] * minus_a2_x_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+        // --- leg2
+        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+        let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
+            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let moment2_z_leg2 = parameters[16] * a2_y_leg2
+            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let tau_1_leg2 = rate_1_leg2 * parameters[12]
+            - parameters[11] * minus_rate_dot_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
+        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
+        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
+            - rate_2_squared_leg2 * parameters[16] - parameters[18] * a_on_f1_leg2;
+        let force2_y_leg2 = parameters[18] * a2_y_leg2
+            - (parameters[16] * minus_rate_dot_2_leg2
+                + rate_2_squared_leg2 * parameters[17]);
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        // --- leg3
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
+            - minus_bias_a_on_f2_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
+            + v2_by_1_y_leg3 * rate_dot_1_leg3;
+        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
+            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let moment1_z_leg3 = parameters[20] * rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + rate_1_leg3 * parameters[22]
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
+        let force2_x_leg3 = parameters[28] * a_on_f1_leg3
+            - (rate_2_squared_leg3 * parameters[26] + parameters[27] * rate_dot_2_leg3);
+        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
+            - rate_2_squared_leg3 * parameters[27] + parameters[28] * a2_y_leg3;
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let force_y_platform = dvy * parameters[30];
+        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let force_x_platform = dvx * parameters[30];
+        let t5 = t4 + force_x_platform;
+        let t6 = inv_pivot_2 * (t3 + force_y_platform + minus_l_2_1 * t5);
+        let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t371 - minus_g1_vx_leg1 * t375,
-            g1_vx_leg2 * t375 - minus_g1_vy_leg2 * t371,
-            g1_vx_leg3 * t375 - minus_g1_vy_leg3 * t371,
+            g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
+            g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -3588,121 +4619,167 @@ impl ThreeLegPoint {
         pose: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        let t2 = pose[1] + 0.175;
-        let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t3;
-        let t5 = pose[0] - 0.3031088913245535;
-        let t8 = 0.5 * t5 + 0.8660254037844386 * t2;
-        let t9 = pose[0] - t8;
-        let t12 = t4 * t4 + t9 * t9;
-        let t14 = 0.0576 / t12 - 0.25;
-        ::overact::guard::reach(t14, "leg2")?;
-        let t15 = ::overact::math::sqrt(t14);
-        let t18 = t9 * t15 - 0.5 * t4;
-        let t19 = t4 + t18;
-        let t23 = 0.5 * t9 + t4 * t15;
-        let t24 = t9 - t23;
-        let t26 = 3.608439182435161 * t19 + 2.0833333333333335 * t24;
-        let t27 = t12 * t15;
-        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
-        let t28 = 0.24 / t27;
-        let g1_vx_leg2 = t26 * t28;
-        let t33 = 4.166666666666667 * t27;
-        let minus_g2_vx_leg2 = (2.0833333333333335 * t23 - 3.608439182435161 * t18)
-            * t28;
-        let t43 = 2.0833333333333335 * (t12 - 0.1152);
-        let t45 = g1_vx_leg2 * t43;
-        let t50 = g1_vx_leg2 * parameters[11] + g1_vx_leg2 * parameters[10]
-            + t33 * (minus_g2_vx_leg2 * parameters[17] + t26 * parameters[18])
-            - t43 * (minus_g2_vx_leg2 * parameters[16] - parameters[18] * t45);
-        let t60 = pose[1] - 0.35;
-        let t63 = t60 * t60 + pose[0] * pose[0];
-        let t65 = 0.0576 / t63 - 0.25;
-        ::overact::guard::reach(t65, "leg1")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t68 = 0.5 * pose[0] + t60 * t66;
-        let t69 = t68 - pose[0];
-        let t70 = t63 * t66;
-        ::overact::guard::leg(t70, 0.05748423696979895, "leg1")?;
-        let t71 = 1.0 / t70;
-        let minus_g1_vx_leg1 = t69 * t71;
-        let t73 = 4.166666666666667 * t70;
-        let minus_g2_vx_leg1 = t68 * t71;
-        let s12_leg1 = 4.166666666666667 * t69;
-        let t81 = 2.0833333333333335 * (t63 - 0.1152);
-        let t83 = minus_g1_vx_leg1 * t81;
-        let t91 = t73 * (minus_g2_vx_leg1 * parameters[7] - s12_leg1 * parameters[8])
-            - t81 * (minus_g2_vx_leg1 * parameters[6] + parameters[8] * t83)
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg2
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let g1_vx_v2_by_1_y_leg2 = g1_vx_leg2 * v2_by_1_y_leg2;
+        let t1 = g1_vx_leg2 * parameters[11] + g1_vx_leg2 * parameters[10]
+            + v2_by_1_x_leg2
+                * (minus_g2_vx_leg2 * parameters[17] + minus_fk1_x_leg2 * parameters[18])
+            - v2_by_1_y_leg2
+                * (minus_g2_vx_leg2 * parameters[16]
+                    - parameters[18] * g1_vx_v2_by_1_y_leg2);
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let s12_leg1 = INV_L_1 * l2_y_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let minus_g1_vx_v2_by_1_y_leg1 = minus_g1_vx_leg1 * v2_by_1_y_leg1;
+        let t2 = v2_by_1_x_leg1
+            * (minus_g2_vx_leg1 * parameters[7] - s12_leg1 * parameters[8])
+            - v2_by_1_y_leg1
+                * (minus_g2_vx_leg1 * parameters[6]
+                    + parameters[8] * minus_g1_vx_v2_by_1_y_leg1)
             - (minus_g1_vx_leg1 * parameters[1] + minus_g1_vx_leg1 * parameters[0]);
-        let t100 = g1_vx_leg2 * t50
+        let t3 = g1_vx_leg2 * t1
             + minus_g2_vx_leg2
-                * (t26 * parameters[17] + minus_g2_vx_leg2 * parameters[15]
-                    - parameters[16] * t45)
-            - (minus_g1_vx_leg1 * t91
+                * (minus_fk1_x_leg2 * parameters[17] + minus_g2_vx_leg2 * parameters[15]
+                    - parameters[16] * g1_vx_v2_by_1_y_leg2)
+            - (minus_g1_vx_leg1 * t2
                 + minus_g2_vx_leg1
                     * (s12_leg1 * parameters[7]
-                        - (minus_g2_vx_leg1 * parameters[5] + parameters[6] * t83)));
-        let t102 = 0.8660254037844386 * t5 - t3;
-        let t106 = t102 * t102 + t8 * t8;
-        let t108 = 0.0576 / t106 - 0.25;
-        ::overact::guard::reach(t108, "leg3")?;
-        let t109 = ::overact::math::sqrt(t108);
-        let t111 = 0.5 * t102 + t8 * t109;
-        let t112 = t102 - t111;
-        let t116 = 0.5 * t8 - t102 * t109;
-        let t117 = t8 - t116;
-        let t119 = 3.608439182435161 * t112 + 2.0833333333333335 * t117;
-        let t120 = t106 * t109;
-        ::overact::guard::leg(t120, 0.05748423696979895, "leg3")?;
-        let t121 = 0.24 / t120;
-        let g1_vx_leg3 = t119 * t121;
-        let t126 = 4.166666666666667 * t120;
-        let minus_g2_vx_leg3 = (3.608439182435161 * t111 + 2.0833333333333335 * t116)
-            * t121;
-        let t136 = 2.0833333333333335 * (t106 - 0.1152);
-        let t137 = g1_vx_leg3 * t136;
-        let t143 = g1_vx_leg3 * parameters[20] + g1_vx_leg3 * parameters[21]
-            + t126 * (t119 * parameters[28] + minus_g2_vx_leg3 * parameters[27])
-            + t136 * (parameters[28] * t137 - minus_g2_vx_leg3 * parameters[26]);
-        let t153 = t100 + g1_vx_leg3 * t143
+                        - (minus_g2_vx_leg1 * parameters[5]
+                            + parameters[6] * minus_g1_vx_v2_by_1_y_leg1)));
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let g1_vx_v2_by_1_y_leg3 = g1_vx_leg3 * v2_by_1_y_leg3;
+        let t4 = g1_vx_leg3 * parameters[20] + g1_vx_leg3 * parameters[21]
+            + v2_by_1_x_leg3
+                * (fk1_x_leg3 * parameters[28] + minus_g2_vx_leg3 * parameters[27])
+            + v2_by_1_y_leg3
+                * (parameters[28] * g1_vx_v2_by_1_y_leg3
+                    - minus_g2_vx_leg3 * parameters[26]);
+        let t5 = t3 + g1_vx_leg3 * t4
             - minus_g2_vx_leg3
-                * (parameters[26] * t137 - minus_g2_vx_leg3 * parameters[25]
-                    - t119 * parameters[27]) + parameters[30];
-        let g2_vy_leg3 = (2.0833333333333335 * t111 - 3.608439182435161 * t116) * t121;
-        let t161 = 2.0833333333333335 * t112 - 3.608439182435161 * t117;
-        let minus_g1_vy_leg3 = t161 * t121;
-        let t163 = t136 * minus_g1_vy_leg3;
-        let t175 = t136 * (g2_vy_leg3 * parameters[26] - parameters[28] * t163)
-            - t126 * (t161 * parameters[28] + g2_vy_leg3 * parameters[27])
+                * (parameters[26] * g1_vx_v2_by_1_y_leg3
+                    - minus_g2_vx_leg3 * parameters[25] - fk1_x_leg3 * parameters[27])
+            + parameters[30];
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let minus_v2_by_1_y_g1_vy_leg3 = v2_by_1_y_leg3 * minus_g1_vy_leg3;
+        let t6 = v2_by_1_y_leg3
+            * (g2_vy_leg3 * parameters[26] - parameters[28] * minus_v2_by_1_y_g1_vy_leg3)
+            - v2_by_1_x_leg3
+                * (minus_fk1_y_leg3 * parameters[28] + g2_vy_leg3 * parameters[27])
             - (minus_g1_vy_leg3 * parameters[20] + minus_g1_vy_leg3 * parameters[21]);
-        let t181 = g2_vy_leg3 * parameters[25] - parameters[26] * t163
-            + t161 * parameters[27];
-        let t186 = 3.608439182435161 * t24 - 2.0833333333333335 * t19;
-        let minus_g1_vy_leg2 = t186 * t28;
-        let g2_vy_leg2 = (3.608439182435161 * t23 + 2.0833333333333335 * t18) * t28;
-        let t199 = t43 * minus_g1_vy_leg2;
-        let t205 = minus_g1_vy_leg2 * parameters[11] + minus_g1_vy_leg2 * parameters[10]
-            + t33 * (g2_vy_leg2 * parameters[17] + t186 * parameters[18])
-            + t43 * (parameters[18] * t199 - g2_vy_leg2 * parameters[16]);
-        let t211 = t186 * parameters[17]
-            - (parameters[16] * t199 - g2_vy_leg2 * parameters[15]);
-        let t216 = 0.5 * t60 - pose[0] * t66;
-        let t217 = t60 - t216;
-        let g1_vy_leg1 = t217 * t71;
-        let minus_g2_vy_leg1 = t216 * t71;
-        let c12_leg1 = 4.166666666666667 * t217;
-        let t229 = t81 * g1_vy_leg1;
-        let t234 = g1_vy_leg1 * parameters[1] + g1_vy_leg1 * parameters[0]
-            + t73 * (minus_g2_vy_leg1 * parameters[7] + c12_leg1 * parameters[8])
-            - t81 * (minus_g2_vy_leg1 * parameters[6] - parameters[8] * t229);
-        let t240 = c12_leg1 * parameters[7] + minus_g2_vy_leg1 * parameters[5]
-            - parameters[6] * t229;
-        let t244 = g1_vx_leg3 * t175 - minus_g2_vx_leg3 * t181
-            - (g1_vx_leg2 * t205 + minus_g2_vx_leg2 * t211 + minus_g1_vx_leg1 * t234
-                - minus_g2_vx_leg1 * t240);
-        let t255 = g1_vy_leg1 * t234 + minus_g2_vy_leg1 * t240 + g2_vy_leg2 * t211
-            + minus_g1_vy_leg2 * t205 + g2_vy_leg3 * t181 - minus_g1_vy_leg3 * t175;
-        ::core::result::Result::Ok([[t153, t244], [t244, t255 + parameters[30]]])
+        let t7 = g2_vy_leg3 * parameters[25]
+            - parameters[26] * minus_v2_by_1_y_g1_vy_leg3
+            + minus_fk1_y_leg3 * parameters[27];
+        // --- leg2
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let minus_v2_by_1_y_g1_vy_leg2 = v2_by_1_y_leg2 * minus_g1_vy_leg2;
+        let t8 = minus_g1_vy_leg2 * parameters[11] + minus_g1_vy_leg2 * parameters[10]
+            + v2_by_1_x_leg2
+                * (g2_vy_leg2 * parameters[17] + fk1_y_leg2 * parameters[18])
+            + v2_by_1_y_leg2
+                * (parameters[18] * minus_v2_by_1_y_g1_vy_leg2
+                    - g2_vy_leg2 * parameters[16]);
+        let t9 = fk1_y_leg2 * parameters[17]
+            - (parameters[16] * minus_v2_by_1_y_g1_vy_leg2
+                - g2_vy_leg2 * parameters[15]);
+        // --- leg1
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let c12_leg1 = INV_L_1 * l2_x_leg1;
+        let v2_by_1_y_g1_vy_leg1 = v2_by_1_y_leg1 * g1_vy_leg1;
+        let t10 = g1_vy_leg1 * parameters[1] + g1_vy_leg1 * parameters[0]
+            + v2_by_1_x_leg1
+                * (minus_g2_vy_leg1 * parameters[7] + c12_leg1 * parameters[8])
+            - v2_by_1_y_leg1
+                * (minus_g2_vy_leg1 * parameters[6]
+                    - parameters[8] * v2_by_1_y_g1_vy_leg1);
+        let t11 = c12_leg1 * parameters[7] + minus_g2_vy_leg1 * parameters[5]
+            - parameters[6] * v2_by_1_y_g1_vy_leg1;
+        let t12 = g1_vx_leg3 * t6 - minus_g2_vx_leg3 * t7
+            - (g1_vx_leg2 * t8 + minus_g2_vx_leg2 * t9 + minus_g1_vx_leg1 * t10
+                - minus_g2_vx_leg1 * t11);
+        let t13 = g1_vy_leg1 * t10 + minus_g2_vy_leg1 * t11 + g2_vy_leg2 * t9
+            + minus_g1_vy_leg2 * t8 + g2_vy_leg3 * t7 - minus_g1_vy_leg3 * t6;
+        ::core::result::Result::Ok([[t5, t12], [t12, t13 + parameters[30]]])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -3722,134 +4799,193 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        let t2 = pose[1] + 0.175;
-        let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t3;
-        let t5 = pose[0] - 0.3031088913245535;
-        let t8 = 0.5 * t5 + 0.8660254037844386 * t2;
-        let t9 = pose[0] - t8;
-        let t12 = t4 * t4 + t9 * t9;
-        let t14 = 0.0576 / t12 - 0.25;
-        ::overact::guard::reach(t14, "leg2")?;
-        let t15 = ::overact::math::sqrt(t14);
-        let t18 = t9 * t15 - 0.5 * t4;
-        let t19 = t4 + t18;
-        let t23 = 0.5 * t9 + t4 * t15;
-        let t24 = t9 - t23;
-        let t27 = t12 * t15;
-        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
-        let t28 = 0.24 / t27;
-        let g1_vx_leg2 = (3.608439182435161 * t19 + 2.0833333333333335 * t24) * t28;
-        let g2_vy_leg2 = (3.608439182435161 * t23 + 2.0833333333333335 * t18) * t28;
-        let minus_g2_vx_leg2 = (2.0833333333333335 * t23 - 3.608439182435161 * t18)
-            * t28;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg2
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t41 = rate_2_leg2 * rate_2_leg2;
-        let t42 = 0.24 * t41;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t24 - 2.0833333333333335 * t19)
-            * t28;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t50 = rate_1_leg2 * rate_1_leg2;
-        let t52 = 2.0833333333333335 * (t12 - 0.1152);
-        let rate_dot_1_leg2 = t28 * (t42 + t50 * t52);
-        let minus_rate_dot_2_leg2 = t28 * (0.24 * t50 + t41 * t52);
-        let t77 = parameters[16] * minus_rate_dot_2_leg2;
-        let t78 = parameters[17] * t41;
-        let t82 = 4.166666666666667 * t27
-            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t41
-                + parameters[18] * t42)
-            + t52 * (parameters[18] * (0.24 * minus_rate_dot_2_leg2) - (t77 + t78));
-        let t85 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t86 = parameters[10] * rate_dot_1_leg2 + parameters[11] * rate_dot_1_leg2
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let moment1_z_leg2 = parameters[10] * bias_rate_dot_1_leg2;
+        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
             + parameters[12] * rate_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14] + t82
-            - t85;
-        let t93 = 0.24 * t77 - parameters[15] * minus_rate_dot_2_leg2 - 0.24 * t78 + t85;
-        let t97 = pose[1] - 0.35;
-        let t100 = t97 * t97 + pose[0] * pose[0];
-        let t102 = 0.0576 / t100 - 0.25;
-        ::overact::guard::reach(t102, "leg1")?;
-        let t103 = ::overact::math::sqrt(t102);
-        let t105 = 0.5 * pose[0] + t97 * t103;
-        let t107 = t100 * t103;
-        ::overact::guard::leg(t107, 0.05748423696979895, "leg1")?;
-        let t108 = 1.0 / t107;
-        let minus_g1_vx_leg1 = (t105 - pose[0]) * t108;
-        let minus_g2_vx_leg1 = t105 * t108;
-        let t114 = 0.5 * t97 - pose[0] * t103;
-        let minus_g2_vy_leg1 = t114 * t108;
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
+        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let minus_bias_rate_dot_2_leg2 = k_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
+            - parameters[16] * rate_2_squared_leg2
+            + parameters[18] * minus_bias_a_on_f1_leg2;
+        let bias_a2_y_leg2 = L_1 * minus_bias_rate_dot_2_leg2;
+        let t1 = parameters[16] * minus_bias_rate_dot_2_leg2;
+        let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
+        let force2_y_leg2 = parameters[18] * bias_a2_y_leg2
+            - (t1 + my_2_leg2_rate_2_squared_leg2);
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
+            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        let moment2_z_leg2 = L_1 * t1 - parameters[15] * minus_bias_rate_dot_2_leg2
+            - L_1 * my_2_leg2_rate_2_squared_leg2;
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t118 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let g1_vy_leg1 = (t97 - t114) * t108;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t125 = rate_1_leg1 * rate_1_leg1;
-        let t126 = t100 - 0.1152;
-        let t127 = 0.5 * t126;
-        let rate_dot_1_leg1 = t108 * (0.0576 * t118 + t125 * t127);
-        let minus_rate_dot_2_leg1 = t108 * (0.0576 * t125 + t118 * t127);
-        let t154 = parameters[6] * minus_rate_dot_2_leg1;
-        let t155 = parameters[7] * t118;
-        let t159 = 4.166666666666667 * t107
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t118
-                + parameters[8] * (0.24 * t118))
-            + 2.0833333333333335 * t126
-                * (parameters[8] * (0.24 * minus_rate_dot_2_leg1) - (t154 + t155));
-        let t162 = ::overact::math::signed(
-            parameters[9],
-            rate_1_leg1 + minus_rate_2_leg1,
-        );
-        let t163 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1
+            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+        let moment1_z_leg1 = parameters[0] * bias_rate_dot_1_leg1;
+        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t159
-            + t162;
-        let t170 = 0.24 * t154 - parameters[5] * minus_rate_dot_2_leg1 - 0.24 * t155
-            - t162;
-        let t175 = 0.8660254037844386 * t5 - t3;
-        let t179 = t175 * t175 + t8 * t8;
-        let t181 = 0.0576 / t179 - 0.25;
-        ::overact::guard::reach(t181, "leg3")?;
-        let t182 = ::overact::math::sqrt(t181);
-        let t184 = 0.5 * t175 + t8 * t182;
-        let t185 = t175 - t184;
-        let t189 = 0.5 * t8 - t175 * t182;
-        let t190 = t8 - t189;
-        let t193 = t179 * t182;
-        ::overact::guard::leg(t193, 0.05748423696979895, "leg3")?;
-        let t194 = 0.24 / t193;
-        let g1_vx_leg3 = (3.608439182435161 * t185 + 2.0833333333333335 * t190) * t194;
-        let g2_vy_leg3 = (2.0833333333333335 * t184 - 3.608439182435161 * t189) * t194;
-        let minus_g2_vx_leg3 = (3.608439182435161 * t184 + 2.0833333333333335 * t189)
-            * t194;
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let minus_bias_rate_dot_2_leg1 = k_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let bias_a2_x_leg1 = L_1 * rate_2_squared_leg1;
+        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 + parameters[8] * bias_a2_x_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
+        let bias_a2_y_leg1 = L_1 * minus_bias_rate_dot_2_leg1;
+        let t2 = parameters[6] * minus_bias_rate_dot_2_leg1;
+        let my_2_leg1_rate_2_squared_leg1 = parameters[7] * rate_2_squared_leg1;
+        let force2_y_leg1 = parameters[8] * bias_a2_y_leg1
+            - (t2 + my_2_leg1_rate_2_squared_leg1);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            + minus_tau_2_leg1;
+        let moment2_z_leg1 = L_1 * t2 - parameters[5] * minus_bias_rate_dot_2_leg1
+            - L_1 * my_2_leg1_rate_2_squared_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t207 = rate_2_leg3 * rate_2_leg3;
-        let t208 = 0.24 * t207;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t185 - 3.608439182435161 * t190)
-            * t194;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t216 = rate_1_leg3 * rate_1_leg3;
-        let t218 = 2.0833333333333335 * (t179 - 0.1152);
-        let rate_dot_1_leg3 = t194 * (t208 + t216 * t218);
-        let minus_rate_dot_2_leg3 = t194 * (0.24 * t216 + t207 * t218);
-        let t243 = parameters[26] * minus_rate_dot_2_leg3;
-        let t244 = parameters[27] * t207;
-        let t248 = 4.166666666666667 * t193
-            * (parameters[27] * minus_rate_dot_2_leg3 - parameters[26] * t207
-                + parameters[28] * t208)
-            + t218 * (parameters[28] * (0.24 * minus_rate_dot_2_leg3) - (t243 + t244));
-        let t251 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t252 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let moment1_z_leg3 = parameters[20] * bias_rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
             + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t248 - t251;
-        let t259 = 0.24 * t243 - parameters[25] * minus_rate_dot_2_leg3 - 0.24 * t244
-            + t251;
-        let t262 = g1_vx_leg2 * t86 - minus_g2_vx_leg2 * t93
-            - (minus_g1_vx_leg1 * t163 + minus_g2_vx_leg1 * t170) + g1_vx_leg3 * t252
-            - minus_g2_vx_leg3 * t259;
-        let t273 = g1_vy_leg1 * t163 - minus_g2_vy_leg1 * t170 + g2_vy_leg2 * t93
-            - minus_g1_vy_leg2 * t86 + g2_vy_leg3 * t259 - minus_g1_vy_leg3 * t252;
-        ::core::result::Result::Ok([t262, t273])
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
+        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let minus_bias_rate_dot_2_leg3 = k_leg3
+            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
+            - parameters[26] * rate_2_squared_leg3 + parameters[28] * bias_a_on_f1_leg3;
+        let bias_a2_y_leg3 = L_1 * minus_bias_rate_dot_2_leg3;
+        let t3 = parameters[26] * minus_bias_rate_dot_2_leg3;
+        let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
+        let force2_y_leg3 = parameters[28] * bias_a2_y_leg3
+            - (t3 + my_2_leg3_rate_2_squared_leg3);
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let moment2_z_leg3 = L_1 * t3 - parameters[25] * minus_bias_rate_dot_2_leg3
+            - L_1 * my_2_leg3_rate_2_squared_leg3;
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let t5 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        ::core::result::Result::Ok([t4, t5])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
@@ -3873,178 +5009,233 @@ impl ThreeLegPoint {
         parameters: &[::core::primitive::f64; 31],
         preload: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        let t0 = pose[1] - 0.35;
-        let t4 = t0 * t0 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * t0 - pose[0] * t7;
-        let t10 = t0 - t9;
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let g1_vy_leg1 = t10 * t12;
-        let t15 = pose[0] - 0.3031088913245535;
-        let t17 = pose[1] + 0.175;
-        let t19 = 0.5 * t15 + 0.8660254037844386 * t17;
-        let t20 = pose[0] - t19;
-        let t24 = 0.5 * t17;
-        let t25 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t24;
-        let t28 = t25 * t25 + t20 * t20;
-        let t30 = 0.0576 / t28 - 0.25;
-        ::overact::guard::reach(t30, "leg2")?;
-        let t31 = ::overact::math::sqrt(t30);
-        let t33 = 0.5 * t20 + t25 * t31;
-        let t34 = t20 - t33;
-        let t38 = t20 * t31 - 0.5 * t25;
-        let t39 = t25 + t38;
-        let t41 = 3.608439182435161 * t34 - 2.0833333333333335 * t39;
-        let t42 = t28 * t31;
-        ::overact::guard::leg(t42, 0.05748423696979895, "leg2")?;
-        let t43 = 0.24 / t42;
-        let minus_g1_vy_leg2 = t41 * t43;
-        let t48 = 0.8660254037844386 * t15 - t24;
-        let t52 = t48 * t48 + t19 * t19;
-        let t54 = 0.0576 / t52 - 0.25;
-        ::overact::guard::reach(t54, "leg3")?;
-        let t55 = ::overact::math::sqrt(t54);
-        let t57 = 0.5 * t48 + t19 * t55;
-        let t58 = t48 - t57;
-        let t62 = 0.5 * t19 - t48 * t55;
-        let t63 = t19 - t62;
-        let t65 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let t66 = t52 * t55;
-        ::overact::guard::leg(t66, 0.05748423696979895, "leg3")?;
-        let t67 = 0.24 / t66;
-        let minus_g1_vy_leg3 = t65 * t67;
-        let t73 = 0.5 * pose[0] + t0 * t7;
-        let t74 = t73 - pose[0];
-        let minus_g1_vx_leg1 = t74 * t12;
-        let t79 = 3.608439182435161 * t39 + 2.0833333333333335 * t34;
-        let g1_vx_leg2 = t79 * t43;
-        let t85 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
-        let g1_vx_leg3 = t85 * t67;
-        let t88 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t93 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
-        let t94 = 1.0 / t93;
-        let t95 = t88 * t94;
-        let t97 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t88 * t95;
-        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
-        let t98 = 1.0 / t97;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        // --- leg1
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = t73 * t12;
-        let minus_g2_vy_leg1 = t9 * t12;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t111 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t113 = t74 * acceleration[0] - t10 * acceleration[1] - 0.0576 * t111;
-        let t114 = rate_1_leg1 * rate_1_leg1;
-        let t115 = t4 - 0.1152;
-        let t116 = 0.5 * t115;
-        let minus_rate_dot_1_leg1 = t12 * (t113 - t114 * t116);
-        let t127 = 4.166666666666667 * t11;
-        let minus_rate_dot_2_leg1 = t12
-            * (t73 * acceleration[0] + t9 * acceleration[1] + 0.0576 * t114
-                + t111 * t116);
-        let t139 = 4.166666666666667 * t113;
-        let t143 = 2.0833333333333335 * t115;
-        let t146 = t114 * t127 - minus_rate_dot_1_leg1 * t143;
-        let t153 = t127
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t111
-                - parameters[8] * t139)
-            + t143
-                * (parameters[8] * t146
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t111));
-        let t156 = ::overact::math::signed(
-            parameters[9],
-            rate_1_leg1 + minus_rate_2_leg1,
-        );
-        let t157 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t153 + t156;
-        let t164 = parameters[6] * t146 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t139 - t156;
-        let t169 = 3.608439182435161 * t33 + 2.0833333333333335 * t38;
-        let g2_vy_leg2 = t169 * t43;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+        let tau_1_leg1 = parameters[2] * rate_1_leg1
+            - parameters[1] * minus_rate_dot_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let minus_moment1_z_leg1 = parameters[0] * minus_rate_dot_1_leg1;
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 - parameters[8] * minus_a2_x_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
+        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
+            - minus_rate_dot_1_leg1 * v2_by_1_y_leg1;
+        let force2_y_leg1 = parameters[8] * a2_y_leg1
+            - (parameters[6] * minus_rate_dot_2_leg1
+                + parameters[7] * rate_2_squared_leg1);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            + minus_tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1
+            - parameters[5] * minus_rate_dot_2_leg1 + parameters[7] * minus_a2_x_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+        // --- leg2
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t174 = rate_1_leg2 * rate_1_leg2;
-        let t175 = 4.166666666666667 * t42;
-        let t178 = 2.0833333333333335 * (t28 - 0.1152);
-        let t185 = 2.0833333333333335 * t33 - 3.608439182435161 * t38;
-        let minus_g2_vx_leg2 = t185 * t43;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t189 = rate_2_leg2 * rate_2_leg2;
-        let t191 = t41 * acceleration[1] - t79 * acceleration[0] - 0.24 * t189;
-        let minus_rate_dot_1_leg2 = t43 * (t191 - t174 * t178);
-        let t196 = t174 * t175 - t178 * minus_rate_dot_1_leg2;
-        let minus_rate_dot_2_leg2 = t43
-            * (t185 * acceleration[0] - t169 * acceleration[1] + 0.24 * t174
-                + t189 * t178);
-        let t211 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t212 = parameters[16] * t196 - parameters[15] * minus_rate_dot_2_leg2
-            + parameters[17] * t191 + t211;
-        let t234 = t175
-            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t189
-                - parameters[18] * t191)
-            + t178
-                * (parameters[18] * t196
-                    - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t189));
-        let t236 = parameters[12] * rate_1_leg2 - parameters[11] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14]
-            - parameters[10] * minus_rate_dot_1_leg2 + t234 - t211;
-        let t242 = 2.0833333333333335 * t57 - 3.608439182435161 * t62;
-        let g2_vy_leg3 = t242 * t67;
-        let t247 = 3.608439182435161 * t57 + 2.0833333333333335 * t62;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
+            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let moment2_z_leg2 = parameters[16] * a2_y_leg2
+            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let tau_1_leg2 = parameters[12] * rate_1_leg2
+            - parameters[11] * minus_rate_dot_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
+        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
+        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
+            - parameters[16] * rate_2_squared_leg2 - parameters[18] * a_on_f1_leg2;
+        let force2_y_leg2 = parameters[18] * a2_y_leg2
+            - (parameters[16] * minus_rate_dot_2_leg2
+                + parameters[17] * rate_2_squared_leg2);
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        // --- leg3
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t253 = rate_1_leg3 * rate_1_leg3;
-        let minus_g2_vx_leg3 = t247 * t67;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t260 = rate_2_leg3 * rate_2_leg3;
-        let t262 = 2.0833333333333335 * (t52 - 0.1152);
-        let rate_dot_2_leg3 = t67
-            * (t242 * acceleration[1] - t247 * acceleration[0] - 0.24 * t253
-                - t260 * t262);
-        let t267 = 4.166666666666667 * t66;
-        let t273 = t85 * acceleration[0] - t65 * acceleration[1] + 0.24 * t260;
-        let rate_dot_1_leg3 = t67 * (t273 + t253 * t262);
-        let t278 = t253 * t267 + t262 * rate_dot_1_leg3;
-        let t284 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t285 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t278
-            - parameters[27] * t273 + t284;
-        let t307 = t267
-            * (parameters[28] * t273
-                - (parameters[26] * t260 + parameters[27] * rate_dot_2_leg3))
-            + t262
-                * (parameters[26] * rate_dot_2_leg3 - parameters[27] * t260
-                    + parameters[28] * t278);
-        let t309 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
-            + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t307 - t284;
-        let t312 = g1_vy_leg1 * t157 - minus_g2_vy_leg1 * t164 + g2_vy_leg2 * t212
-            - minus_g1_vy_leg2 * t236 + g2_vy_leg3 * t285 - minus_g1_vy_leg3 * t309;
-        let t325 = g1_vx_leg2 * t236 - minus_g2_vx_leg2 * t212
-            - (minus_g1_vx_leg1 * t157 + minus_g2_vx_leg1 * t164) + g1_vx_leg3 * t309
-            - minus_g2_vx_leg3 * t285;
-        let t327 = t325 + acceleration[0] * parameters[30];
-        let t330 = t98 * (t312 + acceleration[1] * parameters[30] + t327 * t95);
-        let t334 = t327 * t94 + t95 * t330;
-        let t339 = t98 * (g1_vx_leg3 * t95 - minus_g1_vy_leg3);
-        let t343 = g1_vx_leg3 * t94 + t95 * t339;
-        let t349 = 1.0 - (g1_vx_leg3 * t343 - minus_g1_vy_leg3 * t339);
-        let t351 = 1.0 / ::overact::math::sqrt(t349);
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
+            + v2_by_1_y_leg3 * rate_dot_1_leg3;
+        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
+            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let moment1_z_leg3 = parameters[20] * rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
+        let force2_x_leg3 = parameters[28] * a_on_f1_leg3
+            - (parameters[26] * rate_2_squared_leg3 + parameters[27] * rate_dot_2_leg3);
+        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
+            - parameters[27] * rate_2_squared_leg3 + parameters[28] * a2_y_leg3;
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let force_y_platform = acceleration[1] * parameters[30];
+        let t2 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let force_x_platform = acceleration[0] * parameters[30];
+        let t3 = t2 + force_x_platform;
+        let t4 = inv_pivot_2 * (t1 + force_y_platform + t3 * minus_l_2_1);
+        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
+        let t6 = inv_pivot_2 * (g1_vx_leg3 * minus_l_2_1 - minus_g1_vy_leg3);
+        let t7 = g1_vx_leg3 * inv_pivot_1 + minus_l_2_1 * t6;
+        let minus_normal_1_1 = g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7;
+        let normal_3_1 = 1.0 - (g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6);
+        let norm_1 = ::overact::math::sqrt(normal_3_1);
+        let inv_norm_1 = 1.0 / norm_1;
+        let minus_normal_2_1 = g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t330 - minus_g1_vx_leg1 * t334
-                - preload[0] * ((g1_vy_leg1 * t339 - minus_g1_vx_leg1 * t343) * t351),
-            g1_vx_leg2 * t334 - minus_g1_vy_leg2 * t330
-                - preload[0] * ((g1_vx_leg2 * t343 - minus_g1_vy_leg2 * t339) * t351),
-            g1_vx_leg3 * t334 - minus_g1_vy_leg3 * t330 + preload[0] * (t349 * t351),
+            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5
+                - preload[0] * (minus_normal_1_1 * inv_norm_1),
+            g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4
+                - preload[0] * (minus_normal_2_1 * inv_norm_1),
+            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4
+                + preload[0] * (normal_3_1 * inv_norm_1),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -4063,66 +5254,85 @@ impl ThreeLegPoint {
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        let t0 = pose[1] - 0.35;
-        let t4 = t0 * t0 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t10 = t4 * t7;
-        ::overact::guard::leg(t10, 0.05748423696979895, "leg1")?;
-        let t11 = 1.0 / t10;
-        let g1_vy_leg1 = (0.5 * t0 + pose[0] * t7) * t11;
-        let t14 = pose[0] - 0.3031088913245535;
-        let t16 = pose[1] + 0.175;
-        let t18 = 0.5 * t14 + 0.8660254037844386 * t16;
-        let t19 = pose[0] - t18;
-        let t23 = 0.5 * t16;
-        let t24 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t23;
-        let t27 = t24 * t24 + t19 * t19;
-        let t29 = 0.0576 / t27 - 0.25;
-        ::overact::guard::reach(t29, "leg2")?;
-        let t30 = ::overact::math::sqrt(t29);
-        let t32 = 0.5 * t19 - t24 * t30;
-        let t36 = t19 * t30 + 0.5 * t24;
-        let t39 = t27 * t30;
-        ::overact::guard::leg(t39, 0.05748423696979895, "leg2")?;
-        let t40 = 0.24 / t39;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t32 - 2.0833333333333335 * t36)
-            * t40;
-        let t45 = 0.8660254037844386 * t14 - t23;
-        let t49 = t45 * t45 + t18 * t18;
-        let t51 = 0.0576 / t49 - 0.25;
-        ::overact::guard::reach(t51, "leg3")?;
-        let t52 = ::overact::math::sqrt(t51);
-        let t54 = 0.5 * t45 - t18 * t52;
-        let t58 = 0.5 * t18 + t45 * t52;
-        let t61 = t49 * t52;
-        ::overact::guard::leg(t61, 0.05748423696979895, "leg3")?;
-        let t62 = 0.24 / t61;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t54 - 3.608439182435161 * t58)
-            * t62;
-        let g1_vx_leg2 = (3.608439182435161 * t36 + 2.0833333333333335 * t32) * t40;
-        let minus_g1_vx_leg1 = (t0 * t7 - 0.5 * pose[0]) * t11;
-        let g1_vx_leg3 = (3.608439182435161 * t54 + 2.0833333333333335 * t58) * t62;
-        let t82 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
             + g1_vx_leg3 * torques[2];
-        let t87 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t92 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t92, 26.146658848896372, "actuators")?;
-        let t93 = 1.0 / t92;
-        let t94 = t87 * t93;
-        let t103 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t87 * t94;
-        ::overact::guard::platform(t103, 26.146658848896372, "actuators")?;
-        let t104 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] + t82 * t94) / t103;
-        let t108 = t82 * t93 + t94 * t104;
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            - minus_g1_vy_leg3 * torques[2] + t1 * minus_l_2_1) / pivot_2;
+        let t3 = t1 * inv_pivot_1 + minus_l_2_1 * t2;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t104 - minus_g1_vx_leg1 * t108,
-            g1_vx_leg2 * t108 - minus_g1_vy_leg2 * t104,
-            g1_vx_leg3 * t108 - minus_g1_vy_leg3 * t104,
+            g1_vy_leg1 * t2 - minus_g1_vx_leg1 * t3, g1_vx_leg2 * t3 - minus_g1_vy_leg2 * t2,
+            g1_vx_leg3 * t3 - minus_g1_vy_leg3 * t2,
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -4139,64 +5349,87 @@ impl ThreeLegPoint {
     pub fn null_space(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
-        let t0 = pose[1] - 0.35;
-        let t4 = t0 * t0 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t10 = t4 * t7;
-        ::overact::guard::leg(t10, 0.05748423696979895, "leg1")?;
-        let t11 = 1.0 / t10;
-        let g1_vy_leg1 = (0.5 * t0 + pose[0] * t7) * t11;
-        let t13 = pose[0] - 0.3031088913245535;
-        let t15 = pose[1] + 0.175;
-        let t16 = 0.5 * t15;
-        let t17 = 0.8660254037844386 * t13 - t16;
-        let t21 = 0.5 * t13 + 0.8660254037844386 * t15;
-        let t24 = t17 * t17 + t21 * t21;
-        let t26 = 0.0576 / t24 - 0.25;
-        ::overact::guard::reach(t26, "leg3")?;
-        let t27 = ::overact::math::sqrt(t26);
-        let t29 = 0.5 * t17 - t21 * t27;
-        let t33 = 0.5 * t21 + t17 * t27;
-        let t36 = t24 * t27;
-        ::overact::guard::leg(t36, 0.05748423696979895, "leg3")?;
-        let t37 = 0.24 / t36;
-        let g1_vx_leg3 = (3.608439182435161 * t29 + 2.0833333333333335 * t33) * t37;
-        let minus_g1_vx_leg1 = (t0 * t7 - 0.5 * pose[0]) * t11;
-        let t44 = pose[0] - t21;
-        let t47 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t16;
-        let t50 = t47 * t47 + t44 * t44;
-        let t52 = 0.0576 / t50 - 0.25;
-        ::overact::guard::reach(t52, "leg2")?;
-        let t53 = ::overact::math::sqrt(t52);
-        let t56 = t44 * t53 + 0.5 * t47;
-        let t60 = 0.5 * t44 - t47 * t53;
-        let t63 = t50 * t53;
-        ::overact::guard::leg(t63, 0.05748423696979895, "leg2")?;
-        let t64 = 0.24 / t63;
-        let g1_vx_leg2 = (3.608439182435161 * t56 + 2.0833333333333335 * t60) * t64;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t60 - 2.0833333333333335 * t56)
-            * t64;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t29 - 3.608439182435161 * t33)
-            * t37;
-        let t77 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t82 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t82, 26.146658848896372, "actuators")?;
-        let t83 = 1.0 / t82;
-        let t84 = t77 * t83;
-        let t93 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t77 * t84;
-        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
-        let t94 = (g1_vx_leg3 * t84 - minus_g1_vy_leg3) / t93;
-        let t98 = g1_vx_leg3 * t83 + t84 * t94;
-        let t104 = 1.0 - (g1_vx_leg3 * t98 - minus_g1_vy_leg3 * t94);
-        let t106 = 1.0 / ::overact::math::sqrt(t104);
+        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        let t1 = (g1_vx_leg3 * minus_l_2_1 - minus_g1_vy_leg3) / pivot_2;
+        let t2 = g1_vx_leg3 * inv_pivot_1 + minus_l_2_1 * t1;
+        let minus_normal_1_1 = g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2;
+        let normal_3_1 = 1.0 - (g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1);
+        let norm_1 = ::overact::math::sqrt(normal_3_1);
+        let inv_norm_1 = 1.0 / norm_1;
+        let minus_normal_2_1 = g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1;
         ::core::result::Result::Ok([
-            [-((g1_vy_leg1 * t94 - minus_g1_vx_leg1 * t98) * t106)],
-            [-((g1_vx_leg2 * t98 - minus_g1_vy_leg2 * t94) * t106)], [t104 * t106],
+            [-(minus_normal_1_1 * inv_norm_1)], [-(minus_normal_2_1 * inv_norm_1)],
+            [normal_3_1 * inv_norm_1],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.

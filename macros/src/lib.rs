@@ -8,7 +8,7 @@ use overact_codegen::{Effort, Request, Source, compile_with, emission};
 use proc_macro::TokenStream;
 use quote::quote;
 use syn::parse::{Parse, ParseStream};
-use syn::{Ident, Item, ItemStruct, LitStr, Token};
+use syn::{Attribute, Ident, Item, ItemStruct, LitStr, Token, parse_quote};
 
 /// Derives a robot's model from its description: `#[redundant_robot("robots/dualv.toml")] struct DualV;`
 ///
@@ -107,7 +107,16 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
             format!("{count} {noun} in the robot's description\n\n{list}"),
         )
     })?;
-    let items = emission::items(&compiled.model, &robot.ident);
+    let emission::Robot {
+        documentation,
+        items,
+        ..
+    } = emission::robot(&compiled.model, &robot.ident);
+    let mut robot = robot.clone();
+    let lines = documentation.iter();
+    robot
+        .attrs
+        .extend(lines.map(|line| -> Attribute { parse_quote!(#[doc = #line]) }));
     // The compiler watches files that are included.
     let watched = file.to_string_lossy().into_owned();
     Ok(quote! {

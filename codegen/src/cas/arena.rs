@@ -162,6 +162,16 @@ impl Arena {
         self.tables.borrow().names.get(&index).cloned()
     }
 
+    /// The name of whatever has this fingerprint; `minus_…` if only its negative has a name.
+    pub(crate) fn name_of_value(&self, fingerprint: &Fingerprint) -> Option<String> {
+        let handle = self.same(fingerprint)?;
+        let name = self.name_of(handle.index())?;
+        Some(match handle.is_negative() {
+            true => negative_name(&name),
+            false => name,
+        })
+    }
+
     /// What a node computes.
     #[must_use]
     pub fn op(&self, index: usize) -> Op {
@@ -394,6 +404,15 @@ impl Arena {
             }
         }
         Handle::new(index, false)
+    }
+}
+
+/// The name of the negative of what has a name.
+#[must_use]
+pub fn negative_name(name: &str) -> String {
+    match name.strip_prefix("minus_") {
+        Some(positive) => positive.to_owned(),
+        None => format!("minus_{name}"),
     }
 }
 

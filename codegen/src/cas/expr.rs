@@ -2,7 +2,7 @@
 //! survive it.
 
 use super::Angle;
-use super::arena::{Arena, Handle, Op};
+use super::arena::{Arena, Handle, Op, negative_name};
 use super::direction::Direction;
 use super::number::Number;
 use super::ratio::Ratio;
@@ -62,7 +62,7 @@ impl<'a> Expr<'a> {
     #[must_use]
     pub fn named(self, name: &str) -> Self {
         if self.is_negative() {
-            self.arena.name(self, &format!("minus_{name}"));
+            self.arena.name(self, &negative_name(name));
         } else {
             self.arena.name(self, name);
         }

@@ -109,6 +109,9 @@ impl<'a> Configuration<'a> {
 
     /// Declares the position of a prismatic joint.
     pub fn learn_position(&mut self, index: usize, position: Expr<'a>) {
+        if let Some((leg, joint)) = self.names.get(index) {
+            let _ = position.named(&format!("q{joint}_{leg}"));
+        }
         self.positions.push((index, position));
     }
 
@@ -144,7 +147,7 @@ impl<'a> Configuration<'a> {
     }
 
     /// The joint of q_t that a symbol is the position of.
-    fn joint(&self, symbol: SymbolId) -> Option<usize> {
+    pub(super) fn joint(&self, symbol: SymbolId) -> Option<usize> {
         let element = self.arena.input_element(symbol)?;
         (element.array == JOINTS).then_some(element.index)
     }
@@ -222,7 +225,15 @@ impl<'a> Configuration<'a> {
         } else {
             "_"
         };
-        let (cosine, sine) = unit;
+        // What is named is the joints' own angle: right angles are turned back, others are told apart.
+        let (co, so) = angle.offset().cosine_and_sine();
+        let is_right = co.is_zero() || so.is_zero();
+        let (mut cosine, mut sine) = unit;
+        if is_right {
+            (cosine, sine) = (unit.0 * co + unit.1 * so, unit.1 * co - unit.0 * so);
+        } else {
+            label += "o";
+        }
         let _ = cosine.named(&format!("c{separator}{label}{suffix}"));
         let _ = sine.named(&format!("s{separator}{label}{suffix}"));
     }

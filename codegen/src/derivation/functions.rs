@@ -7,6 +7,7 @@ use super::forward_kinematics::closed_form;
 use super::guard::{Guard, GuardKind};
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
 use super::motion_input::MotionInput;
+use super::names::coordinate_label;
 use super::parameter::BodyParameter;
 use super::regressor::Projection;
 use super::robot::Robot;
@@ -75,6 +76,7 @@ pub fn derive<'a>(
         guards: Vec::new(),
     };
     let rows = sheet.rows(family)?;
+    sheet.robot.give_names();
     let shape = (rows.len(), rows.first().map_or(0, Vec::len));
     let mut guards = sheet.robot.guards.clone();
     guards.extend(sheet.guards);
@@ -141,6 +143,7 @@ impl<'a> Sheet<'a, '_> {
         if self.from == MotionInput::Actuators {
             let rates = self.input("actuator_velocities", self.robot.mechanism.actuated().len());
             self.twist = self.least_squares(&rates);
+            self.name_coordinates(&self.twist, "");
             return self.twist.clone();
         }
         self.input(
@@ -153,7 +156,9 @@ impl<'a> Sheet<'a, '_> {
         let tree = self.robot.platform.is_none();
         if self.from == MotionInput::Actuators {
             let twist = self.twist.clone();
-            return self.acceleration_of(&twist);
+            let acceleration = self.acceleration_of(&twist);
+            self.name_coordinates(&acceleration, "d");
+            return acceleration;
         }
         self.input(
             if tree {
@@ -243,6 +248,13 @@ impl<'a> Sheet<'a, '_> {
             }
             Family::NullSpace => self.null_space(),
         })
+    }
+
+    /// Names independent velocities or accelerations that are no inputs.
+    fn name_coordinates(&self, values: &[Expr<'a>], prefix: &str) {
+        for (coordinate, value) in self.robot.twist.iter().zip(values) {
+            let _ = value.named(&format!("{prefix}{}", coordinate_label(coordinate)));
+        }
     }
 
     fn zeros(&self) -> Vec<Expr<'a>> {

@@ -364,29 +364,31 @@ impl<'a> LegClosure<'a> {
     ///
     /// Where the products of the wrenches with the links are known already (in a plane they are the
     /// links' lengths and cosines of joint angles), the bias is taken term by term and the determinant
-    /// is divided out last; else the bias is added up as a vector first.
+    /// is divided out last; else the bias is added up as a vector first. `names` are those of the end's
+    /// acceleration along each wrench, less the bias of constant product.
     #[must_use]
     pub fn accelerations(
         &self,
         arena: &'a Arena,
         motion: &PlatformMotion<'a>,
         bias: &[BiasTerm<'a>],
+        names: &[String],
     ) -> Vec<Expr<'a>> {
         let linear = self.turned_in(motion.point_acceleration(self.at, self.arm));
         let angular = self.turned_in(motion.angular_acceleration);
         if let Some(products) = self.bias_products(arena, bias) {
-            let wrenches = self.wrenches.iter().zip(products);
+            let wrenches = self.wrenches.iter().zip(products).zip(names);
             return wrenches
-                .map(|(wrench, products)| {
+                .map(|((wrench, products), name)| {
                     let start = wrench.force.dot(linear) + wrench.moment.dot(angular);
                     let terms = bias.iter().zip(products);
                     let (constant, other): (Vec<_>, Vec<_>) =
                         terms.partition(|(_, product)| product.as_number().is_some());
-                    let sum = constant
-                        .into_iter()
-                        .chain(other)
-                        .fold(start, |sum, (term, product)| sum - term.scalar * product);
-                    wrench.factor * sum
+                    let less = |sum: Expr<'a>, (term, product): (&BiasTerm<'a>, Expr<'a>)| {
+                        sum - term.scalar * product
+                    };
+                    let along = constant.into_iter().fold(start, less).named(name);
+                    wrench.factor * other.into_iter().fold(along, less)
                 })
                 .collect();
         }

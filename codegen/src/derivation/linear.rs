@@ -4,6 +4,7 @@
 //! L D Lᵀ without square roots.
 
 use super::elimination::Rows;
+use super::names::name_matrix;
 use crate::cas::Expr;
 
 /// S = L D Lᵀ.
@@ -57,6 +58,7 @@ impl<'a> Factored<'a> {
             .iter()
             .map(|a| columns.iter().map(|b| dot(a, b)).collect())
             .collect();
+        name_matrix(&s, "s");
         let mut reciprocals = Vec::new();
         let mut pivots = Vec::new();
         let mut lower = s.clone();
@@ -75,6 +77,15 @@ impl<'a> Factored<'a> {
             pivots.push(pivot);
             reciprocals.push(reciprocal);
         }
+        for (k, (pivot, reciprocal)) in pivots.iter().zip(&reciprocals).enumerate() {
+            let _ = pivot.named(&format!("pivot_{}", k + 1));
+            let _ = reciprocal.named(&format!("inv_pivot_{}", k + 1));
+            for (i, row) in lower.iter().enumerate().skip(k + 1) {
+                let _ = row[k].named(&format!("l_{}_{}", i + 1, k + 1));
+            }
+        }
+        // What elimination has left below the pivots.
+        name_matrix(&s, "schur");
         Self {
             lower,
             reciprocals,
@@ -135,7 +146,12 @@ pub fn null_space<'a>(jacobian: &Rows<'a>, seeds: &[usize]) -> Rows<'a> {
                 .map(|(v, k)| *v - along * *k)
                 .collect();
         }
-        let scale = dot(&vector, &vector).sqrt().reciprocal();
+        let label = basis.len() + 1;
+        for (i, entry) in vector.iter().enumerate() {
+            let _ = entry.named(&format!("normal_{}_{label}", i + 1));
+        }
+        let norm = dot(&vector, &vector).sqrt().named(&format!("norm_{label}"));
+        let scale = norm.reciprocal().named(&format!("inv_norm_{label}"));
         basis.push(vector.iter().map(|v| *v * scale).collect());
     }
     (0..n)

@@ -28,6 +28,7 @@ mod leg;
 mod linear;
 mod matrices;
 mod motion_input;
+mod names;
 mod orientation;
 mod parameter;
 mod platform;

@@ -8,6 +8,7 @@
 use super::carried::CarriedBody;
 use super::elimination::{Rows, inverse};
 use super::linear::{dot, product, transposed};
+use super::names::{coordinate_label, joined};
 use super::parameter::BodyParameter;
 use super::robot::{Robot, RobotMotion};
 use super::selection::Combination;
@@ -63,11 +64,12 @@ impl<'a> Robot<'a> {
         let kept_rows: Rows<'a> = kept.iter().map(|&i| all[i].clone()).collect();
         let home = |e: Expr<'a>| self.at_home(e);
         let inverted = inverse(&kept_rows, &home).ok_or(Underivable::SingularPartition)?;
-        let legs = self
+        let legs: Vec<Rows<'a>> = self
             .legs
             .iter()
             .map(|l| product(&l.rows, &inverted.rows))
             .collect();
+        self.name_partition(&inverted, &legs, kept);
         Ok(Projection {
             legs,
             on_platform: false,
@@ -229,6 +231,7 @@ impl<'a> Robot<'a> {
                         let body = &motion.bodies[l][j];
                         let wrench =
                             self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
+                        self.name_wrench(wrench, &leg.joints[j].name, &leg.name);
                         add(&mut forces, body.project(wrench));
                     }
                 }
@@ -237,9 +240,16 @@ impl<'a> Robot<'a> {
                     Some(self.joint_force(motion, l, j, symbol) * *value)
                 });
                 let on_joint = on_joint.fold(self.arena.zero(), |sum, force| sum + force);
+                let on_joint = on_joint.named(&joined(&["tau", &leg.joints[j].name, &leg.name]));
                 let form = &self.legs[l].rates.joint[j];
                 let shares = (0..forces.len()).map(|i| on_joint * form.coefficient(i));
                 add(&mut forces, shares.collect());
+            }
+            for (joint, force) in leg.independent().zip(&forces) {
+                let _ = force.named(&joined(&[
+                    &format!("force_on_u{}", leg.joints[joint].name),
+                    &leg.name,
+                ]));
             }
             add(&mut total, self.combine(&projection.legs[l], &forces));
         }
@@ -249,7 +259,14 @@ impl<'a> Robot<'a> {
                 BodyParameter::Leg { .. } => None,
             };
             let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
+            self.name_wrench(wrench, "", "platform");
             add(&mut on_twist, body.project(&self.twist, wrench));
+        }
+        for (coordinate, force) in self.twist.iter().zip(&on_twist) {
+            let _ = force.named(&format!(
+                "force_on_{}_platform",
+                coordinate_label(coordinate)
+            ));
         }
         add(&mut total, self.combine(&projection.platform, &on_twist));
         total

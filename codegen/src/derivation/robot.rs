@@ -11,12 +11,14 @@ use super::guard::{Guard, GuardKind};
 use super::inverse_kinematics::{Task, solve_leg};
 use super::leg::{LegClosure, LegFrames};
 use super::motion_input::MotionInput;
+use super::names::{Accelerations, Moved, coordinate_label, joined};
 use super::platform::PlatformPose;
 use super::rates::Rates;
 use super::selection::Formulation;
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr, Vector3};
 use crate::mechanism::{Mechanism, TwistCoordinate};
+use std::cell::RefCell;
 
 /// A leg in a derivation.
 #[derive(Debug)]
@@ -36,7 +38,7 @@ pub struct LegState<'a> {
 }
 
 /// Velocities and accelerations of the whole robot.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct RobotMotion<'a> {
     /// Quasi-velocities of every leg.
     pub u: Vec<Vec<Expr<'a>>>,
@@ -67,6 +69,8 @@ pub struct Robot<'a> {
     pub legs: Vec<LegState<'a>>,
     /// Conditions for the model to have a value.
     pub guards: Vec<Guard<'a>>,
+    /// The motions that were asked for, whose quantities are named when all is derived.
+    pub(super) motions: RefCell<Vec<Moved<'a>>>,
 }
 
 impl<'a> Robot<'a> {
@@ -97,6 +101,7 @@ impl<'a> Robot<'a> {
                 .unwrap_or_default(),
             legs: Vec::new(),
             guards: Vec::new(),
+            motions: RefCell::default(),
         };
         for leg in 0..mechanism.legs.len() {
             robot.derive_leg(leg, formulation)?;
@@ -213,6 +218,7 @@ impl<'a> Robot<'a> {
             .as_ref()
             .map(|p| p.motion(twist, acceleration));
         let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
+        let accelerations = Accelerations::new(acceleration);
         let carried = |mount: &Mount<'a>| {
             let both = self.platform.as_ref().zip(platform.as_ref());
             both.map(|(pose, motion)| CarriedBody::new(pose, motion, gravity, mount))
@@ -231,8 +237,9 @@ impl<'a> Robot<'a> {
                     let u = closure.velocities(platform);
                     name_rates(leg, &u, "rate");
                     let bias = end_bias(self.arena, leg, &state.frames, &state.rates, &u);
-                    let u_dot = closure.accelerations(self.arena, platform, &bias);
-                    name_rates(leg, &u_dot, "rate_dot");
+                    let labels = accelerations.labels(leg, "a_on_f");
+                    let u_dot = closure.accelerations(self.arena, platform, &bias, &labels);
+                    name_rates(leg, &u_dot, &accelerations.name("rate_dot"));
                     (u, u_dot)
                 }
                 _ => {
@@ -258,6 +265,11 @@ impl<'a> Robot<'a> {
         self.arena.enter("platform");
         motion.platform = carried(&Mount::platform(self.arena));
         self.arena.enter("");
+        self.motions.borrow_mut().push(Moved {
+            motion: motion.clone(),
+            platform,
+            accelerations,
+        });
         Some(motion)
     }
 
@@ -307,14 +319,14 @@ fn name_rates(leg: &crate::mechanism::Leg, values: &[Expr<'_>], prefix: &str) {
 }
 
 fn name_rows(rows: &Rows<'_>, leg: &crate::mechanism::Leg, twist: &[TwistCoordinate]) {
-    const AXES: [&str; 3] = ["x", "y", "z"];
     for (joint, row) in leg.independent().zip(rows) {
         for (entry, coordinate) in row.iter().zip(twist) {
-            let label = match coordinate {
-                TwistCoordinate::Linear(a) => format!("v{}", AXES[*a]),
-                TwistCoordinate::Angular(a) => format!("w{}", AXES[*a]),
-            };
-            let _ = entry.named(&format!("g{}_{label}_{}", leg.joints[joint].name, leg.name));
+            let what = format!(
+                "g{}_{}",
+                leg.joints[joint].name,
+                coordinate_label(coordinate)
+            );
+            let _ = entry.named(&joined(&[&what, &leg.name]));
         }
     }
 }

@@ -37,6 +37,8 @@ pub struct Description {
     pub base_columns: Option<BaseColumns>,
     /// Acceleration of gravity in the base frame, m/s².
     pub gravity: [Number; 3],
+    /// The named constants that are no angles, in SI units.
+    pub constants: Vec<(String, f64)>,
     /// The platform; `None` for a serial or tree robot.
     pub platform: Option<Platform>,
     /// The legs in the order of their placement.

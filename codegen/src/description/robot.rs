@@ -119,6 +119,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         summary,
         source,
         gravity: gravity.unwrap_or_else(standard_gravity),
+        constants: scope.values(),
         platform,
         legs,
         experiment,

@@ -5,6 +5,7 @@ use super::expression::{Failure, Meaning, Names, evaluate, number};
 use super::function::FUNCTIONS;
 use super::model::Spanned;
 use super::reader::{Item, Table};
+use super::scalar::Scalar;
 use super::value::{Fault, Value};
 use crate::cas::{Angle, Number};
 use crate::diagnostic::{Diagnostic, Span};
@@ -41,6 +42,15 @@ impl Scope {
             scope.add(item.key.value.clone(), value);
         }
         scope
+    }
+
+    /// All constants but angles, with their values in SI units.
+    pub(super) fn values(&self) -> Vec<(String, f64)> {
+        let number = |(name, value): &(String, Option<Value>)| match value.as_ref()?.scalar {
+            Scalar::Number(number) => Some((name.clone(), number.value())),
+            Scalar::Angle(_) => None,
+        };
+        self.entries.iter().filter_map(number).collect()
     }
 
     pub(super) fn contains(&self, name: &str) -> bool {

@@ -1,13 +1,15 @@
 //! The body of a function: assignments and results as tokens.
 //!
 //! A value that is used once and has no name is written where it is used, as long as the expression
-//! stays short; every other value is a `let` with the name that the derivation gave it, or a number.
+//! stays short; every other value is a `let` with one of the [`names`](super::names).
 
 use super::angles;
+use super::labels::Labels;
+use super::names::Names;
 use crate::lowering::{Condition, Operand, Operation, Program};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 /// Operations that one expression may hold.
 const LONGEST: usize = 10;
@@ -46,9 +48,26 @@ impl Text {
     }
 }
 
+/// A function's body.
+pub struct Written {
+    /// The assignments.
+    pub statements: TokenStream,
+    /// The output.
+    pub value: TokenStream,
+    /// Where a section begins: the first name of its first assignment, and the section's.
+    pub sections: Vec<(String, String)>,
+    /// All names that are assigned.
+    pub names: Vec<String>,
+}
+
 /// Writes the body of a program: statements and the value of its output.
 pub struct Body<'p> {
     program: &'p Program,
+    naming: Names<'p>,
+    labels: &'p Labels,
+    /// Named constants that the body uses: value and expression by name.
+    dimensions: BTreeMap<String, (f64, String)>,
+    sections: Vec<(String, String)>,
     names: Vec<Option<Ident>>,
     uses: Vec<usize>,
     inlined: Vec<Option<Text>>,
@@ -59,13 +78,17 @@ pub struct Body<'p> {
 }
 
 impl<'p> Body<'p> {
-    /// Statements and value of a program.
+    /// Statements and value of a program whose inputs and outputs have these labels.
     #[must_use]
-    pub fn write(program: &'p Program) -> (TokenStream, TokenStream) {
+    pub fn write(program: &'p Program, labels: &'p Labels) -> Written {
         let taken = program.inputs.iter().map(|a| a.name.clone()).collect();
         let count = program.steps.len();
         let mut body = Self {
             program,
+            naming: Names::new(program, labels),
+            labels,
+            dimensions: BTreeMap::new(),
+            sections: Vec::new(),
             names: vec![None; count],
             uses: program.uses(),
             inlined: (0..count).map(|_| None).collect(),
@@ -79,7 +102,14 @@ impl<'p> Body<'p> {
             at += body.step(at);
         }
         let value = body.output();
-        (body.statements, value)
+        let names = body.names.iter().flatten().map(ToString::to_string);
+        let (constants, statements) = (body.constants(), &body.statements);
+        Written {
+            names: names.collect(),
+            statements: quote!(#constants #statements),
+            value,
+            sections: sections(&body.sections),
+        }
     }
 
     /// Writes the sines and cosines of angles that are known from the start.
@@ -91,6 +121,7 @@ impl<'p> Body<'p> {
             self.step(at);
             self.written[at] = true;
         }
+        let first = self.sections.len();
         let mut names = Vec::new();
         let mut values = Vec::new();
         for pair in &early.pairs {
@@ -108,6 +139,10 @@ impl<'p> Body<'p> {
         }
         self.statements
             .extend(quote!(let [#(#names),*] = ::overact::math::sin_cos_all([#(#values),*]);));
+        // They are of all legs at once.
+        for (_, section) in &mut self.sections[first..] {
+            "sines and cosines".clone_into(section);
+        }
         let steps = early.pairs.iter().flat_map(|p| [p.sine, p.cosine]);
         steps.flatten().for_each(|at| self.guards(at));
     }
@@ -190,18 +225,12 @@ impl<'p> Body<'p> {
         }
     }
 
-    /// A name for the value of a step: its own, made unique, or `t` with a number.
+    /// A name for the value of a step that no other value has.
     fn declare(&mut self, at: usize) -> Ident {
-        let wanted = self.program.steps[at]
-            .name
-            .clone()
-            .unwrap_or_else(|| format!("t{at}"));
-        let mut name = wanted.clone();
-        let mut suffix = 2;
-        while !self.taken.insert(name.clone()) {
-            name = format!("{wanted}_{suffix}");
-            suffix += 1;
-        }
+        let name = self.naming.name(at, &|name| !self.taken.contains(name));
+        self.taken.insert(name.clone());
+        let section = &self.program.steps[at].scope;
+        self.sections.push((name.clone(), section.clone()));
         let ident = Ident::new(&name, Span::call_site());
         self.names[at] = Some(ident.clone());
         ident
@@ -210,7 +239,7 @@ impl<'p> Body<'p> {
     fn operand(&mut self, operand: Operand) -> Text {
         match operand {
             Operand::Constant(value) => {
-                let literal = number(value);
+                let literal = self.constant(value);
                 let binding = if value < 0.0 {
                     Binding::Product
                 } else {
@@ -233,6 +262,30 @@ impl<'p> Body<'p> {
                 (None, None) => Text::atom(internal_error("an operand is used before its step")),
             },
         }
+    }
+
+    /// A number, or the named constant that it is.
+    fn constant(&mut self, value: f64) -> TokenStream {
+        let Some(dimension) = self.labels.dimension(value.abs()) else {
+            return number(value);
+        };
+        let name = Ident::new(&dimension.name, Span::call_site());
+        let used = (value.abs(), dimension.expression.clone());
+        self.dimensions.insert(dimension.name.clone(), used);
+        match value < 0.0 {
+            true => quote!(-#name),
+            false => quote!(#name),
+        }
+    }
+
+    /// The constants that the body uses.
+    fn constants(&self) -> TokenStream {
+        let constants = self.dimensions.iter().map(|(name, (value, expression))| {
+            let (name, value) = (Ident::new(name, Span::call_site()), number(*value));
+            let doc = format!(" {expression}");
+            quote!(#[doc = #doc] const #name: ::core::primitive::f64 = #value;)
+        });
+        quote!(#(#constants)*)
     }
 
     fn text(&mut self, operation: Operation) -> Text {
@@ -325,6 +378,21 @@ impl<'p> Body<'p> {
             _ => quote!([#(#values),*]),
         }
     }
+}
+
+/// Where sections begin, from the section of every assignment. A few assignments on their own, of what a
+/// leg and the platform share for instance, stand in the section around them.
+fn sections(assigned: &[(String, String)]) -> Vec<(String, String)> {
+    const SHORTEST: usize = 4;
+    let mut starts: Vec<(String, String)> = Vec::new();
+    for run in assigned.chunk_by(|a, b| a.1 == b.1) {
+        let (name, section) = &run[0];
+        let is_other = starts.last().is_none_or(|(_, last)| last != section);
+        if !section.is_empty() && is_other && (run.len() >= SHORTEST || starts.is_empty()) {
+            starts.push((name.clone(), section.clone()));
+        }
+    }
+    starts
 }
 
 /// What stands in the generated code where a program breaks a rule that lowering guarantees: nothing that

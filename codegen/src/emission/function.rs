@@ -1,30 +1,49 @@
 //! One generated function: documentation, signature, body.
 
 use super::expression::Body;
+use super::labels::Labels;
+use super::layout::Sections;
 use crate::derivation::{Family, MotionInput};
 use crate::lowering::Array;
 use crate::model::{CompiledFunction, RobotModel};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
+/// A function as an item of an `impl` block.
+pub struct Item {
+    /// The function.
+    pub tokens: TokenStream,
+    /// Where the sections of its body begin, which tokens cannot say.
+    pub sections: Sections,
+    /// All names that its body assigns.
+    pub names: Vec<String>,
+}
+
 /// The function as an item of an `impl` block.
 #[must_use]
-pub fn item(model: &RobotModel, function: &CompiledFunction) -> TokenStream {
+pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
     if model.finds_joints(function) && function.family == Family::Joints {
-        return super::inverse::item(model);
+        return Item {
+            tokens: super::inverse::item(model),
+            sections: Sections::none(&function.name),
+            names: Vec::new(),
+        };
     }
     let program = &function.program;
     let fallible = is_fallible(model, function);
+    let (mut sections, mut names) = (Vec::new(), Vec::new());
     let (statements, value) = match twin(model, function) {
         Some(twin) => (TokenStream::new(), call(twin, is_fallible(model, twin))),
         None => {
-            let (statements, value) = Body::write(program);
+            let written = Body::write(program, &Labels::new(model, function));
+            (sections, names) = (written.sections, written.names);
+            let value = written.value;
             let value = if fallible {
                 quote!(::core::result::Result::Ok(#value))
             } else {
                 value
             };
-            (statements, value)
+            (written.statements, value)
         }
     };
     let name = format_ident!("{}", function.name);
@@ -44,7 +63,7 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> TokenStream {
     } else {
         quote!(#[must_use] pub fn #name(#arguments) -> #output)
     };
-    quote! {
+    let tokens = quote! {
         #(#[doc = #documentation])*
         #signature {
             #find_pose
@@ -52,6 +71,14 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> TokenStream {
             #statements
             #value
         }
+    };
+    Item {
+        tokens,
+        sections: Sections {
+            function: function.name.clone(),
+            starts: sections,
+        },
+        names,
     }
 }
 

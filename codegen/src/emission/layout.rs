@@ -1,7 +1,65 @@
-//! Layout of a generated file: long arrays are filled line by line instead of one element per line.
+//! Layout of a generated file: long arrays are filled line by line instead of one element per line, and
+//! the sections of long functions have a heading, which is a comment and so no token.
 
 /// Width of a line.
 const WIDTH: usize = 100;
+
+/// The sections of a function's body.
+#[derive(Debug, Clone)]
+pub struct Sections {
+    /// Name of the function.
+    pub function: String,
+    /// For every section the first name that is assigned in it, and its heading.
+    pub starts: Vec<(String, String)>,
+}
+
+impl Sections {
+    /// Of a function without sections.
+    #[must_use]
+    pub fn none(function: &str) -> Self {
+        Self {
+            function: function.to_owned(),
+            starts: Vec::new(),
+        }
+    }
+}
+
+/// Writes the headings of sections into formatted code; functions stand in the order of `sections`.
+#[must_use]
+pub fn with_headings(code: &str, sections: &[Sections]) -> String {
+    let mut out = String::with_capacity(code.len());
+    let mut left = sections.iter();
+    let mut starts = [].iter().peekable();
+    for line in code.lines() {
+        let text = line.trim_start();
+        let declared = text.strip_prefix("pub fn ");
+        if let Some(name) = declared.and_then(|rest| rest.split('(').next()) {
+            let own = left.clone().position(|s| s.function == name);
+            if let Some(found) = own.and_then(|at| left.nth(at)) {
+                starts = found.starts.iter().peekable();
+            }
+        }
+        let indent = &line[..line.len() - text.len()];
+        while let Some((_, heading)) = starts.next_if(|(name, _)| assigns(text, name)) {
+            push_line(&mut out, &format!("{indent}// --- {heading}"));
+        }
+        push_line(&mut out, line);
+    }
+    out
+}
+
+/// Whether a statement begins by assigning this name, or this name beside another one.
+fn assigns(line: &str, name: &str) -> bool {
+    let Some(rest) = line.strip_prefix("let ") else {
+        return false;
+    };
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    let mut words = rest
+        .split(|c: char| !is_part(c))
+        .filter(|word| !word.is_empty());
+    let is_pair = rest.starts_with(['(', '[']);
+    words.next() == Some(name) || (is_pair && words.next() == Some(name))
+}
 
 /// Packs the elements of arrays that the pretty printer has put on lines of their own.
 #[must_use]

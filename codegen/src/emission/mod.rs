@@ -1,30 +1,56 @@
 //! From a [`RobotModel`] to Rust.
 //!
-//! Macro, build script, command line and `generated/` all come from [`items`]: one `impl` block with
+//! Macro, build script, command line and `generated/` all come from [`robot()`]: one `impl` block with
 //! constants and flat functions, and one `impl overact::Model`. Nothing is allocated, nothing panics,
-//! nothing is unsafe; a singular configuration is an error that names the leg.
+//! nothing is unsafe; a singular configuration is an error that names the leg. Paths are absolute, for the
+//! code stands in scopes that are not ours.
+//!
+//! The code is to be read beside the paper: values have [`names`], constants of the description theirs
+//! ([`dimensions`]), the [`legend`] in the type's documentation says what they mean, and [`layout`] puts
+//! headings over the sections of a body.
 
 pub mod angles;
 pub mod constants;
+pub mod dimensions;
 pub mod expression;
 pub mod function;
 pub mod inverse;
+pub mod labels;
 pub mod layout;
+pub mod legend;
 pub mod model_impl;
+pub mod names;
+#[cfg(test)]
+mod tests;
 pub mod text;
 
 use crate::model::RobotModel;
+use function::Item;
+use labels::Labels;
+use layout::Sections;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
-/// The items of a robot whose type is called `name`.
+/// A robot as Rust.
+pub struct Robot {
+    /// Lines of documentation for its type: sizes, and what the names in the functions' bodies mean.
+    pub documentation: Vec<String>,
+    /// The items behind the type.
+    pub items: TokenStream,
+    /// Where the sections of the functions' bodies begin.
+    sections: Vec<Sections>,
+}
+
+/// The robot under the name of its type.
 #[must_use]
-pub fn items(model: &RobotModel, name: &Ident) -> TokenStream {
+pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     let constants = constants::items(model);
     let functions = model.functions.iter().map(|f| function::item(model, f));
+    let functions: Vec<Item> = functions.collect();
+    let tokens = functions.iter().map(|f| &f.tokens);
     let forward = model_impl::pose_from_actuators(model);
     let model_impl = model_impl::item(model, name);
-    quote! {
+    let items = quote! {
         #[allow(
             clippy::all,
             clippy::pedantic,
@@ -35,36 +61,50 @@ pub fn items(model: &RobotModel, name: &Ident) -> TokenStream {
         )]
         impl #name {
             #constants
-            #(#functions)*
+            #(#tokens)*
             #forward
         }
 
         #model_impl
+    };
+    let names = functions.iter().flat_map(|f| f.names.iter().cloned());
+    let mut documentation = vec![String::new(), sizes(model)];
+    documentation.extend(source(&model.mechanism.source));
+    let legend = legend::lines(&Labels::of_robot(model), &names.collect());
+    if !legend.is_empty() {
+        documentation.push(String::new());
+        documentation.extend(legend);
     }
+    Robot {
+        documentation,
+        items,
+        sections: functions.into_iter().map(|f| f.sections).collect(),
+    }
+}
+
+/// The items of a robot whose type is called `name`.
+#[must_use]
+pub fn items(model: &RobotModel, name: &Ident) -> TokenStream {
+    robot(model, name).items
 }
 
 /// The type with its documentation, and its items: what a generated file holds.
 #[must_use]
 pub fn module(model: &RobotModel) -> TokenStream {
+    module_and_sections(model).0
+}
+
+fn module_and_sections(model: &RobotModel) -> (TokenStream, Vec<Sections>) {
     let name = Ident::new(&model.mechanism.name, Span::call_site());
-    let items = items(model, &name);
-    let mechanism = &model.mechanism;
-    let sizes = format!(
-        " {} legs, {} joints, {} actuators, {} degrees of freedom; {} standard parameters, {} base parameters.",
-        mechanism.legs.len(),
-        mechanism.joints().len(),
-        mechanism.actuated().len(),
-        mechanism.dof(),
-        model.selection.standard.len(),
-        model.base.len()
-    );
-    let summary = sentence(&mechanism.summary);
-    let source = source(&mechanism.source).map(|line| quote!(#[doc = #line]));
-    quote! {
+    let Robot {
+        documentation,
+        items,
+        sections,
+    } = robot(model, &name);
+    let summary = sentence(&model.mechanism.summary);
+    let module = quote! {
         #[doc = #summary]
-        #[doc = ""]
-        #[doc = #sizes]
-        #source
+        #(#[doc = #documentation])*
         #[derive(
             ::core::fmt::Debug,
             ::core::clone::Clone,
@@ -76,7 +116,22 @@ pub fn module(model: &RobotModel) -> TokenStream {
         pub struct #name;
 
         #items
-    }
+    };
+    (module, sections)
+}
+
+/// How large the robot is.
+fn sizes(model: &RobotModel) -> String {
+    let mechanism = &model.mechanism;
+    format!(
+        " {} legs, {} joints, {} actuators, {} degrees of freedom; {} standard parameters, {} base parameters.",
+        mechanism.legs.len(),
+        mechanism.joints().len(),
+        mechanism.actuated().len(),
+        mechanism.dof(),
+        model.selection.standard.len(),
+        model.base.len()
+    )
 }
 
 /// A summary as a line of documentation.
@@ -100,10 +155,13 @@ fn source(text: &str) -> Option<String> {
 #[must_use]
 pub fn file(model: &RobotModel, label: &str) -> String {
     let label = text::plain(label);
-    let tokens = module(model);
+    let (tokens, sections) = module_and_sections(model);
     // The tokens are our own: that they parse is proved by every test that compiles them.
     let code = match syn::parse2(tokens.clone()) {
-        Ok(file) => layout::pack_arrays(&prettyplease::unparse(&file)),
+        Ok(file) => layout::with_headings(
+            &layout::pack_arrays(&prettyplease::unparse(&file)),
+            &sections,
+        ),
         Err(_) => tokens.to_string(),
     };
     format!(

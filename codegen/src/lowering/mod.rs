@@ -69,6 +69,7 @@ pub fn lower<'a>(
         dag.measure_digits(states);
     }
     passes::run(&mut dag, limits)?;
+    dag.name_values(|fingerprint| arena.name_of_value(fingerprint));
     let program = schedule::schedule(&dag, &function.inputs, &function.output)?;
     let broken = |broken| InternalError::new("schedule", broken);
     program.verify().map_err(broken)?;

@@ -101,6 +101,7 @@ fn plain(description: &Description) -> Mechanism {
         summary: description.summary.clone(),
         source: description.source.clone(),
         gravity: description.gravity,
+        constants: description.constants.clone(),
         platform,
         legs: on_axis(description, description.legs.iter().map(leg).collect()),
         home: Home::default(),

@@ -115,6 +115,8 @@ pub struct Mechanism {
     pub source: String,
     /// Acceleration of gravity in the base frame, m/s².
     pub gravity: [Number; 3],
+    /// The named constants of its description, in SI units, for the reader of generated code.
+    pub constants: Vec<(String, f64)>,
     /// The platform; `None` for a serial or tree robot.
     pub platform: Option<Platform>,
     /// The legs.

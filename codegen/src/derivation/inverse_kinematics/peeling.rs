@@ -170,11 +170,17 @@ fn take<'a>(
     step: Step<'a>,
     configuration: &mut Configuration<'a>,
 ) -> Option<Option<Reach<'a>>> {
+    let label = unknown_label(task, configuration, unknown);
+    let named = |value: Expr<'a>, what: &str| value.named(&format!("{what}{label}"));
     let (value, reach) = match step {
         Step::Pair(first, second) => (pair(first, second), None),
         Step::Root(equation) => {
             let w = root_at_home(task, &equation, unknown)?;
             let (unit, radicand) = root(task, equation, w);
+            if let Some(radicand) = radicand {
+                let _ = named(radicand, "w_squared");
+                let _ = named(radicand.sqrt(), "w");
+            }
             (unit, radicand.map(|radicand| Reach { radicand }))
         }
         Step::Slide(Quadratic { b, e, .. }) => return learn_slide(unknown, -e / b, configuration),
@@ -184,7 +190,8 @@ fn take<'a>(
             };
             let (p, radicand) = completed(equation);
             let is_positive = task.home.joints[*index] + task.at_home(p) > 0.0;
-            let root = radicand.sqrt();
+            let _ = named(p, "middle");
+            let root = named(named(radicand, "w_squared").sqrt(), "w");
             let position = if is_positive { root - p } else { -root - p };
             learn_slide(unknown, position, configuration);
             return Some(Some(Reach { radicand }));
@@ -195,6 +202,27 @@ fn take<'a>(
     };
     configuration.learn(turn.clone(), value);
     Some(reach)
+}
+
+/// What the names of values that an unknown is found from end with: `1_leg2`, after its joints.
+fn unknown_label(
+    task: Task<'_, '_>,
+    configuration: &Configuration<'_>,
+    unknown: &Unknown,
+) -> String {
+    let joint = |index: usize| {
+        let local = index.checked_sub(task.first_joint)?;
+        let joint = task.leg.independent().nth(local)?;
+        Some(task.leg.joints[joint].name.clone())
+    };
+    let label: Option<String> = match unknown {
+        Unknown::Slide(index) => joint(*index),
+        Unknown::Turn(turn) => {
+            let symbols = turn.terms().iter().map(|(symbol, _)| *symbol);
+            symbols.map(|s| joint(configuration.joint(s)?)).collect()
+        }
+    };
+    format!("{}_{}", label.unwrap_or_default(), task.leg.name)
 }
 
 fn learn_slide<'a>(

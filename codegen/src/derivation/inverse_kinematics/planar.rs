@@ -10,7 +10,7 @@ use super::super::leg::joint_turn;
 use super::super::platform::constant_rotation;
 use super::super::rates::parallel;
 use super::{Reach, Task};
-use crate::cas::{Angle, Arena, Direction, Matrix3, Number, Ratio, Vector3};
+use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Number, Ratio, Vector3};
 use crate::mechanism::{End, JointKind, Leg};
 
 /// A link in the plane: length and the angle of its direction.
@@ -139,14 +139,15 @@ fn two_links<'a>(
 ) -> Option<Reach<'a>> {
     let arena = task.arena;
     let (l1, l2) = (first.length, second.length);
-    let (x, y) = (end.x(), end.y());
-    let square = x * x + y * y;
+    let named = |value: Expr<'a>, what: &str| value.named(&format!("{what}_{}", task.leg.name));
+    let (x, y) = (named(end.x(), "d_x"), named(end.y(), "d_y"));
+    let square = named(x * x + y * y, "rho_squared");
     let reciprocal = square.reciprocal();
     let half = Number::ratio(Ratio::new(1, 2)?);
     // a = 1/2 + (l1² - l2²)/(2 ρ²), which is 1/2 for links of one length.
     let a = arena.number(half) + reciprocal * ((l1 * l1 - l2 * l2) * half);
-    let radicand = reciprocal * (l1 * l1) - a * a;
-    let root = radicand.sqrt();
+    let radicand = named(reciprocal * (l1 * l1) - a * a, "h_squared");
+    let root = named(radicand.sqrt(), "h");
     // The bend from the first link to the second at home tells the elbow's side.
     let bend = second.direction.plus(&first.direction.negative())?;
     let angle = task.turn_at_home(&bend);
@@ -154,12 +155,13 @@ fn two_links<'a>(
     let (along, across) = ((x * a, y * a), (x * h, y * h));
     // The elbow lies to the right of D when the second link bends to the left.
     let (e1x, e1y) = (along.0 + across.1, along.1 - across.0);
+    let (e1x, e1y) = (named(e1x, "l1_x"), named(e1y, "l1_y"));
     let inverse = |l: Number| Number::ONE / l;
     configuration.learn(
         first.direction.clone(),
         (e1x * inverse(l1), e1y * inverse(l1)),
     );
-    let (e2x, e2y) = (x - e1x, y - e1y);
+    let (e2x, e2y) = (named(x - e1x, "l2_x"), named(y - e1y, "l2_y"));
     configuration.learn(
         second.direction.clone(),
         (e2x * inverse(l2), e2y * inverse(l2)),

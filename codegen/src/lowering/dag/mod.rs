@@ -21,7 +21,7 @@ pub(crate) use dominators::Dominators;
 pub(crate) use node::{Angle, Constant, Definition, Edge};
 
 use super::program::Condition;
-use crate::cas::arena::Fingerprint;
+use crate::cas::arena::{Fingerprint, negative_name};
 use crate::cas::field::{Element, canonical};
 use crate::cas::{Direction, InputElement};
 use digits::Digits;
@@ -391,6 +391,15 @@ impl Dag {
             .or_insert_with(|| self.add(definition, 0))
     }
 
+    /// Names those nodes that have no name after their value.
+    pub(crate) fn name_values(&mut self, name_of: impl Fn(&Fingerprint) -> Option<String>) {
+        for (name, fingerprint) in self.names.iter_mut().zip(&self.fingerprints) {
+            if name.is_none() {
+                *name = name_of(fingerprint).map(Into::into);
+            }
+        }
+    }
+
     /// Lets every node be its own negative where `is_flipped` says so, whoever uses it. Definitions are the
     /// caller's business.
     pub(crate) fn flip(&mut self, is_flipped: &[bool]) {
@@ -401,7 +410,7 @@ impl Dag {
         {
             self.fingerprints[node] = -self.fingerprints[node];
             if let Some(name) = &self.names[node] {
-                self.names[node] = Some(format!("minus_{name}").into());
+                self.names[node] = Some(negative_name(name).into());
             }
         }
         let flip = |edge: &mut Edge| *edge = edge.times(is_flipped[edge.node()]);

@@ -1,0 +1,199 @@
+//! Constants of a description found again in a function: `L_AB`, `R_P_SQUARED_PER_L_BC`.
+//!
+//! Folding turns the numbers of a description into others. Those that are a simple expression of its named
+//! constants, a power, product or quotient of two of them, get a name and the expression. Of equally simple
+//! expressions with one value none is taken, for which was meant cannot be told.
+
+use crate::model::RobotModel;
+
+/// A number with a name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dimension {
+    /// The name of the Rust constant.
+    pub name: String,
+    /// What it is, in the description's names.
+    pub expression: String,
+    value: f64,
+    /// How much stands in the expression: the simplest of one value is taken.
+    size: usize,
+}
+
+/// All numbers that have names.
+#[derive(Debug, Clone, Default)]
+pub struct Dimensions(Vec<Dimension>);
+
+/// Two numbers that differ by less than this fraction are one: some roundings.
+const ROUNDING: f64 = 1e-15;
+
+impl Dimensions {
+    /// Those of a robot's description.
+    #[must_use]
+    pub fn of(model: &RobotModel) -> Self {
+        let constants = &model.mechanism.constants;
+        let values: Vec<(&str, f64)> = constants
+            .iter()
+            .map(|(name, value)| (name.as_str(), value.abs()))
+            .collect();
+        Self::made_of(&values)
+    }
+
+    /// What can be made of named values.
+    fn made_of(values: &[(&str, f64)]) -> Self {
+        let mut bases: Vec<Base> = Vec::new();
+        for &(name, value) in values {
+            // A number that stands for itself in every expression needs no name.
+            if !value.is_normal() || value == 1.0 || value == 2.0 || value == 0.5 {
+                continue;
+            }
+            match bases.iter_mut().find(|base| is_same(base.value, value)) {
+                Some(base) => base.others.push(name.to_owned()),
+                None => bases.push(Base {
+                    name: name.to_owned(),
+                    others: Vec::new(),
+                    value,
+                }),
+            }
+        }
+        let mut all = Vec::new();
+        for (at, base) in bases.iter().enumerate() {
+            all.extend(base.powers());
+            for (other_at, other) in bases.iter().enumerate() {
+                all.extend(base.quotients(other).into_iter().filter(|_| at != other_at));
+                all.extend((at < other_at).then(|| base.times(other)));
+            }
+        }
+        all.sort_by_key(|dimension| dimension.size);
+        Self(all)
+    }
+
+    /// The name of a positive number, if there is one that is simpler than all others.
+    #[must_use]
+    pub fn find(&self, value: f64) -> Option<&Dimension> {
+        let mut fitting = self.0.iter().filter(|d| is_same(d.value, value));
+        let first = fitting.next()?;
+        let is_only = fitting.next().is_none_or(|second| second.size > first.size);
+        is_only.then_some(first)
+    }
+}
+
+fn is_same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDING * a.abs()
+}
+
+/// A named constant, and others of the same value.
+struct Base {
+    name: String,
+    others: Vec<String>,
+    value: f64,
+}
+
+impl Base {
+    fn dimension(&self, name: &str, expression: &str, value: f64, size: usize) -> Dimension {
+        Dimension {
+            name: name.to_uppercase(),
+            expression: expression.to_owned(),
+            value,
+            size,
+        }
+    }
+
+    /// v, v², 1/v and their like.
+    fn powers(&self) -> Vec<Dimension> {
+        let (n, v) = (&self.name, self.value);
+        let own = match self.others.is_empty() {
+            true => n.clone(),
+            false => format!("{n} = {}", self.others.join(" = ")),
+        };
+        vec![
+            self.dimension(n, &own, v, 1),
+            self.dimension(&format!("{n}_squared"), &format!("{n}²"), v * v, 2),
+            self.dimension(&format!("inv_{n}"), &format!("1 / {n}"), 1.0 / v, 2),
+            self.dimension(&format!("half_{n}"), &format!("{n} / 2"), v / 2.0, 2),
+            self.dimension(&format!("twice_{n}"), &format!("2 {n}"), 2.0 * v, 2),
+            self.dimension(
+                &format!("twice_{n}_squared"),
+                &format!("2 {n}²"),
+                2.0 * v * v,
+                3,
+            ),
+            self.dimension(
+                &format!("inv_{n}_squared"),
+                &format!("1 / {n}²"),
+                1.0 / (v * v),
+                3,
+            ),
+        ]
+    }
+
+    /// v/w and its like.
+    fn quotients(&self, other: &Self) -> Vec<Dimension> {
+        let (n, v, m, w) = (&self.name, self.value, &other.name, other.value);
+        vec![
+            self.dimension(&format!("{n}_per_{m}"), &format!("{n} / {m}"), v / w, 3),
+            self.dimension(
+                &format!("{n}_squared_per_{m}"),
+                &format!("{n}² / {m}"),
+                v * v / w,
+                4,
+            ),
+            self.dimension(
+                &format!("{n}_per_{m}_squared"),
+                &format!("{n} / {m}²"),
+                v / (w * w),
+                4,
+            ),
+        ]
+    }
+
+    /// v w.
+    fn times(&self, other: &Self) -> Dimension {
+        let (n, m) = (&self.name, &other.name);
+        self.dimension(
+            &format!("{n}_{m}"),
+            &format!("{n} {m}"),
+            self.value * other.value,
+            3,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Dimensions;
+
+    fn name(values: &[(&str, f64)], value: f64) -> Option<String> {
+        let dimensions = Dimensions::made_of(values);
+        dimensions
+            .find(value)
+            .map(|d| format!("{}: {}", d.name, d.expression))
+    }
+
+    #[test]
+    fn the_levers_of_the_dualv_have_names() {
+        let values = [("l_ab", 0.28), ("l_bc", 0.28), ("r_p", 0.11)];
+        let found = |value: f64| name(&values, value);
+        assert_eq!(found(0.11).as_deref(), Some("R_P: r_p"));
+        assert_eq!(found(0.28).as_deref(), Some("L_AB: l_ab = l_bc"));
+        assert_eq!(found(0.0784).as_deref(), Some("L_AB_SQUARED: l_ab²"));
+        assert_eq!(found(1.0 / 0.28).as_deref(), Some("INV_L_AB: 1 / l_ab"));
+        assert_eq!(
+            found(0.11 * 0.11 / 0.28).as_deref(),
+            Some("R_P_SQUARED_PER_L_AB: r_p² / l_ab")
+        );
+        assert_eq!(found(0.123), None);
+    }
+
+    #[test]
+    fn what_cannot_be_told_has_no_name() {
+        let values = [("a", 0.3), ("b", 0.6)];
+        assert_eq!(name(&values, 0.3).as_deref(), Some("A: a"));
+        // 1.2 is twice b; 0.18 is a b and 2 a².
+        assert_eq!(name(&values, 1.2).as_deref(), Some("TWICE_B: 2 b"));
+        assert_eq!(name(&values, 0.18), None);
+    }
+
+    #[test]
+    fn zero_and_one_are_numbers() {
+        assert_eq!(name(&[("zero", 0.0), ("one", 1.0)], 1.0), None);
+    }
+}

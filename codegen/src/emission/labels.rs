@@ -1,0 +1,253 @@
+//! What inputs and outputs of a function are called where a name is made of them.
+
+use super::dimensions::{Dimension, Dimensions};
+use crate::derivation::Family;
+use crate::lowering::Program;
+use crate::mechanism::TwistCoordinate;
+use crate::model::{CompiledFunction, RobotModel};
+use std::collections::BTreeSet;
+
+/// Short names of a function's inputs and outputs.
+#[derive(Debug, Default)]
+pub struct Labels {
+    /// For every input its elements.
+    inputs: Vec<Vec<Label>>,
+    /// For every entry of the output, row by row; empty where it has no name of its own.
+    outputs: Vec<String>,
+    /// Names of the legs.
+    places: Vec<String>,
+    /// Names of the joints.
+    joints: Vec<String>,
+    /// Names of constants.
+    dimensions: Dimensions,
+}
+
+/// A part of a name and the leg that it belongs to, `q1` and `leg2`; the leg may be empty.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Label {
+    /// What it is.
+    pub what: String,
+    /// Where it is.
+    pub place: String,
+}
+
+impl Label {
+    /// The name, `q1_leg2`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self.place.is_empty() {
+            true => self.what.clone(),
+            false => format!("{}_{}", self.what, self.place),
+        }
+    }
+}
+
+impl Labels {
+    /// What holds for all functions of a robot.
+    #[must_use]
+    pub fn of_robot(model: &RobotModel) -> Self {
+        let legs = model.mechanism.legs.iter().map(|leg| leg.name.clone());
+        let joints = model.mechanism.legs.iter().flat_map(|leg| &leg.joints);
+        let joints: BTreeSet<String> = joints.map(|joint| joint.name.clone()).collect();
+        Self {
+            places: legs.chain(["platform".to_owned()]).collect(),
+            joints: joints.into_iter().collect(),
+            dimensions: Dimensions::of(model),
+            ..Self::default()
+        }
+    }
+
+    /// The names of a robot's function.
+    #[must_use]
+    pub fn new(model: &RobotModel, function: &CompiledFunction) -> Self {
+        let inputs = &function.program.inputs;
+        Self {
+            inputs: inputs
+                .iter()
+                .map(|array| input(model, &array.name, array.len()))
+                .collect(),
+            outputs: outputs(model, function),
+            ..Self::of_robot(model)
+        }
+    }
+
+    /// Labels of one input's elements, and a leg.
+    #[cfg(test)]
+    pub(super) fn of_input(elements: &[&str], leg: &str) -> Self {
+        let mut labels = Self {
+            places: vec![leg.to_owned()],
+            ..Self::default()
+        };
+        let elements = elements.iter().map(|name| labels.parsed(name)).collect();
+        labels.inputs.push(elements);
+        labels
+    }
+
+    /// The name of an input's element.
+    #[must_use]
+    pub fn input(&self, array: usize, index: usize) -> Option<&Label> {
+        self.inputs.get(array)?.get(index)
+    }
+
+    /// Names of all joints.
+    pub(super) fn joints(&self) -> &[String] {
+        &self.joints
+    }
+
+    /// The named constant of a positive value.
+    #[must_use]
+    pub fn dimension(&self, value: f64) -> Option<&Dimension> {
+        self.dimensions.find(value)
+    }
+
+    /// A name taken apart: what it is and where.
+    #[must_use]
+    pub fn parsed(&self, name: &str) -> Label {
+        let ends = |place: &&String| {
+            name.strip_suffix(place.as_str())
+                .is_some_and(|rest| rest.ends_with('_') && rest.len() > 1)
+        };
+        let longest = self
+            .places
+            .iter()
+            .filter(ends)
+            .max_by_key(|place| place.len());
+        match longest {
+            Some(place) => Label {
+                what: name[..name.len() - place.len() - 1].to_owned(),
+                place: place.clone(),
+            },
+            None => Label {
+                what: name.to_owned(),
+                place: String::new(),
+            },
+        }
+    }
+
+    /// For every step of a program the name that its value has as an entry of the output.
+    #[must_use]
+    pub fn of_outputs(&self, program: &Program) -> Vec<Option<String>> {
+        let mut names = vec![None; program.steps.len()];
+        for (entry, label) in program.entries.iter().zip(&self.outputs) {
+            if let crate::lowering::Operand::Step(at) = entry.operand
+                && !label.is_empty()
+            {
+                let name = match entry.negative {
+                    true => format!("minus_{label}"),
+                    false => label.clone(),
+                };
+                names[at].get_or_insert(name);
+            }
+        }
+        names
+    }
+}
+
+/// The elements of an input.
+fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
+    let plain = |what: String| Label {
+        what,
+        place: String::new(),
+    };
+    let coordinates = |prefix: &str| -> Vec<Label> {
+        let labels = twist(model).into_iter();
+        labels
+            .map(|label| plain(format!("{prefix}{label}")))
+            .collect()
+    };
+    let joints = |prefix: &str, all: &[usize]| -> Vec<Label> {
+        let indices = model.mechanism.joints();
+        let label = |&at: &usize| Label {
+            what: format!("{prefix}{}", model.mechanism.joint(indices[at]).name),
+            place: match model.is_tree() {
+                true => String::new(),
+                false => model.mechanism.legs[indices[at].leg].name.clone(),
+            },
+        };
+        all.iter().map(label).collect()
+    };
+    let all: Vec<usize> = (0..model.mechanism.joints().len()).collect();
+    let actuated = model.mechanism.actuated();
+    match name {
+        "pose" => {
+            let platform = model.mechanism.platform.as_ref();
+            let names = platform
+                .map(|p| p.motion.pose_coordinates())
+                .unwrap_or_default();
+            names.iter().map(|name| plain((*name).to_owned())).collect()
+        }
+        "twist" => coordinates(""),
+        "acceleration" => coordinates("d"),
+        "joints" => joints("q", &all),
+        "joint_velocities" => joints("qd", &all),
+        "joint_accelerations" => joints("qdd", &all),
+        "actuators" => joints("q", &actuated),
+        "actuator_velocities" => joints("qd", &actuated),
+        "actuator_accelerations" => joints("qdd", &actuated),
+        "torques" => joints("tau", &actuated),
+        "parameters" => {
+            let all = model
+                .selection
+                .standard
+                .iter()
+                .chain(&model.selection.payload);
+            all.map(|&parameter| plain(model.parameter_name(parameter)))
+                .collect()
+        }
+        _ => (1..=count).map(|i| plain(format!("{name}_{i}"))).collect(),
+    }
+}
+
+/// `vx`, `wz`: the twist's coordinates.
+fn twist(model: &RobotModel) -> Vec<String> {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    let platform = model.mechanism.platform.as_ref();
+    let coordinates = platform.map(|p| p.motion.twist()).unwrap_or_default();
+    let label = |coordinate: TwistCoordinate| match coordinate {
+        TwistCoordinate::Linear(axis) => format!("v{}", AXES[axis]),
+        TwistCoordinate::Angular(axis) => format!("w{}", AXES[axis]),
+    };
+    coordinates.into_iter().map(label).collect()
+}
+
+/// What the entries of an output are called.
+fn outputs(model: &RobotModel, function: &CompiledFunction) -> Vec<String> {
+    let shape = &function.program.output.shape;
+    let columns = model.columns_of(function.family);
+    if let ([_, width], false) = (&shape[..], columns.is_empty()) {
+        let count = function.program.entries.len();
+        let name = |at: usize| {
+            let column = columns.get(at % width).map(|&p| model.parameter_name(p));
+            let row = row(model, function.family, at / width);
+            column.map_or_else(String::new, |column| format!("{column}_on_{row}"))
+        };
+        return (0..count).map(name).collect();
+    }
+    Vec::new()
+}
+
+/// What an identification model's row is the equation of: a twist coordinate or a joint.
+fn row(model: &RobotModel, family: Family, row: usize) -> String {
+    let joints = model.mechanism.joints();
+    let joint = |at: usize| {
+        let index = joints[at];
+        let joint = &model.mechanism.joint(index).name;
+        match model.is_tree() {
+            true => format!("q{joint}"),
+            false => format!("q{joint}_{}", model.mechanism.legs[index.leg].name),
+        }
+    };
+    let on_actuators = matches!(
+        family,
+        Family::IdmRedActuators(_) | Family::IdmRedPayloadActuators
+    );
+    if model.is_tree() {
+        return joint(row);
+    }
+    if on_actuators {
+        let actuated = model.mechanism.actuated();
+        let kept = model.selection.kept_actuators.get(row);
+        return kept.map_or_else(String::new, |&kept| joint(actuated[kept]));
+    }
+    twist(model).get(row).cloned().unwrap_or_default()
+}

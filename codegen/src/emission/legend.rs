@@ -1,0 +1,387 @@
+//! What the names in a generated file mean: a table for its head, with the symbols and equations of Briot,
+//! Krut, Gautier 2015.
+//!
+//! A kind of name is written as a pattern: `#` stands for one or more of the robot's joints, `@` for an axis (x, y, z),
+//! `%` for a twist coordinate (vx, wz), `$` for a number. Only kinds that occur are listed, each by the first
+//! of its names.
+
+use super::labels::Labels;
+use std::collections::BTreeSet;
+
+/// A kind of name.
+struct Kind {
+    pattern: &'static str,
+    symbol: &'static str,
+    meaning: &'static str,
+}
+
+const fn kind(pattern: &'static str, symbol: &'static str, meaning: &'static str) -> Kind {
+    Kind {
+        pattern,
+        symbol,
+        meaning,
+    }
+}
+
+/// All kinds of names that the derivation gives.
+const KINDS: &[Kind] = &[
+    kind(
+        "%",
+        "v",
+        "platform's velocity that fits the actuators' best, eq. (21)",
+    ),
+    kind(
+        "d%",
+        "v̇",
+        "platform's acceleration that fits the actuators' best, eq. (24)",
+    ),
+    kind("c_phi", "cos φ", "of the platform's angle"),
+    kind("s_phi", "sin φ", "of the platform's angle"),
+    kind(
+        "c#",
+        "cos q",
+        "of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it",
+    ),
+    kind("s#", "sin q", "as the cosine"),
+    kind("q#", "q", "position of a joint, m or rad, eq. (7)"),
+    kind(
+        "p_@",
+        "p",
+        "from the platform's origin to the leg's end, base axes, m",
+    ),
+    kind(
+        "d_@",
+        "D",
+        "from the leg's first joint to its end, in the leg's plane, m",
+    ),
+    kind("rho_squared", "ρ²", "D · D, m²"),
+    kind("h_squared", "h²", "l₁²/ρ² - a², the square of h"),
+    kind("h", "h", "the elbow stands at a D ± h D⊥, eq. (7) solved"),
+    kind("l1_@", "l₁ e₁", "the proximal link, in the leg's plane, m"),
+    kind("l2_@", "l₂ e₂", "the distal link, in the leg's plane, m"),
+    kind(
+        "w#_squared",
+        "w²",
+        "radicand of the closure's equation for a joint; negative out of reach",
+    ),
+    kind("w#", "w", "root of the closure's equation for a joint"),
+    kind(
+        "middle#",
+        "-(q' + q'')/2",
+        "less the mean of the two positions that a slide can have",
+    ),
+    kind(
+        "det",
+        "det J_k",
+        "determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant",
+    ),
+    kind(
+        "k",
+        "k",
+        "common factor, but for signs, of the leg's wrenches: the reciprocal of its determinant and a constant",
+    ),
+    kind("k#", "k_i", "common factor of one of the leg's wrenches"),
+    kind(
+        "f#_@",
+        "f_i",
+        "force of the wrench at the leg's end that feels u_i alone, base axes: a row of J_k⁻¹, eq. (9)",
+    ),
+    kind("n#_@", "n_i", "moment of that wrench about the leg's end"),
+    kind(
+        "fk#_@",
+        "f_i/k",
+        "that force without the factor k, in the leg's axes",
+    ),
+    kind(
+        "nk#_@",
+        "n_i/k",
+        "that moment without the factor k, in the leg's axes",
+    ),
+    kind(
+        "rate_#",
+        "u_i",
+        "rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9)",
+    ),
+    kind("rate_#_squared", "u_i²", "its square"),
+    kind("rate_dot_#", "u̇_i", "derivative of that rate, eq. (10)"),
+    kind(
+        "bias_rate_dot_#",
+        "u̇_i at v̇ = 0",
+        "what is left of the derivative without the platform's acceleration, eq. (10)",
+    ),
+    kind(
+        "g#_%",
+        "∂u_i/∂v",
+        "a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian",
+    ),
+    kind(
+        "gq#_%",
+        "∂q̇_i/∂v",
+        "the same of the joint's own rate; of an actuated joint a row of J_p^inv, eq. (20)",
+    ),
+    kind("qd_#", "q̇_i", "rate of a joint, rad/s or m/s, eq. (9)"),
+    kind("qdd_#", "q̈_i", "acceleration of a joint, eq. (10)"),
+    kind(
+        "bias_qdd_#",
+        "q̈_i at v̇ = 0",
+        "what is left of it without the platform's acceleration",
+    ),
+    kind("v_end_@", "Ṗ", "velocity of the leg's end, m/s"),
+    kind("a_end_@", "P̈", "acceleration of the leg's end, m/s²"),
+    kind(
+        "v_arm_@",
+        "ω × p",
+        "velocity of the leg's end beside the platform's origin",
+    ),
+    kind(
+        "a_arm_@",
+        "ω̇ × p + ω × (ω × p)",
+        "acceleration of the leg's end beside the platform's origin",
+    ),
+    kind(
+        "bias_a_end_@",
+        "P̈ at v̇ = 0",
+        "acceleration of the leg's end without the platform's acceleration",
+    ),
+    kind(
+        "bias_a_arm_@",
+        "ω × (ω × p)",
+        "centripetal acceleration of the leg's end",
+    ),
+    kind(
+        "a_on_f#",
+        "(f_i/k) · (P̈ - b)",
+        "acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it",
+    ),
+    kind(
+        "bias_a_on_f#",
+        "(f_i/k) · (P̈ - b) at v̇ = 0",
+        "the same without the platform's acceleration",
+    ),
+    kind("w_@", "Rᵀ ω", "platform's angular velocity in its own axes"),
+    kind(
+        "wd_@",
+        "Rᵀ ω̇",
+        "platform's angular acceleration in its own axes",
+    ),
+    kind(
+        "a_@",
+        "Rᵀ a",
+        "acceleration of the platform's origin in its own axes",
+    ),
+    kind("w#_@", "ω_j", "angular velocity of body j in its own axes"),
+    kind(
+        "wd#_@",
+        "ω̇_j",
+        "angular acceleration of body j in its own axes",
+    ),
+    kind(
+        "a#_@",
+        "a_j - g",
+        "acceleration of the origin of body j less gravity, in its own axes",
+    ),
+    kind("u#_@@", "U_j", "[ω̇]× + [ω]×[ω]× of body j"),
+    kind(
+        "v#_by_#_@",
+        "∂V_j/∂u_i",
+        "partial velocity of the origin of body j",
+    ),
+    kind(
+        "w#_by_#_@",
+        "∂Ω_j/∂u_i",
+        "partial angular velocity of body j",
+    ),
+    kind(
+        "force#_@",
+        "f",
+        "force of a body's inertial parameters, in its own axes (the platform's: in the base's)",
+    ),
+    kind(
+        "moment#_@",
+        "m",
+        "moment of a body's inertial parameters about its origin",
+    ),
+    kind(
+        "tau_#",
+        "τ_j",
+        "friction, offset and rotor inertia of a joint, eq. (5)",
+    ),
+    kind(
+        "force_on_u#",
+        "s_i",
+        "generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30)",
+    ),
+    kind(
+        "force_on_%",
+        "Dᵀ τ_p",
+        "generalised force of what moves with the platform, eq. (17)",
+    ),
+    kind(
+        "bias_wd_@",
+        "Rᵀ ω̇ at v̇ = 0",
+        "platform's angular acceleration without v̇, in its own axes",
+    ),
+    kind(
+        "bias_a_@",
+        "Rᵀ a at v̇ = 0",
+        "acceleration of the platform's origin without v̇, in its own axes",
+    ),
+    kind(
+        "bias_wd#_@",
+        "ω̇_j at v̇ = 0",
+        "angular acceleration of body j without the independent accelerations",
+    ),
+    kind(
+        "bias_a#_@",
+        "a_j - g at v̇ = 0",
+        "acceleration of the origin of body j, likewise",
+    ),
+    kind(
+        "bias_u#_@@",
+        "U_j at v̇ = 0",
+        "[ω̇]× + [ω]×[ω]× of body j, likewise",
+    ),
+    kind("s_$_$", "S", "(J_p^inv)ᵀ J_p^inv, eq. (22)"),
+    kind(
+        "schur_$_$",
+        "S'",
+        "S after elimination of the columns before",
+    ),
+    kind("pivot_$", "d_k", "pivot of S = L diag(d) Lᵀ"),
+    kind("inv_pivot_$", "1/d_k", "its reciprocal"),
+    kind("l_$_$", "L", "entry of L"),
+    kind(
+        "normal_$_$",
+        "(I - J J⁺) e",
+        "a vector of the null space of (J_p^inv)ᵀ, before it is made one of length 1, eq. (50)",
+    ),
+    kind("norm_$", "‖(I - J J⁺) e‖", "its length"),
+    kind("inv_norm_$", "1/‖(I - J J⁺) e‖", "the reciprocal"),
+    kind(
+        "det_ja",
+        "det J_a",
+        "determinant of the kept actuators' rows of J_p^inv, but for a constant",
+    ),
+    kind("%_by_a$", "J_a⁻¹", "∂v/∂q̇ of a kept actuator, eq. (36)"),
+    kind(
+        "g#_a$",
+        "∂u_i/∂q̇_a",
+        "the reduced Jacobian on a kept actuator, eq. (36)",
+    ),
+];
+
+/// The lines of documentation that explain the names of a robot's functions.
+#[must_use]
+pub fn lines(labels: &Labels, names: &BTreeSet<String>) -> Vec<String> {
+    let parsed: Vec<(String, String)> = names
+        .iter()
+        .map(|name| {
+            let positive = name.strip_prefix("minus_").unwrap_or(name);
+            (labels.parsed(positive).what, positive.to_owned())
+        })
+        .collect();
+    let mut rows = Vec::new();
+    for kind in KINDS {
+        let found = parsed
+            .iter()
+            .find(|(what, _)| fits(kind.pattern, what, labels.joints()));
+        if let Some((_, name)) = found {
+            rows.push(format!(
+                " | `{name}` | {} | {} |",
+                kind.symbol, kind.meaning
+            ));
+        }
+    }
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let head = [
+        " # Names",
+        "",
+        " | name | symbol | meaning |",
+        " |---|---|---|",
+    ];
+    let tail = [
+        "",
+        " `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,",
+        " `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;",
+        " `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.",
+    ];
+    let head = head.iter().map(ToString::to_string);
+    head.chain(rows)
+        .chain(tail.iter().map(ToString::to_string))
+        .collect()
+}
+
+/// Whether a name is of a kind, where these are the names of the joints.
+fn fits(pattern: &str, name: &str, joints: &[String]) -> bool {
+    let mut letters = pattern.chars();
+    let Some(first) = letters.next() else {
+        return name.is_empty();
+    };
+    let rest = letters.as_str();
+    let is_axis = |c: char| matches!(c, 'x' | 'y' | 'z');
+    match first {
+        '#' => joints.iter().any(|joint| {
+            let behind = name.strip_prefix(joint.as_str());
+            behind.is_some_and(|left| {
+                let offset = left.strip_prefix('o');
+                let ends =
+                    fits(rest, left, joints) || offset.is_some_and(|l| fits(rest, l, joints));
+                ends || fits(pattern, left, joints)
+            })
+        }),
+        '$' => {
+            let digits = name.bytes().take_while(u8::is_ascii_digit).count();
+            (1..=digits).any(|count| fits(rest, &name[count..], joints))
+        }
+        '@' => name
+            .strip_prefix(is_axis)
+            .is_some_and(|left| fits(rest, left, joints)),
+        '%' => {
+            let left = name
+                .strip_prefix(['v', 'w'])
+                .and_then(|left| left.strip_prefix(is_axis));
+            left.is_some_and(|left| fits(rest, left, joints))
+        }
+        letter => name
+            .strip_prefix(letter)
+            .is_some_and(|left| fits(rest, left, joints)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{KINDS, fits};
+
+    fn first(name: &str) -> Option<&'static str> {
+        let joints = ["1", "2", "elbow"].map(str::to_owned);
+        let kind = KINDS.iter().find(|k| fits(k.pattern, name, &joints));
+        kind.map(|k| k.pattern)
+    }
+
+    #[test]
+    fn names_are_of_the_kind_that_explains_them() {
+        assert_eq!(first("c_phi"), Some("c_phi"));
+        assert_eq!(first("c12"), Some("c#"));
+        assert_eq!(first("c12o"), Some("c#"));
+        assert_eq!(first("selbow"), Some("s#"));
+        assert_eq!(first("g1_vx"), Some("g#_%"));
+        assert_eq!(first("g1_a2"), Some("g#_a$"));
+        assert_eq!(first("wz"), Some("%"));
+        assert_eq!(first("force2_x"), Some("force#_@"));
+        assert_eq!(first("rate_dot_2"), Some("rate_dot_#"));
+        assert_eq!(first("u2_xy"), Some("u#_@@"));
+        assert_eq!(first("g1_vx_rate_dot_1"), None);
+        assert_eq!(first("t12"), None);
+    }
+
+    #[test]
+    fn no_kind_hides_another() {
+        for kind in KINDS {
+            let name = kind.pattern.replace(['#', '$'], "1").replace('@', "x");
+            let name = name.replace('%', "vx");
+            assert_eq!(first(&name), Some(kind.pattern), "{name}");
+        }
+    }
+}
