@@ -123,7 +123,7 @@ def rust_main(function, template):
 
 def blocks(function, core=0, rounds=2000):
     """Nanoseconds per sample of overact's function, of its program over blocks, and of the same with rows."""
-    (program,) = rust_programs([function], "blocks.rs", [("overact-codegen", "codegen")])
+    (program,) = rust_programs([function], "blocks.rs", [("overact", "runtime"), ("overact-codegen", "codegen")])
     path = BUILD / "states" / f"{function.robot}_blocks.bin"
     write_states(path, states(function, STATES, seed=2))
     command = ["taskset", "-c", str(core), program.path, path, str(rounds)]

@@ -1,6 +1,6 @@
 //! The stages of the generator, in order.
 
-use crate::derivation::{Family, Underivable};
+use crate::derivation::{Underivable, inventory};
 use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
 use crate::effort::Effort;
@@ -61,11 +61,11 @@ fn derived(
         selection: &selection,
         search: &Search::with(effort, &mechanism),
     };
-    let mut wanted = Family::all(&mechanism, selection.joints);
-    wanted.retain(|&(family, from)| is_wanted(&mechanism, family, from));
-    let functions = parallel::map(&wanted, |&(family, from)| {
-        let program = assembler.cheapest(family, from)?;
-        Ok(CompiledFunction::new(&mechanism, family, from, program))
+    let mut wanted = inventory(&mechanism, selection.joints);
+    wanted.retain(|&(function, from)| is_wanted(&mechanism, function, from));
+    let functions = parallel::map(&wanted, |&(function, from)| {
+        let program = assembler.cheapest(function, from)?;
+        Ok(CompiledFunction::new(&mechanism, function, from, program))
     });
     Ok(RobotModel {
         functions: functions.into_iter().collect::<Result<_, Underivable>>()?,

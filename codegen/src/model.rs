@@ -1,18 +1,19 @@
 //! A compiled robot: sizes, parameters and one program per function.
 
-use crate::derivation::{BodyParameter, Columns, Family, JointsBy, MotionInput, Selection};
+use crate::derivation::{BodyParameter, JointsBy, MotionInput, Selection, function_name};
 use crate::lowering::Program;
 use crate::mechanism::{JointKind, Mechanism};
 use crate::selection::BaseParameter;
+use overact_core::{Columns, Function};
 
-/// A function of the robot.
+/// A function of the robot with its program.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct CompiledFunction {
     /// Name of the Rust function.
     pub name: String,
     /// What it computes.
-    pub family: Family,
+    pub computes: Function,
     /// What it is evaluated from. From actuators, the program's pose is the one that forward
     /// kinematics finds.
     pub from: MotionInput,
@@ -24,13 +25,13 @@ impl CompiledFunction {
     /// A function of a robot with its program.
     pub(crate) fn new(
         mechanism: &Mechanism,
-        family: Family,
+        function: Function,
         from: MotionInput,
         program: Program,
     ) -> Self {
         Self {
-            name: family.function_name(from, mechanism.platform.is_none()),
-            family,
+            name: function_name(function, from, mechanism.platform.is_none()),
+            computes: function,
             from,
             program,
         }
@@ -52,23 +53,33 @@ pub struct RobotModel {
 }
 
 impl RobotModel {
-    /// The function of a family, evaluated from what is asked for.
+    /// The program of a function, evaluated from what is asked for.
     #[must_use]
-    pub fn function(&self, family: Family, from: MotionInput) -> Option<&CompiledFunction> {
+    pub fn function(&self, function: Function, from: MotionInput) -> Option<&CompiledFunction> {
         self.functions
             .iter()
-            .find(|f| f.family == family && f.from == from)
+            .find(|f| f.computes == function && f.from == from)
     }
 
     /// The function that plain states (pose or, for a tree, joints) are given to.
     #[must_use]
-    pub fn plain(&self, family: Family) -> Option<&CompiledFunction> {
+    pub fn plain(&self, function: Function) -> Option<&CompiledFunction> {
         let from = if self.is_tree() {
             MotionInput::Joints
         } else {
             MotionInput::Pose
         };
-        self.function(family, from)
+        self.function(function, from)
+    }
+
+    /// The form of a function that [`overact::Model`](https://docs.rs/overact) evaluates, whose inputs are
+    /// those of [`Function::inputs`].
+    #[must_use]
+    pub fn served(&self, function: Function) -> Option<&CompiledFunction> {
+        let from = |from| self.function(function, from);
+        self.plain(function)
+            .or_else(|| from(MotionInput::Joints))
+            .or_else(|| from(MotionInput::Actuators))
     }
 
     /// Whether the robot has no platform.
@@ -86,15 +97,15 @@ impl RobotModel {
     /// Whether forward kinematics finds the function's pose before its program runs.
     #[must_use]
     pub fn finds_pose(&self, function: &CompiledFunction) -> bool {
-        function.from == MotionInput::Actuators && function.family != Family::PoseInClosedForm
+        function.from == MotionInput::Actuators && function.computes != Function::PoseInClosedForm
     }
 
     /// The parameters that the columns of a function stand for.
     #[must_use]
-    pub fn columns_of(&self, family: Family) -> &[BodyParameter] {
-        match family {
-            Family::IdmRedPayload | Family::IdmRedPayloadActuators => &self.selection.payload,
-            _ => match family.columns() {
+    pub fn columns_of(&self, function: Function) -> &[BodyParameter] {
+        match function {
+            Function::IdmRedPayload | Function::IdmRedPayloadActuators => &self.selection.payload,
+            _ => match function.columns() {
                 Some(Columns::Standard) => &self.selection.standard,
                 Some(Columns::Base) => &self.selection.base,
                 None => &[],
@@ -126,11 +137,10 @@ impl RobotModel {
     pub fn parameter_unit(&self, parameter: BodyParameter) -> &'static str {
         match parameter {
             BodyParameter::Leg { leg, joint, symbol } => {
-                symbol.unit(self.mechanism.legs[leg].joints[joint].kind)
+                let kind = self.mechanism.legs[leg].joints[joint].kind;
+                symbol.unit(kind == JointKind::Prismatic)
             }
-            BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
-                symbol.unit(JointKind::Fixed)
-            }
+            BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => symbol.unit(false),
         }
     }
 }

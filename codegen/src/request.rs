@@ -1,11 +1,12 @@
 //! What a user asks of the generator: which functions, and how much work fewer operations are worth.
 
-use crate::derivation::{Family, MotionInput};
+use crate::derivation::MotionInput;
 use crate::effort::Effort;
 use crate::mechanism::Mechanism;
+use overact_core::Function;
 
 /// Which functions of a robot a model shall have.
-pub(crate) type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, MotionInput) -> bool + Sync);
+pub(crate) type Wanted<'a> = &'a (dyn Fn(&Mechanism, Function, MotionInput) -> bool + Sync);
 
 /// What a model shall have, and what work it is worth; by default all functions, quickly.
 #[derive(Clone, Copy)]

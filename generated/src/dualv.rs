@@ -125,82 +125,82 @@ impl DualV {
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
     pub const PARAMETERS: [::overact::Parameter; 64] = {
-        use ::overact::{Parameter, Symbol};
+        use ::overact::{Parameter, StandardParameter};
         [
-            Parameter::of_leg("zz_1_leg1", Symbol::Zz, "kg m^2", 0, 0, 0),
-            Parameter::of_leg("ia_1_leg1", Symbol::Ia, "kg m^2", 0, 0, 0),
-            Parameter::of_leg("fv_1_leg1", Symbol::Fv, "N m s/rad", 0, 0, 0),
-            Parameter::of_leg("fs_1_leg1", Symbol::Fs, "N m", 0, 0, 0),
-            Parameter::of_leg("off_1_leg1", Symbol::Off, "N m", 0, 0, 0),
-            Parameter::of_leg("zz_2_leg1", Symbol::Zz, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("mx_2_leg1", Symbol::Mx, "kg m", 0, 1, 0),
-            Parameter::of_leg("my_2_leg1", Symbol::My, "kg m", 0, 1, 0),
-            Parameter::of_leg("m_2_leg1", Symbol::M, "kg", 0, 1, 0),
-            Parameter::of_leg("fv_2_leg1", Symbol::Fv, "N m s/rad", 0, 1, 0),
-            Parameter::of_leg("fs_2_leg1", Symbol::Fs, "N m", 0, 1, 0),
-            Parameter::of_leg("off_2_leg1", Symbol::Off, "N m", 0, 1, 0),
-            Parameter::of_leg("fv_3_leg1", Symbol::Fv, "N m s/rad", 0, 2, 0),
-            Parameter::of_leg("fs_3_leg1", Symbol::Fs, "N m", 0, 2, 0),
-            Parameter::of_leg("off_3_leg1", Symbol::Off, "N m", 0, 2, 0),
-            Parameter::of_leg("zz_1_leg2", Symbol::Zz, "kg m^2", 1, 0, 0),
-            Parameter::of_leg("ia_1_leg2", Symbol::Ia, "kg m^2", 1, 0, 0),
-            Parameter::of_leg("fv_1_leg2", Symbol::Fv, "N m s/rad", 1, 0, 0),
-            Parameter::of_leg("fs_1_leg2", Symbol::Fs, "N m", 1, 0, 0),
-            Parameter::of_leg("off_1_leg2", Symbol::Off, "N m", 1, 0, 0),
-            Parameter::of_leg("zz_2_leg2", Symbol::Zz, "kg m^2", 1, 1, 0),
-            Parameter::of_leg("mx_2_leg2", Symbol::Mx, "kg m", 1, 1, 0),
-            Parameter::of_leg("my_2_leg2", Symbol::My, "kg m", 1, 1, 0),
-            Parameter::of_leg("m_2_leg2", Symbol::M, "kg", 1, 1, 0),
-            Parameter::of_leg("fv_2_leg2", Symbol::Fv, "N m s/rad", 1, 1, 0),
-            Parameter::of_leg("fs_2_leg2", Symbol::Fs, "N m", 1, 1, 0),
-            Parameter::of_leg("off_2_leg2", Symbol::Off, "N m", 1, 1, 0),
-            Parameter::of_leg("fv_3_leg2", Symbol::Fv, "N m s/rad", 1, 2, 0),
-            Parameter::of_leg("fs_3_leg2", Symbol::Fs, "N m", 1, 2, 0),
-            Parameter::of_leg("off_3_leg2", Symbol::Off, "N m", 1, 2, 0),
-            Parameter::of_leg("zz_1_leg3", Symbol::Zz, "kg m^2", 2, 0, 0),
-            Parameter::of_leg("ia_1_leg3", Symbol::Ia, "kg m^2", 2, 0, 0),
-            Parameter::of_leg("fv_1_leg3", Symbol::Fv, "N m s/rad", 2, 0, 0),
-            Parameter::of_leg("fs_1_leg3", Symbol::Fs, "N m", 2, 0, 0),
-            Parameter::of_leg("off_1_leg3", Symbol::Off, "N m", 2, 0, 0),
-            Parameter::of_leg("zz_2_leg3", Symbol::Zz, "kg m^2", 2, 1, 0),
-            Parameter::of_leg("mx_2_leg3", Symbol::Mx, "kg m", 2, 1, 0),
-            Parameter::of_leg("my_2_leg3", Symbol::My, "kg m", 2, 1, 0),
-            Parameter::of_leg("m_2_leg3", Symbol::M, "kg", 2, 1, 0),
-            Parameter::of_leg("fv_2_leg3", Symbol::Fv, "N m s/rad", 2, 1, 0),
-            Parameter::of_leg("fs_2_leg3", Symbol::Fs, "N m", 2, 1, 0),
-            Parameter::of_leg("off_2_leg3", Symbol::Off, "N m", 2, 1, 0),
-            Parameter::of_leg("fv_3_leg3", Symbol::Fv, "N m s/rad", 2, 2, 0),
-            Parameter::of_leg("fs_3_leg3", Symbol::Fs, "N m", 2, 2, 0),
-            Parameter::of_leg("off_3_leg3", Symbol::Off, "N m", 2, 2, 0),
-            Parameter::of_leg("zz_1_leg4", Symbol::Zz, "kg m^2", 3, 0, 0),
-            Parameter::of_leg("ia_1_leg4", Symbol::Ia, "kg m^2", 3, 0, 0),
-            Parameter::of_leg("fv_1_leg4", Symbol::Fv, "N m s/rad", 3, 0, 0),
-            Parameter::of_leg("fs_1_leg4", Symbol::Fs, "N m", 3, 0, 0),
-            Parameter::of_leg("off_1_leg4", Symbol::Off, "N m", 3, 0, 0),
-            Parameter::of_leg("zz_2_leg4", Symbol::Zz, "kg m^2", 3, 1, 0),
-            Parameter::of_leg("mx_2_leg4", Symbol::Mx, "kg m", 3, 1, 0),
-            Parameter::of_leg("my_2_leg4", Symbol::My, "kg m", 3, 1, 0),
-            Parameter::of_leg("m_2_leg4", Symbol::M, "kg", 3, 1, 0),
-            Parameter::of_leg("fv_2_leg4", Symbol::Fv, "N m s/rad", 3, 1, 0),
-            Parameter::of_leg("fs_2_leg4", Symbol::Fs, "N m", 3, 1, 0),
-            Parameter::of_leg("off_2_leg4", Symbol::Off, "N m", 3, 1, 0),
-            Parameter::of_leg("fv_3_leg4", Symbol::Fv, "N m s/rad", 3, 2, 0),
-            Parameter::of_leg("fs_3_leg4", Symbol::Fs, "N m", 3, 2, 0),
-            Parameter::of_leg("off_3_leg4", Symbol::Off, "N m", 3, 2, 0),
-            Parameter::of_platform("zz_platform", Symbol::Zz, "kg m^2"),
-            Parameter::of_platform("mx_platform", Symbol::Mx, "kg m"),
-            Parameter::of_platform("my_platform", Symbol::My, "kg m"),
-            Parameter::of_platform("m_platform", Symbol::M, "kg"),
+            Parameter::of_leg("zz_1_leg1", StandardParameter::Zz, "kg m^2", 0, 0, 0),
+            Parameter::of_leg("ia_1_leg1", StandardParameter::Ia, "kg m^2", 0, 0, 0),
+            Parameter::of_leg("fv_1_leg1", StandardParameter::Fv, "N m s/rad", 0, 0, 0),
+            Parameter::of_leg("fs_1_leg1", StandardParameter::Fs, "N m", 0, 0, 0),
+            Parameter::of_leg("off_1_leg1", StandardParameter::Off, "N m", 0, 0, 0),
+            Parameter::of_leg("zz_2_leg1", StandardParameter::Zz, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("mx_2_leg1", StandardParameter::Mx, "kg m", 0, 1, 0),
+            Parameter::of_leg("my_2_leg1", StandardParameter::My, "kg m", 0, 1, 0),
+            Parameter::of_leg("m_2_leg1", StandardParameter::M, "kg", 0, 1, 0),
+            Parameter::of_leg("fv_2_leg1", StandardParameter::Fv, "N m s/rad", 0, 1, 0),
+            Parameter::of_leg("fs_2_leg1", StandardParameter::Fs, "N m", 0, 1, 0),
+            Parameter::of_leg("off_2_leg1", StandardParameter::Off, "N m", 0, 1, 0),
+            Parameter::of_leg("fv_3_leg1", StandardParameter::Fv, "N m s/rad", 0, 2, 0),
+            Parameter::of_leg("fs_3_leg1", StandardParameter::Fs, "N m", 0, 2, 0),
+            Parameter::of_leg("off_3_leg1", StandardParameter::Off, "N m", 0, 2, 0),
+            Parameter::of_leg("zz_1_leg2", StandardParameter::Zz, "kg m^2", 1, 0, 0),
+            Parameter::of_leg("ia_1_leg2", StandardParameter::Ia, "kg m^2", 1, 0, 0),
+            Parameter::of_leg("fv_1_leg2", StandardParameter::Fv, "N m s/rad", 1, 0, 0),
+            Parameter::of_leg("fs_1_leg2", StandardParameter::Fs, "N m", 1, 0, 0),
+            Parameter::of_leg("off_1_leg2", StandardParameter::Off, "N m", 1, 0, 0),
+            Parameter::of_leg("zz_2_leg2", StandardParameter::Zz, "kg m^2", 1, 1, 0),
+            Parameter::of_leg("mx_2_leg2", StandardParameter::Mx, "kg m", 1, 1, 0),
+            Parameter::of_leg("my_2_leg2", StandardParameter::My, "kg m", 1, 1, 0),
+            Parameter::of_leg("m_2_leg2", StandardParameter::M, "kg", 1, 1, 0),
+            Parameter::of_leg("fv_2_leg2", StandardParameter::Fv, "N m s/rad", 1, 1, 0),
+            Parameter::of_leg("fs_2_leg2", StandardParameter::Fs, "N m", 1, 1, 0),
+            Parameter::of_leg("off_2_leg2", StandardParameter::Off, "N m", 1, 1, 0),
+            Parameter::of_leg("fv_3_leg2", StandardParameter::Fv, "N m s/rad", 1, 2, 0),
+            Parameter::of_leg("fs_3_leg2", StandardParameter::Fs, "N m", 1, 2, 0),
+            Parameter::of_leg("off_3_leg2", StandardParameter::Off, "N m", 1, 2, 0),
+            Parameter::of_leg("zz_1_leg3", StandardParameter::Zz, "kg m^2", 2, 0, 0),
+            Parameter::of_leg("ia_1_leg3", StandardParameter::Ia, "kg m^2", 2, 0, 0),
+            Parameter::of_leg("fv_1_leg3", StandardParameter::Fv, "N m s/rad", 2, 0, 0),
+            Parameter::of_leg("fs_1_leg3", StandardParameter::Fs, "N m", 2, 0, 0),
+            Parameter::of_leg("off_1_leg3", StandardParameter::Off, "N m", 2, 0, 0),
+            Parameter::of_leg("zz_2_leg3", StandardParameter::Zz, "kg m^2", 2, 1, 0),
+            Parameter::of_leg("mx_2_leg3", StandardParameter::Mx, "kg m", 2, 1, 0),
+            Parameter::of_leg("my_2_leg3", StandardParameter::My, "kg m", 2, 1, 0),
+            Parameter::of_leg("m_2_leg3", StandardParameter::M, "kg", 2, 1, 0),
+            Parameter::of_leg("fv_2_leg3", StandardParameter::Fv, "N m s/rad", 2, 1, 0),
+            Parameter::of_leg("fs_2_leg3", StandardParameter::Fs, "N m", 2, 1, 0),
+            Parameter::of_leg("off_2_leg3", StandardParameter::Off, "N m", 2, 1, 0),
+            Parameter::of_leg("fv_3_leg3", StandardParameter::Fv, "N m s/rad", 2, 2, 0),
+            Parameter::of_leg("fs_3_leg3", StandardParameter::Fs, "N m", 2, 2, 0),
+            Parameter::of_leg("off_3_leg3", StandardParameter::Off, "N m", 2, 2, 0),
+            Parameter::of_leg("zz_1_leg4", StandardParameter::Zz, "kg m^2", 3, 0, 0),
+            Parameter::of_leg("ia_1_leg4", StandardParameter::Ia, "kg m^2", 3, 0, 0),
+            Parameter::of_leg("fv_1_leg4", StandardParameter::Fv, "N m s/rad", 3, 0, 0),
+            Parameter::of_leg("fs_1_leg4", StandardParameter::Fs, "N m", 3, 0, 0),
+            Parameter::of_leg("off_1_leg4", StandardParameter::Off, "N m", 3, 0, 0),
+            Parameter::of_leg("zz_2_leg4", StandardParameter::Zz, "kg m^2", 3, 1, 0),
+            Parameter::of_leg("mx_2_leg4", StandardParameter::Mx, "kg m", 3, 1, 0),
+            Parameter::of_leg("my_2_leg4", StandardParameter::My, "kg m", 3, 1, 0),
+            Parameter::of_leg("m_2_leg4", StandardParameter::M, "kg", 3, 1, 0),
+            Parameter::of_leg("fv_2_leg4", StandardParameter::Fv, "N m s/rad", 3, 1, 0),
+            Parameter::of_leg("fs_2_leg4", StandardParameter::Fs, "N m", 3, 1, 0),
+            Parameter::of_leg("off_2_leg4", StandardParameter::Off, "N m", 3, 1, 0),
+            Parameter::of_leg("fv_3_leg4", StandardParameter::Fv, "N m s/rad", 3, 2, 0),
+            Parameter::of_leg("fs_3_leg4", StandardParameter::Fs, "N m", 3, 2, 0),
+            Parameter::of_leg("off_3_leg4", StandardParameter::Off, "N m", 3, 2, 0),
+            Parameter::of_platform("zz_platform", StandardParameter::Zz, "kg m^2"),
+            Parameter::of_platform("mx_platform", StandardParameter::Mx, "kg m"),
+            Parameter::of_platform("my_platform", StandardParameter::My, "kg m"),
+            Parameter::of_platform("m_platform", StandardParameter::M, "kg"),
         ]
     };
     /// The payload's parameters, in column order.
     pub const PAYLOAD_PARAMETERS: [::overact::Parameter; 4] = {
-        use ::overact::{Parameter, Symbol};
+        use ::overact::{Parameter, StandardParameter};
         [
-            Parameter::of_payload("zz_payload", Symbol::Zz, "kg m^2"),
-            Parameter::of_payload("mx_payload", Symbol::Mx, "kg m"),
-            Parameter::of_payload("my_payload", Symbol::My, "kg m"),
-            Parameter::of_payload("m_payload", Symbol::M, "kg"),
+            Parameter::of_payload("zz_payload", StandardParameter::Zz, "kg m^2"),
+            Parameter::of_payload("mx_payload", StandardParameter::Mx, "kg m"),
+            Parameter::of_payload("my_payload", StandardParameter::My, "kg m"),
+            Parameter::of_payload("m_payload", StandardParameter::M, "kg"),
         ]
     };
     /// The base parameters and what is regrouped into them, in the symmetric order (43).
@@ -317,10 +317,11 @@ impl DualV {
     /// 61 operations (27 additions, 31 multiplications, 3 divisions), 3 square roots, 4 trigonometric pairs, 0 signs, 71 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("actuators", actuators)])?;
         /// l_ab = l_bc
         const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
@@ -374,10 +375,11 @@ impl DualV {
     /// 184 operations (82 additions, 98 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 197 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn joints(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// l_ab²
@@ -522,10 +524,11 @@ impl DualV {
     /// 80 operations (38 additions, 38 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 88 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -602,10 +605,11 @@ impl DualV {
     /// 80 operations (30 additions, 42 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 74 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -695,11 +699,12 @@ impl DualV {
     /// 30 operations (8 additions, 18 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 32 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// r_p
@@ -753,10 +758,11 @@ impl DualV {
     /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 190 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn jacobian(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -893,11 +899,14 @@ impl DualV {
     /// Output: 12 x 12.
     ///
     /// 28 operations (12 additions, 16 multiplications, 0 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 28 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn legs_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 3],
+        pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
-    ) -> [[::core::primitive::f64; 12]; 12] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 12]; 12], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// l_ab = l_bc
         const L_AB: ::core::primitive::f64 = 0.28;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
@@ -911,7 +920,7 @@ impl DualV {
             joints[0], q1_plus_q2_leg1, joints[3], q1_plus_q2_leg2, joints[6], q1_plus_q2_leg3,
             joints[9], q1_plus_q2_leg4,
         ]);
-        [
+        ::core::result::Result::Ok([
             [
                 -(L_AB * (s1_leg1 + s12_leg1)), -(L_AB * s12_leg1), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0,
@@ -948,7 +957,7 @@ impl DualV {
                 L_AB * c12_leg4, 0.0,
             ],
             [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
-        ]
+        ])
     }
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
@@ -959,22 +968,25 @@ impl DualV {
     /// Output: 12 x 3.
     ///
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 2 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn legs_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
-        _joints: &[::core::primitive::f64; 12],
-    ) -> [[::core::primitive::f64; 3]; 12] {
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 12], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// r_p
         const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let p_x_leg3 = R_P * s_phi;
-        [
+        ::core::result::Result::Ok([
             [1.0, 0.0, -p_y_leg1], [0.0, 1.0, -p_x_leg3], [0.0, 0.0, 1.0], [1.0, 0.0, -p_y_leg1],
             [0.0, 1.0, -p_x_leg3], [0.0, 0.0, 1.0], [1.0, 0.0, p_y_leg1], [0.0, 1.0, p_x_leg3],
             [0.0, 0.0, 1.0], [1.0, 0.0, p_y_leg1], [0.0, 1.0, p_x_leg3], [0.0, 0.0, 1.0],
-        ]
+        ])
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
@@ -987,11 +999,12 @@ impl DualV {
     /// 46 operations (8 additions, 34 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 48 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// l_ab = l_bc
@@ -1057,21 +1070,24 @@ impl DualV {
     /// Output: 4 x 4.
     ///
     /// 4 operations (0 additions, 4 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 4 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 3],
+        pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
-    ) -> [[::core::primitive::f64; 4]; 4] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         // --- sines and cosines
         let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _), (s2_leg4, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10],
         ]);
-        [
+        ::core::result::Result::Ok([
             [-(L_AB_SQUARED * s2_leg1), 0.0, 0.0, 0.0], [0.0, -(L_AB_SQUARED * s2_leg2), 0.0, 0.0],
             [0.0, 0.0, -(L_AB_SQUARED * s2_leg3), 0.0], [0.0, 0.0, 0.0, -(L_AB_SQUARED * s2_leg4)],
-        ]
+        ])
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
@@ -1084,11 +1100,12 @@ impl DualV {
     /// 122 operations (54 additions, 60 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 116 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn joint_velocities(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("twist", twist)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -1215,12 +1232,15 @@ impl DualV {
     /// 214 operations (90 additions, 116 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 208 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -1399,11 +1419,14 @@ impl DualV {
     /// 171 operations (67 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 174 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
         pose: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("actuator_velocities", actuator_velocities)],
+        )?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -1528,12 +1551,18 @@ impl DualV {
     /// 271 operations (107 additions, 153 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 274 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         actuator_accelerations: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist),
+                ("actuator_accelerations", actuator_accelerations),
+            ],
+        )?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -1734,12 +1763,15 @@ impl DualV {
     /// 418 operations (153 additions, 252 multiplications, 13 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 288 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -2127,13 +2159,19 @@ impl DualV {
     /// 368 operations (122 additions, 242 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 250 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -2447,13 +2485,19 @@ impl DualV {
     /// 588 operations (225 additions, 346 multiplications, 17 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 455 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -2942,12 +2986,15 @@ impl DualV {
     /// 501 operations (184 additions, 308 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 401 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -3369,13 +3416,19 @@ impl DualV {
     /// 454 operations (156 additions, 293 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 366 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -3751,13 +3804,19 @@ impl DualV {
     /// 657 operations (252 additions, 393 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 557 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -4273,12 +4332,15 @@ impl DualV {
     /// 362 operations (127 additions, 227 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 265 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -4592,13 +4654,19 @@ impl DualV {
     /// 310 operations (96 additions, 210 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 225 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -4871,13 +4939,19 @@ impl DualV {
     /// 515 operations (194 additions, 298 multiplications, 23 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 415 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -5277,12 +5351,15 @@ impl DualV {
     /// 452 operations (160 additions, 283 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 376 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -5709,13 +5786,19 @@ impl DualV {
     /// 405 operations (132 additions, 268 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 341 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -6098,13 +6181,19 @@ impl DualV {
     /// 612 operations (229 additions, 371 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 536 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -6625,12 +6714,17 @@ impl DualV {
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 16 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn idm_red_payload(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
-    ) -> [[::core::primitive::f64; 4]; 3] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
         /// r_p
@@ -6647,11 +6741,11 @@ impl DualV {
         let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        [
+        ::core::result::Result::Ok([
             [0.0, -minus_mx_payload_on_vx, my_payload_on_vx, acceleration[0]],
             [0.0, -my_payload_on_vx, -minus_mx_payload_on_vx, acceleration[1]],
             [acceleration[2], a_y_platform, -a_x_platform, 0.0],
-        ]
+        ])
     }
     /// The payload's columns of case 1, eq. (38).
     ///
@@ -6665,13 +6759,21 @@ impl DualV {
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 16 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn idm_red_payload_from_joints(
         pose: &[::core::primitive::f64; 3],
-        _joints: &[::core::primitive::f64; 12],
+        joints: &[::core::primitive::f64; 12],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
-    ) -> [[::core::primitive::f64; 4]; 3] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
         /// r_p
@@ -6688,11 +6790,11 @@ impl DualV {
         let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        [
+        ::core::result::Result::Ok([
             [0.0, -minus_mx_payload_on_vx, my_payload_on_vx, acceleration[0]],
             [0.0, -my_payload_on_vx, -minus_mx_payload_on_vx, acceleration[1]],
             [acceleration[2], a_y_platform, -a_x_platform, 0.0],
-        ]
+        ])
     }
     /// The payload's columns of case 1, eq. (38).
     ///
@@ -6708,13 +6810,19 @@ impl DualV {
     /// 320 operations (126 additions, 183 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 319 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
@@ -6954,12 +7062,15 @@ impl DualV {
     /// 149 operations (48 additions, 94 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 142 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
         /// l_ab²
@@ -7086,11 +7197,12 @@ impl DualV {
     /// 101 operations (39 additions, 54 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 104 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn project_platform(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -7182,11 +7294,12 @@ impl DualV {
     /// 136 operations (47 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 139 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn project_actuators(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -7304,13 +7417,19 @@ impl DualV {
     /// 583 operations (257 additions, 315 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 597 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
+                ("parameters", parameters),
+            ],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -7665,7 +7784,7 @@ impl DualV {
     /// 533 operations (227 additions, 299 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 12 signs, 559 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -7673,6 +7792,12 @@ impl DualV {
         acceleration: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration), ("parameters", parameters),
+            ],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -7989,7 +8114,7 @@ impl DualV {
     /// 684 operations (303 additions, 370 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 698 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -7997,6 +8122,13 @@ impl DualV {
         parameters: &[::core::primitive::f64; 68],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("parameters", parameters),
+                ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -8425,11 +8557,12 @@ impl DualV {
     /// 475 operations (185 additions, 282 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 475 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn mass_matrix(
         pose: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// l_ab²
@@ -8717,12 +8850,15 @@ impl DualV {
     /// 459 operations (203 additions, 248 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 474 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn bias(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("parameters", parameters)],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -9043,7 +9179,7 @@ impl DualV {
     /// 633 operations (276 additions, 345 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 648 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -9051,6 +9187,12 @@ impl DualV {
         parameters: &[::core::primitive::f64; 68],
         preload: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
+                ("parameters", parameters), ("preload", preload),
+            ],
+        )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
         /// 1 / r_p
@@ -9414,7 +9556,7 @@ impl DualV {
                 - (minus_g1_vx_leg4 * t9 + minus_g1_vy_leg4 * t8 + minus_g1_wz_leg4 * t7),
         ])
     }
-    /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
+    /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -9425,11 +9567,12 @@ impl DualV {
     /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 193 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -9553,10 +9696,11 @@ impl DualV {
     /// 176 operations (67 additions, 97 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 0 signs, 179 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn null_space(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -9674,11 +9818,12 @@ impl DualV {
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
     ///
     /// # Errors
-    /// No convergence, or a singular or unreachable configuration on the way.
+    /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
         let from = |mut pose: [::core::primitive::f64; Self::POSE]| {
             ::overact::forward::gauss_newton(
                     ::overact::forward::Measured {
@@ -9712,18 +9857,22 @@ impl DualV {
             })
     }
 }
+impl DualV {
+    const SIZES: ::overact::Sizes = ::overact::Sizes {
+        pose: Self::POSE,
+        dof: Self::DOF,
+        actuators: Self::ACTUATORS,
+        joints: Self::JOINTS,
+        parameters: 64,
+        base_parameters: 49,
+        payload_parameters: 4,
+    };
+}
 impl ::overact::Model for DualV {
     fn info(&self) -> ::overact::Info<'_> {
         ::overact::Info {
             name: Self::NAME,
-            sizes: ::overact::Sizes {
-                pose: Self::POSE,
-                dof: Self::DOF,
-                actuators: Self::ACTUATORS,
-                joints: Self::JOINTS,
-                parameters: 64,
-                payload_parameters: 4,
-            },
+            sizes: Self::SIZES,
             legs: &Self::LEGS,
             actuators: &Self::ACTUATOR_NAMES,
             actuated_joints: &Self::ACTUATED_JOINTS,
@@ -9743,62 +9892,168 @@ impl ::overact::Model for DualV {
         output: &mut [::core::primitive::f64],
     ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
+            ::overact::Function::PoseInClosedForm => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::pose_in_closed_form(row.row(0)?))
+            }
             ::overact::Function::Joints => {
-                ::overact::block::map1(12, inputs, output, Self::joints)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joints(row.row(0)?))
             }
             ::overact::Function::ActuatorPositions => {
-                ::overact::block::map1(4, inputs, output, Self::actuator_positions)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::actuator_positions(row.row(0)?))
             }
             ::overact::Function::InverseJacobian => {
-                ::overact::block::map1(12, inputs, output, Self::inverse_jacobian)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_jacobian(row.row(0)?))
+            }
+            ::overact::Function::Jacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::jacobian(row.row(0)?))
+            }
+            ::overact::Function::LegsJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::legs_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
+            }
+            ::overact::Function::LegsPlatformJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::legs_platform_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
+            }
+            ::overact::Function::ClosurePlatformJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::closure_platform_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
+            }
+            ::overact::Function::ClosureActuatorJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::closure_actuator_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
             }
             ::overact::Function::JointVelocities => {
-                ::overact::block::map2(12, inputs, output, Self::joint_velocities)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_velocities(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::JointAccelerations => {
-                ::overact::block::map3(12, inputs, output, Self::joint_accelerations)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_accelerations(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::TwistFromActuators => {
-                ::overact::block::map2(3, inputs, output, Self::twist_from_actuators)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::twist_from_actuators(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::AccelerationFromActuators => {
-                ::overact::block::map3(
-                    3,
-                    inputs,
-                    output,
-                    Self::acceleration_from_actuators,
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::acceleration_from_actuators(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
-            ::overact::Function::IdmRedPlatform => {
-                ::overact::block::map3(192, inputs, output, Self::idm_red_platform)
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Standard) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedActuators(::overact::Columns::Standard) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_actuators(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedActuators(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_actuators_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::IdmRedPayload => {
-                ::overact::block::map3(
-                    12,
-                    inputs,
-                    output,
-                    |pose, twist, acceleration| ::core::result::Result::Ok(
-                        Self::idm_red_payload(pose, twist, acceleration),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_payload(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedPayloadActuators => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_payload_actuators(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::ProjectPlatform => {
-                ::overact::block::map2(3, inputs, output, Self::project_platform)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_platform(row.row(0)?, row.row(1)?))
+            }
+            ::overact::Function::ProjectActuators => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_actuators(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::InverseDynamics => {
-                ::overact::block::map4(4, inputs, output, Self::inverse_dynamics)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::MassMatrix => {
-                ::overact::block::map2(9, inputs, output, Self::mass_matrix)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::Bias => {
-                ::overact::block::map3(3, inputs, output, Self::bias)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::InverseDynamicsPreloaded => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics_preloaded(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                        row.row(4)?,
+                    ))
             }
             ::overact::Function::ProjectTorques => {
-                ::overact::block::map2(4, inputs, output, Self::project_torques)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_torques(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::NullSpace => {
-                ::overact::block::map1(4, inputs, output, Self::null_space)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::null_space(row.row(0)?))
             }
             other => {
                 ::core::result::Result::Err(::overact::SampleError {

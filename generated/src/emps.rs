@@ -64,13 +64,13 @@ impl Emps {
     pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [0.0];
     /// The standard parameters whose columns are not identically zero, in column order.
     pub const PARAMETERS: [::overact::Parameter; 5] = {
-        use ::overact::{Parameter, Symbol};
+        use ::overact::{Parameter, StandardParameter};
         [
-            Parameter::of_leg("m_1", Symbol::M, "kg", 0, 0, 0),
-            Parameter::of_leg("ia_1", Symbol::Ia, "kg", 0, 0, 0),
-            Parameter::of_leg("fv_1", Symbol::Fv, "N s/m", 0, 0, 0),
-            Parameter::of_leg("fs_1", Symbol::Fs, "N", 0, 0, 0),
-            Parameter::of_leg("off_1", Symbol::Off, "N", 0, 0, 0),
+            Parameter::of_leg("m_1", StandardParameter::M, "kg", 0, 0, 0),
+            Parameter::of_leg("ia_1", StandardParameter::Ia, "kg", 0, 0, 0),
+            Parameter::of_leg("fv_1", StandardParameter::Fv, "N s/m", 0, 0, 0),
+            Parameter::of_leg("fs_1", StandardParameter::Fs, "N", 0, 0, 0),
+            Parameter::of_leg("off_1", StandardParameter::Off, "N", 0, 0, 0),
         ]
     };
     /// The payload's parameters, in column order.
@@ -92,9 +92,14 @@ impl Emps {
     /// Output: 1.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
-    pub fn joints(joints: &[::core::primitive::f64; 1]) -> [::core::primitive::f64; 1] {
-        [joints[0]]
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn joints(
+        joints: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints)])?;
+        ::core::result::Result::Ok([joints[0]])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -104,11 +109,14 @@ impl Emps {
     /// Output: 1.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn actuator_positions(
         joints: &[::core::primitive::f64; 1],
-    ) -> [::core::primitive::f64; 1] {
-        [joints[0]]
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints)])?;
+        ::core::result::Result::Ok([joints[0]])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -118,11 +126,14 @@ impl Emps {
     /// Output: 1 x 1.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn inverse_jacobian(
-        _joints: &[::core::primitive::f64; 1],
-    ) -> [[::core::primitive::f64; 1]; 1] {
-        [[1.0]]
+        joints: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints)])?;
+        ::core::result::Result::Ok([[1.0]])
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
@@ -133,12 +144,17 @@ impl Emps {
     /// Output: 1.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn joint_velocities(
-        _joints: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
-    ) -> [::core::primitive::f64; 1] {
-        [joint_velocities[0]]
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("joints", joints), ("joint_velocities", joint_velocities)],
+        )?;
+        ::core::result::Result::Ok([joint_velocities[0]])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
@@ -150,13 +166,21 @@ impl Emps {
     /// Output: 1.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn joint_accelerations(
-        _joints: &[::core::primitive::f64; 1],
-        _joint_velocities: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
-    ) -> [::core::primitive::f64; 1] {
-        [joint_accelerations[0]]
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations),
+            ],
+        )?;
+        ::core::result::Result::Ok([joint_accelerations[0]])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
@@ -167,12 +191,17 @@ impl Emps {
     /// Output: 1.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn twist_from_actuators(
-        _joints: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
         actuator_velocities: &[::core::primitive::f64; 1],
-    ) -> [::core::primitive::f64; 1] {
-        [actuator_velocities[0]]
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("joints", joints), ("actuator_velocities", actuator_velocities)],
+        )?;
+        ::core::result::Result::Ok([actuator_velocities[0]])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -184,13 +213,21 @@ impl Emps {
     /// Output: 1.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn acceleration_from_actuators(
-        _joints: &[::core::primitive::f64; 1],
-        _joint_velocities: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
         actuator_accelerations: &[::core::primitive::f64; 1],
-    ) -> [::core::primitive::f64; 1] {
-        [actuator_accelerations[0]]
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("actuator_accelerations", actuator_accelerations),
+            ],
+        )?;
+        ::core::result::Result::Ok([actuator_accelerations[0]])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -203,18 +240,26 @@ impl Emps {
     /// Columns: `PARAMETERS`.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn idm_red_platform(
-        _joints: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
-    ) -> [[::core::primitive::f64; 5]; 1] {
-        [
+    ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations),
+            ],
+        )?;
+        ::core::result::Result::Ok([
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
                 ::overact::math::sign(joint_velocities[0]), 1.0,
             ],
-        ]
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -227,18 +272,26 @@ impl Emps {
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn idm_red_platform_base(
-        _joints: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
-    ) -> [[::core::primitive::f64; 4]; 1] {
-        [
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations),
+            ],
+        )?;
+        ::core::result::Result::Ok([
             [
                 joint_accelerations[0], joint_velocities[0],
                 ::overact::math::sign(joint_velocities[0]), 1.0,
             ],
-        ]
+        ])
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -249,12 +302,15 @@ impl Emps {
     /// Output: 1.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn project_platform(
-        _joints: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
         torques: &[::core::primitive::f64; 1],
-    ) -> [::core::primitive::f64; 1] {
-        [torques[0]]
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints), ("torques", torques)])?;
+        ::core::result::Result::Ok([torques[0]])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -267,20 +323,28 @@ impl Emps {
     /// Output: 1.
     ///
     /// 7 operations (4 additions, 3 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 7 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn inverse_dynamics(
-        _joints: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
-    ) -> [::core::primitive::f64; 1] {
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations), ("parameters", parameters),
+            ],
+        )?;
         let force1_z_axis = joint_accelerations[0] * parameters[0];
         let tau_1_axis = joint_accelerations[0] * parameters[1]
             + joint_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], joint_velocities[0])
             + parameters[4];
         let force_on_u1_axis = force1_z_axis + tau_1_axis;
-        [force_on_u1_axis]
+        ::core::result::Result::Ok([force_on_u1_axis])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -291,12 +355,15 @@ impl Emps {
     /// Output: 1 x 1.
     ///
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn mass_matrix(
-        _joints: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
-    ) -> [[::core::primitive::f64; 1]; 1] {
-        [[parameters[0] + parameters[1]]]
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints), ("parameters", parameters)])?;
+        ::core::result::Result::Ok([[parameters[0] + parameters[1]]])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -308,40 +375,72 @@ impl Emps {
     /// Output: 1.
     ///
     /// 3 operations (2 additions, 1 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 3 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn bias(
-        _joints: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
-    ) -> [::core::primitive::f64; 1] {
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("parameters", parameters),
+            ],
+        )?;
         let tau_1_axis = joint_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], joint_velocities[0])
             + parameters[4];
-        [tau_1_axis]
+        ::core::result::Result::Ok([tau_1_axis])
+    }
+    /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    ///
+    /// Output: 1.
+    ///
+    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn project_torques(
+        joints: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints), ("torques", torques)])?;
+        ::core::result::Result::Ok([torques[0]])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///
     /// # Errors
-    /// None for a robot without a loop, whose pose is its joint positions.
+    /// An input that is not finite; else none: the pose of a robot without a loop is its joint positions.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
-        _start: &[::core::primitive::f64; Self::POSE],
+        start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
         ::core::result::Result::Ok(*actuators)
     }
+}
+impl Emps {
+    const SIZES: ::overact::Sizes = ::overact::Sizes {
+        pose: Self::POSE,
+        dof: Self::DOF,
+        actuators: Self::ACTUATORS,
+        joints: Self::JOINTS,
+        parameters: 5,
+        base_parameters: 4,
+        payload_parameters: 0,
+    };
 }
 impl ::overact::Model for Emps {
     fn info(&self) -> ::overact::Info<'_> {
         ::overact::Info {
             name: Self::NAME,
-            sizes: ::overact::Sizes {
-                pose: Self::POSE,
-                dof: Self::DOF,
-                actuators: Self::ACTUATORS,
-                joints: Self::JOINTS,
-                parameters: 5,
-                payload_parameters: 0,
-            },
+            sizes: Self::SIZES,
             legs: &Self::LEGS,
             actuators: &Self::ACTUATOR_NAMES,
             actuated_joints: &Self::ACTUATED_JOINTS,
@@ -362,135 +461,81 @@ impl ::overact::Model for Emps {
     ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
-                ::overact::block::map1(
-                    1,
-                    inputs,
-                    output,
-                    |joints| ::core::result::Result::Ok(Self::joints(joints)),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joints(row.row(0)?))
             }
             ::overact::Function::ActuatorPositions => {
-                ::overact::block::map1(
-                    1,
-                    inputs,
-                    output,
-                    |joints| ::core::result::Result::Ok(Self::actuator_positions(joints)),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::actuator_positions(row.row(0)?))
             }
             ::overact::Function::InverseJacobian => {
-                ::overact::block::map1(
-                    1,
-                    inputs,
-                    output,
-                    |joints| ::core::result::Result::Ok(Self::inverse_jacobian(joints)),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_jacobian(row.row(0)?))
             }
             ::overact::Function::JointVelocities => {
-                ::overact::block::map2(
-                    1,
-                    inputs,
-                    output,
-                    |joints, joint_velocities| ::core::result::Result::Ok(
-                        Self::joint_velocities(joints, joint_velocities),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_velocities(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::JointAccelerations => {
-                ::overact::block::map3(
-                    1,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
-                        Self::joint_accelerations(
-                            joints,
-                            joint_velocities,
-                            joint_accelerations,
-                        ),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_accelerations(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::TwistFromActuators => {
-                ::overact::block::map2(
-                    1,
-                    inputs,
-                    output,
-                    |joints, actuator_velocities| ::core::result::Result::Ok(
-                        Self::twist_from_actuators(joints, actuator_velocities),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::twist_from_actuators(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::AccelerationFromActuators => {
-                ::overact::block::map3(
-                    1,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, actuator_accelerations| ::core::result::Result::Ok(
-                        Self::acceleration_from_actuators(
-                            joints,
-                            joint_velocities,
-                            actuator_accelerations,
-                        ),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::acceleration_from_actuators(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
-            ::overact::Function::IdmRedPlatform => {
-                ::overact::block::map3(
-                    5,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
-                        Self::idm_red_platform(
-                            joints,
-                            joint_velocities,
-                            joint_accelerations,
-                        ),
-                    ),
-                )
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Standard) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::ProjectPlatform => {
-                ::overact::block::map2(
-                    1,
-                    inputs,
-                    output,
-                    |joints, torques| ::core::result::Result::Ok(
-                        Self::project_platform(joints, torques),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_platform(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::InverseDynamics => {
-                ::overact::block::map4(
-                    1,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, joint_accelerations, parameters| ::core::result::Result::Ok(
-                        Self::inverse_dynamics(
-                            joints,
-                            joint_velocities,
-                            joint_accelerations,
-                            parameters,
-                        ),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::MassMatrix => {
-                ::overact::block::map2(
-                    1,
-                    inputs,
-                    output,
-                    |joints, parameters| ::core::result::Result::Ok(
-                        Self::mass_matrix(joints, parameters),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::Bias => {
-                ::overact::block::map3(
-                    1,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, parameters| ::core::result::Result::Ok(
-                        Self::bias(joints, joint_velocities, parameters),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ProjectTorques => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_torques(row.row(0)?, row.row(1)?))
             }
             other => {
                 ::core::result::Result::Err(::overact::SampleError {

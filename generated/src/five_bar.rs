@@ -104,33 +104,33 @@ impl FiveBar {
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
     pub const PARAMETERS: [::overact::Parameter; 25] = {
-        use ::overact::{Parameter, Symbol};
+        use ::overact::{Parameter, StandardParameter};
         [
-            Parameter::of_leg("zz_1_left", Symbol::Zz, "kg m^2", 0, 0, 0),
-            Parameter::of_leg("mx_1_left", Symbol::Mx, "kg m", 0, 0, 0),
-            Parameter::of_leg("my_1_left", Symbol::My, "kg m", 0, 0, 0),
-            Parameter::of_leg("ia_1_left", Symbol::Ia, "kg m^2", 0, 0, 0),
-            Parameter::of_leg("fv_1_left", Symbol::Fv, "N m s/rad", 0, 0, 0),
-            Parameter::of_leg("fs_1_left", Symbol::Fs, "N m", 0, 0, 0),
-            Parameter::of_leg("off_1_left", Symbol::Off, "N m", 0, 0, 0),
-            Parameter::of_leg("zz_2_left", Symbol::Zz, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("mx_2_left", Symbol::Mx, "kg m", 0, 1, 0),
-            Parameter::of_leg("my_2_left", Symbol::My, "kg m", 0, 1, 0),
-            Parameter::of_leg("m_2_left", Symbol::M, "kg", 0, 1, 0),
-            Parameter::of_leg("fs_2_left", Symbol::Fs, "N m", 0, 1, 0),
-            Parameter::of_leg("zz_1_right", Symbol::Zz, "kg m^2", 1, 0, 0),
-            Parameter::of_leg("mx_1_right", Symbol::Mx, "kg m", 1, 0, 0),
-            Parameter::of_leg("my_1_right", Symbol::My, "kg m", 1, 0, 0),
-            Parameter::of_leg("ia_1_right", Symbol::Ia, "kg m^2", 1, 0, 0),
-            Parameter::of_leg("fv_1_right", Symbol::Fv, "N m s/rad", 1, 0, 0),
-            Parameter::of_leg("fs_1_right", Symbol::Fs, "N m", 1, 0, 0),
-            Parameter::of_leg("off_1_right", Symbol::Off, "N m", 1, 0, 0),
-            Parameter::of_leg("zz_2_right", Symbol::Zz, "kg m^2", 1, 1, 0),
-            Parameter::of_leg("mx_2_right", Symbol::Mx, "kg m", 1, 1, 0),
-            Parameter::of_leg("my_2_right", Symbol::My, "kg m", 1, 1, 0),
-            Parameter::of_leg("m_2_right", Symbol::M, "kg", 1, 1, 0),
-            Parameter::of_leg("fs_2_right", Symbol::Fs, "N m", 1, 1, 0),
-            Parameter::of_platform("m_platform", Symbol::M, "kg"),
+            Parameter::of_leg("zz_1_left", StandardParameter::Zz, "kg m^2", 0, 0, 0),
+            Parameter::of_leg("mx_1_left", StandardParameter::Mx, "kg m", 0, 0, 0),
+            Parameter::of_leg("my_1_left", StandardParameter::My, "kg m", 0, 0, 0),
+            Parameter::of_leg("ia_1_left", StandardParameter::Ia, "kg m^2", 0, 0, 0),
+            Parameter::of_leg("fv_1_left", StandardParameter::Fv, "N m s/rad", 0, 0, 0),
+            Parameter::of_leg("fs_1_left", StandardParameter::Fs, "N m", 0, 0, 0),
+            Parameter::of_leg("off_1_left", StandardParameter::Off, "N m", 0, 0, 0),
+            Parameter::of_leg("zz_2_left", StandardParameter::Zz, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("mx_2_left", StandardParameter::Mx, "kg m", 0, 1, 0),
+            Parameter::of_leg("my_2_left", StandardParameter::My, "kg m", 0, 1, 0),
+            Parameter::of_leg("m_2_left", StandardParameter::M, "kg", 0, 1, 0),
+            Parameter::of_leg("fs_2_left", StandardParameter::Fs, "N m", 0, 1, 0),
+            Parameter::of_leg("zz_1_right", StandardParameter::Zz, "kg m^2", 1, 0, 0),
+            Parameter::of_leg("mx_1_right", StandardParameter::Mx, "kg m", 1, 0, 0),
+            Parameter::of_leg("my_1_right", StandardParameter::My, "kg m", 1, 0, 0),
+            Parameter::of_leg("ia_1_right", StandardParameter::Ia, "kg m^2", 1, 0, 0),
+            Parameter::of_leg("fv_1_right", StandardParameter::Fv, "N m s/rad", 1, 0, 0),
+            Parameter::of_leg("fs_1_right", StandardParameter::Fs, "N m", 1, 0, 0),
+            Parameter::of_leg("off_1_right", StandardParameter::Off, "N m", 1, 0, 0),
+            Parameter::of_leg("zz_2_right", StandardParameter::Zz, "kg m^2", 1, 1, 0),
+            Parameter::of_leg("mx_2_right", StandardParameter::Mx, "kg m", 1, 1, 0),
+            Parameter::of_leg("my_2_right", StandardParameter::My, "kg m", 1, 1, 0),
+            Parameter::of_leg("m_2_right", StandardParameter::M, "kg", 1, 1, 0),
+            Parameter::of_leg("fs_2_right", StandardParameter::Fs, "N m", 1, 1, 0),
+            Parameter::of_platform("m_platform", StandardParameter::M, "kg"),
         ]
     };
     /// The payload's parameters, in column order.
@@ -190,10 +190,11 @@ impl FiveBar {
     /// 22 operations (10 additions, 11 multiplications, 1 divisions), 1 square roots, 2 trigonometric pairs, 0 signs, 25 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("actuators", actuators)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1
@@ -231,10 +232,11 @@ impl FiveBar {
     /// 63 operations (26 additions, 35 multiplications, 2 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 67 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn joints(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -295,10 +297,11 @@ impl FiveBar {
     /// 45 operations (18 additions, 25 multiplications, 2 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 48 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -347,10 +350,11 @@ impl FiveBar {
     /// 43 operations (16 additions, 23 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 41 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -407,11 +411,12 @@ impl FiveBar {
     /// 8 operations (2 additions, 4 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 10 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 5.0;
         let q1_plus_q2_left = joints[0] + joints[1];
@@ -443,10 +448,11 @@ impl FiveBar {
     /// 69 operations (24 additions, 39 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 67 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -516,11 +522,14 @@ impl FiveBar {
     /// Output: 4 x 4.
     ///
     /// 14 operations (6 additions, 8 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 14 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn legs_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
-    ) -> [[::core::primitive::f64; 4]; 4] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_2
@@ -536,12 +545,12 @@ impl FiveBar {
         let l_2_c12_left = L_2 * c12_left;
         let l_2_s12_right = L_2 * s12_right;
         let l_2_c12_right = L_2 * c12_right;
-        [
+        ::core::result::Result::Ok([
             [-(L_1 * s1_left + l_2_s12_left), -l_2_s12_left, 0.0, 0.0],
             [L_1 * c1_left + l_2_c12_left, l_2_c12_left, 0.0, 0.0],
             [0.0, 0.0, -(L_1 * s1_right + l_2_s12_right), -l_2_s12_right],
             [0.0, 0.0, L_1 * c1_right + l_2_c12_right, l_2_c12_right],
-        ]
+        ])
     }
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
@@ -552,12 +561,15 @@ impl FiveBar {
     /// Output: 4 x 2.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
-        _joints: &[::core::primitive::f64; 4],
-    ) -> [[::core::primitive::f64; 2]; 4] {
-        [[1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]]
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::core::result::Result::Ok([[1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]])
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
@@ -568,11 +580,14 @@ impl FiveBar {
     /// Output: 2 x 2.
     ///
     /// 6 operations (2 additions, 4 multiplications, 0 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 6 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
-    ) -> [[::core::primitive::f64; 2]; 2] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// l_2
         const L_2: ::core::primitive::f64 = 0.25;
         let q1_plus_q2_left = joints[0] + joints[1];
@@ -581,7 +596,9 @@ impl FiveBar {
         let [(s12_left, c12_left), (s12_right, c12_right)] = ::overact::math::sin_cos_all([
             q1_plus_q2_left, q1_plus_q2_right,
         ]);
-        [[L_2 * c12_left, L_2 * s12_left], [L_2 * c12_right, L_2 * s12_right]]
+        ::core::result::Result::Ok([
+            [L_2 * c12_left, L_2 * s12_left], [L_2 * c12_right, L_2 * s12_right],
+        ])
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
@@ -592,18 +609,23 @@ impl FiveBar {
     /// Output: 2 x 2.
     ///
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 2 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
-    ) -> [[::core::primitive::f64; 2]; 2] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// half / 2
         const HALF_HALF: ::core::primitive::f64 = 0.05;
         // --- sines and cosines
         let [(s2_left, _), (s2_right, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[3],
         ]);
-        [[-(HALF_HALF * s2_left), 0.0], [0.0, -(HALF_HALF * s2_right)]]
+        ::core::result::Result::Ok([
+            [-(HALF_HALF * s2_left), 0.0], [0.0, -(HALF_HALF * s2_right)],
+        ])
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
@@ -616,11 +638,12 @@ impl FiveBar {
     /// 61 operations (22 additions, 35 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 59 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn joint_velocities(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("twist", twist)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -690,12 +713,15 @@ impl FiveBar {
     /// 101 operations (36 additions, 61 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 99 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -788,11 +814,14 @@ impl FiveBar {
     /// 68 operations (24 additions, 38 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 68 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
         pose: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("actuator_velocities", actuator_velocities)],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -860,12 +889,18 @@ impl FiveBar {
     /// 102 operations (34 additions, 62 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 102 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist),
+                ("actuator_accelerations", actuator_accelerations),
+            ],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -962,12 +997,15 @@ impl FiveBar {
     /// 188 operations (59 additions, 123 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 153 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / l_1²
@@ -1169,13 +1207,19 @@ impl FiveBar {
     /// 153 operations (43 additions, 108 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 124 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 5.0;
         /// 1 / l_1²
@@ -1351,13 +1395,19 @@ impl FiveBar {
     /// 202 operations (63 additions, 118 multiplications, 21 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 166 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
@@ -1582,12 +1632,15 @@ impl FiveBar {
     /// 178 operations (58 additions, 115 multiplications, 5 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 156 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
@@ -1778,13 +1831,19 @@ impl FiveBar {
     /// 151 operations (46 additions, 102 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 135 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 5.0;
         /// 1 / l_2
@@ -1948,13 +2007,19 @@ impl FiveBar {
     /// 204 operations (66 additions, 131 multiplications, 7 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 186 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
@@ -2169,12 +2234,15 @@ impl FiveBar {
     /// 160 operations (51 additions, 103 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 133 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
@@ -2327,13 +2395,19 @@ impl FiveBar {
     /// 121 operations (33 additions, 86 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 100 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 5.0;
         /// l_1
@@ -2458,13 +2532,19 @@ impl FiveBar {
     /// 176 operations (55 additions, 109 multiplications, 12 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 148 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
@@ -2633,12 +2713,15 @@ impl FiveBar {
     /// 160 operations (52 additions, 103 multiplications, 5 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 144 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
@@ -2788,13 +2871,19 @@ impl FiveBar {
     /// 133 operations (40 additions, 90 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 123 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 5.0;
         /// 1 / l_2
@@ -2925,13 +3014,19 @@ impl FiveBar {
     /// 186 operations (60 additions, 119 multiplications, 7 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 174 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
@@ -3103,11 +3198,12 @@ impl FiveBar {
     /// 49 operations (18 additions, 27 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 49 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn project_platform(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// l_1²
@@ -3163,12 +3259,15 @@ impl FiveBar {
     /// Output: 2.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn project_actuators(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
-    ) -> [::core::primitive::f64; 2] {
-        [torques[0], torques[1]]
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::core::result::Result::Ok([torques[0], torques[1]])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -3183,13 +3282,19 @@ impl FiveBar {
     /// 241 operations (93 additions, 142 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 245 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
+                ("parameters", parameters),
+            ],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
@@ -3373,14 +3478,20 @@ impl FiveBar {
     /// 210 operations (79 additions, 127 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 4 signs, 220 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration), ("parameters", parameters),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 5.0;
         /// 1 / l_2
@@ -3538,7 +3649,7 @@ impl FiveBar {
     /// 254 operations (97 additions, 151 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 258 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -3546,6 +3657,13 @@ impl FiveBar {
         parameters: &[::core::primitive::f64; 25],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("parameters", parameters),
+                ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
@@ -3748,11 +3866,12 @@ impl FiveBar {
     /// 156 operations (57 additions, 95 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 155 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn mass_matrix(
         pose: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / l_2
@@ -3871,12 +3990,15 @@ impl FiveBar {
     /// 197 operations (75 additions, 118 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 201 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn bias(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("parameters", parameters)],
+        )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
@@ -4032,14 +4154,34 @@ impl FiveBar {
                 + force_y_platform,
         ])
     }
+    /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    ///
+    /// Output: 2.
+    ///
+    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn project_torques(
+        pose: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
+        ::core::result::Result::Ok([torques[0], torques[1]])
+    }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.
     ///
     /// # Errors
-    /// No convergence, or a singular or unreachable configuration on the way.
+    /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
         if let ::core::result::Result::Ok(pose) = Self::pose_in_closed_form(actuators) {
             return ::core::result::Result::Ok(pose);
         }
@@ -4068,18 +4210,22 @@ impl FiveBar {
             .map(|()| pose)
     }
 }
+impl FiveBar {
+    const SIZES: ::overact::Sizes = ::overact::Sizes {
+        pose: Self::POSE,
+        dof: Self::DOF,
+        actuators: Self::ACTUATORS,
+        joints: Self::JOINTS,
+        parameters: 25,
+        base_parameters: 19,
+        payload_parameters: 0,
+    };
+}
 impl ::overact::Model for FiveBar {
     fn info(&self) -> ::overact::Info<'_> {
         ::overact::Info {
             name: Self::NAME,
-            sizes: ::overact::Sizes {
-                pose: Self::POSE,
-                dof: Self::DOF,
-                actuators: Self::ACTUATORS,
-                joints: Self::JOINTS,
-                parameters: 25,
-                payload_parameters: 0,
-            },
+            sizes: Self::SIZES,
             legs: &Self::LEGS,
             actuators: &Self::ACTUATOR_NAMES,
             actuated_joints: &Self::ACTUATED_JOINTS,
@@ -4099,46 +4245,138 @@ impl ::overact::Model for FiveBar {
         output: &mut [::core::primitive::f64],
     ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
+            ::overact::Function::PoseInClosedForm => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::pose_in_closed_form(row.row(0)?))
+            }
             ::overact::Function::Joints => {
-                ::overact::block::map1(4, inputs, output, Self::joints)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joints(row.row(0)?))
             }
             ::overact::Function::ActuatorPositions => {
-                ::overact::block::map1(2, inputs, output, Self::actuator_positions)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::actuator_positions(row.row(0)?))
             }
             ::overact::Function::InverseJacobian => {
-                ::overact::block::map1(4, inputs, output, Self::inverse_jacobian)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_jacobian(row.row(0)?))
+            }
+            ::overact::Function::Jacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::jacobian(row.row(0)?))
+            }
+            ::overact::Function::LegsJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::legs_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
+            }
+            ::overact::Function::LegsPlatformJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::legs_platform_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
+            }
+            ::overact::Function::ClosurePlatformJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::closure_platform_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
+            }
+            ::overact::Function::ClosureActuatorJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::closure_actuator_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
             }
             ::overact::Function::JointVelocities => {
-                ::overact::block::map2(4, inputs, output, Self::joint_velocities)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_velocities(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::JointAccelerations => {
-                ::overact::block::map3(4, inputs, output, Self::joint_accelerations)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_accelerations(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::TwistFromActuators => {
-                ::overact::block::map2(2, inputs, output, Self::twist_from_actuators)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::twist_from_actuators(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::AccelerationFromActuators => {
-                ::overact::block::map3(
-                    2,
-                    inputs,
-                    output,
-                    Self::acceleration_from_actuators,
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::acceleration_from_actuators(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
-            ::overact::Function::IdmRedPlatform => {
-                ::overact::block::map3(50, inputs, output, Self::idm_red_platform)
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Standard) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedActuators(::overact::Columns::Standard) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_actuators(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedActuators(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_actuators_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::ProjectPlatform => {
-                ::overact::block::map2(2, inputs, output, Self::project_platform)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_platform(row.row(0)?, row.row(1)?))
+            }
+            ::overact::Function::ProjectActuators => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_actuators(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::InverseDynamics => {
-                ::overact::block::map4(2, inputs, output, Self::inverse_dynamics)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::MassMatrix => {
-                ::overact::block::map2(4, inputs, output, Self::mass_matrix)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::Bias => {
-                ::overact::block::map3(2, inputs, output, Self::bias)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ProjectTorques => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_torques(row.row(0)?, row.row(1)?))
             }
             other => {
                 ::core::result::Result::Err(::overact::SampleError {

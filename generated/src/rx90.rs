@@ -91,81 +91,81 @@ impl Rx90 {
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
     pub const PARAMETERS: [::overact::Parameter; 73] = {
-        use ::overact::{Parameter, Symbol};
+        use ::overact::{Parameter, StandardParameter};
         [
-            Parameter::of_leg("zz_1", Symbol::Zz, "kg m^2", 0, 0, 0),
-            Parameter::of_leg("ia_1", Symbol::Ia, "kg m^2", 0, 0, 0),
-            Parameter::of_leg("fv_1", Symbol::Fv, "N m s/rad", 0, 0, 0),
-            Parameter::of_leg("fs_1", Symbol::Fs, "N m", 0, 0, 0),
-            Parameter::of_leg("off_1", Symbol::Off, "N m", 0, 0, 0),
-            Parameter::of_leg("xx_2", Symbol::Xx, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("xy_2", Symbol::Xy, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("xz_2", Symbol::Xz, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("yy_2", Symbol::Yy, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("yz_2", Symbol::Yz, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("zz_2", Symbol::Zz, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("mx_2", Symbol::Mx, "kg m", 0, 1, 0),
-            Parameter::of_leg("my_2", Symbol::My, "kg m", 0, 1, 0),
-            Parameter::of_leg("ia_2", Symbol::Ia, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("fv_2", Symbol::Fv, "N m s/rad", 0, 1, 0),
-            Parameter::of_leg("fs_2", Symbol::Fs, "N m", 0, 1, 0),
-            Parameter::of_leg("off_2", Symbol::Off, "N m", 0, 1, 0),
-            Parameter::of_leg("xx_3", Symbol::Xx, "kg m^2", 0, 2, 0),
-            Parameter::of_leg("xy_3", Symbol::Xy, "kg m^2", 0, 2, 0),
-            Parameter::of_leg("xz_3", Symbol::Xz, "kg m^2", 0, 2, 0),
-            Parameter::of_leg("yy_3", Symbol::Yy, "kg m^2", 0, 2, 0),
-            Parameter::of_leg("yz_3", Symbol::Yz, "kg m^2", 0, 2, 0),
-            Parameter::of_leg("zz_3", Symbol::Zz, "kg m^2", 0, 2, 0),
-            Parameter::of_leg("mx_3", Symbol::Mx, "kg m", 0, 2, 0),
-            Parameter::of_leg("my_3", Symbol::My, "kg m", 0, 2, 0),
-            Parameter::of_leg("mz_3", Symbol::Mz, "kg m", 0, 2, 0),
-            Parameter::of_leg("m_3", Symbol::M, "kg", 0, 2, 0),
-            Parameter::of_leg("ia_3", Symbol::Ia, "kg m^2", 0, 2, 0),
-            Parameter::of_leg("fv_3", Symbol::Fv, "N m s/rad", 0, 2, 0),
-            Parameter::of_leg("fs_3", Symbol::Fs, "N m", 0, 2, 0),
-            Parameter::of_leg("off_3", Symbol::Off, "N m", 0, 2, 0),
-            Parameter::of_leg("xx_4", Symbol::Xx, "kg m^2", 0, 3, 0),
-            Parameter::of_leg("xy_4", Symbol::Xy, "kg m^2", 0, 3, 0),
-            Parameter::of_leg("xz_4", Symbol::Xz, "kg m^2", 0, 3, 0),
-            Parameter::of_leg("yy_4", Symbol::Yy, "kg m^2", 0, 3, 0),
-            Parameter::of_leg("yz_4", Symbol::Yz, "kg m^2", 0, 3, 0),
-            Parameter::of_leg("zz_4", Symbol::Zz, "kg m^2", 0, 3, 0),
-            Parameter::of_leg("mx_4", Symbol::Mx, "kg m", 0, 3, 0),
-            Parameter::of_leg("my_4", Symbol::My, "kg m", 0, 3, 0),
-            Parameter::of_leg("mz_4", Symbol::Mz, "kg m", 0, 3, 0),
-            Parameter::of_leg("m_4", Symbol::M, "kg", 0, 3, 0),
-            Parameter::of_leg("ia_4", Symbol::Ia, "kg m^2", 0, 3, 0),
-            Parameter::of_leg("fv_4", Symbol::Fv, "N m s/rad", 0, 3, 0),
-            Parameter::of_leg("fs_4", Symbol::Fs, "N m", 0, 3, 0),
-            Parameter::of_leg("off_4", Symbol::Off, "N m", 0, 3, 0),
-            Parameter::of_leg("xx_5", Symbol::Xx, "kg m^2", 0, 4, 0),
-            Parameter::of_leg("xy_5", Symbol::Xy, "kg m^2", 0, 4, 0),
-            Parameter::of_leg("xz_5", Symbol::Xz, "kg m^2", 0, 4, 0),
-            Parameter::of_leg("yy_5", Symbol::Yy, "kg m^2", 0, 4, 0),
-            Parameter::of_leg("yz_5", Symbol::Yz, "kg m^2", 0, 4, 0),
-            Parameter::of_leg("zz_5", Symbol::Zz, "kg m^2", 0, 4, 0),
-            Parameter::of_leg("mx_5", Symbol::Mx, "kg m", 0, 4, 0),
-            Parameter::of_leg("my_5", Symbol::My, "kg m", 0, 4, 0),
-            Parameter::of_leg("mz_5", Symbol::Mz, "kg m", 0, 4, 0),
-            Parameter::of_leg("m_5", Symbol::M, "kg", 0, 4, 0),
-            Parameter::of_leg("ia_5", Symbol::Ia, "kg m^2", 0, 4, 0),
-            Parameter::of_leg("fv_5", Symbol::Fv, "N m s/rad", 0, 4, 0),
-            Parameter::of_leg("fs_5", Symbol::Fs, "N m", 0, 4, 0),
-            Parameter::of_leg("off_5", Symbol::Off, "N m", 0, 4, 0),
-            Parameter::of_leg("xx_6", Symbol::Xx, "kg m^2", 0, 5, 0),
-            Parameter::of_leg("xy_6", Symbol::Xy, "kg m^2", 0, 5, 0),
-            Parameter::of_leg("xz_6", Symbol::Xz, "kg m^2", 0, 5, 0),
-            Parameter::of_leg("yy_6", Symbol::Yy, "kg m^2", 0, 5, 0),
-            Parameter::of_leg("yz_6", Symbol::Yz, "kg m^2", 0, 5, 0),
-            Parameter::of_leg("zz_6", Symbol::Zz, "kg m^2", 0, 5, 0),
-            Parameter::of_leg("mx_6", Symbol::Mx, "kg m", 0, 5, 0),
-            Parameter::of_leg("my_6", Symbol::My, "kg m", 0, 5, 0),
-            Parameter::of_leg("mz_6", Symbol::Mz, "kg m", 0, 5, 0),
-            Parameter::of_leg("m_6", Symbol::M, "kg", 0, 5, 0),
-            Parameter::of_leg("ia_6", Symbol::Ia, "kg m^2", 0, 5, 0),
-            Parameter::of_leg("fv_6", Symbol::Fv, "N m s/rad", 0, 5, 0),
-            Parameter::of_leg("fs_6", Symbol::Fs, "N m", 0, 5, 0),
-            Parameter::of_leg("off_6", Symbol::Off, "N m", 0, 5, 0),
+            Parameter::of_leg("zz_1", StandardParameter::Zz, "kg m^2", 0, 0, 0),
+            Parameter::of_leg("ia_1", StandardParameter::Ia, "kg m^2", 0, 0, 0),
+            Parameter::of_leg("fv_1", StandardParameter::Fv, "N m s/rad", 0, 0, 0),
+            Parameter::of_leg("fs_1", StandardParameter::Fs, "N m", 0, 0, 0),
+            Parameter::of_leg("off_1", StandardParameter::Off, "N m", 0, 0, 0),
+            Parameter::of_leg("xx_2", StandardParameter::Xx, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("xy_2", StandardParameter::Xy, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("xz_2", StandardParameter::Xz, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("yy_2", StandardParameter::Yy, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("yz_2", StandardParameter::Yz, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("zz_2", StandardParameter::Zz, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("mx_2", StandardParameter::Mx, "kg m", 0, 1, 0),
+            Parameter::of_leg("my_2", StandardParameter::My, "kg m", 0, 1, 0),
+            Parameter::of_leg("ia_2", StandardParameter::Ia, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("fv_2", StandardParameter::Fv, "N m s/rad", 0, 1, 0),
+            Parameter::of_leg("fs_2", StandardParameter::Fs, "N m", 0, 1, 0),
+            Parameter::of_leg("off_2", StandardParameter::Off, "N m", 0, 1, 0),
+            Parameter::of_leg("xx_3", StandardParameter::Xx, "kg m^2", 0, 2, 0),
+            Parameter::of_leg("xy_3", StandardParameter::Xy, "kg m^2", 0, 2, 0),
+            Parameter::of_leg("xz_3", StandardParameter::Xz, "kg m^2", 0, 2, 0),
+            Parameter::of_leg("yy_3", StandardParameter::Yy, "kg m^2", 0, 2, 0),
+            Parameter::of_leg("yz_3", StandardParameter::Yz, "kg m^2", 0, 2, 0),
+            Parameter::of_leg("zz_3", StandardParameter::Zz, "kg m^2", 0, 2, 0),
+            Parameter::of_leg("mx_3", StandardParameter::Mx, "kg m", 0, 2, 0),
+            Parameter::of_leg("my_3", StandardParameter::My, "kg m", 0, 2, 0),
+            Parameter::of_leg("mz_3", StandardParameter::Mz, "kg m", 0, 2, 0),
+            Parameter::of_leg("m_3", StandardParameter::M, "kg", 0, 2, 0),
+            Parameter::of_leg("ia_3", StandardParameter::Ia, "kg m^2", 0, 2, 0),
+            Parameter::of_leg("fv_3", StandardParameter::Fv, "N m s/rad", 0, 2, 0),
+            Parameter::of_leg("fs_3", StandardParameter::Fs, "N m", 0, 2, 0),
+            Parameter::of_leg("off_3", StandardParameter::Off, "N m", 0, 2, 0),
+            Parameter::of_leg("xx_4", StandardParameter::Xx, "kg m^2", 0, 3, 0),
+            Parameter::of_leg("xy_4", StandardParameter::Xy, "kg m^2", 0, 3, 0),
+            Parameter::of_leg("xz_4", StandardParameter::Xz, "kg m^2", 0, 3, 0),
+            Parameter::of_leg("yy_4", StandardParameter::Yy, "kg m^2", 0, 3, 0),
+            Parameter::of_leg("yz_4", StandardParameter::Yz, "kg m^2", 0, 3, 0),
+            Parameter::of_leg("zz_4", StandardParameter::Zz, "kg m^2", 0, 3, 0),
+            Parameter::of_leg("mx_4", StandardParameter::Mx, "kg m", 0, 3, 0),
+            Parameter::of_leg("my_4", StandardParameter::My, "kg m", 0, 3, 0),
+            Parameter::of_leg("mz_4", StandardParameter::Mz, "kg m", 0, 3, 0),
+            Parameter::of_leg("m_4", StandardParameter::M, "kg", 0, 3, 0),
+            Parameter::of_leg("ia_4", StandardParameter::Ia, "kg m^2", 0, 3, 0),
+            Parameter::of_leg("fv_4", StandardParameter::Fv, "N m s/rad", 0, 3, 0),
+            Parameter::of_leg("fs_4", StandardParameter::Fs, "N m", 0, 3, 0),
+            Parameter::of_leg("off_4", StandardParameter::Off, "N m", 0, 3, 0),
+            Parameter::of_leg("xx_5", StandardParameter::Xx, "kg m^2", 0, 4, 0),
+            Parameter::of_leg("xy_5", StandardParameter::Xy, "kg m^2", 0, 4, 0),
+            Parameter::of_leg("xz_5", StandardParameter::Xz, "kg m^2", 0, 4, 0),
+            Parameter::of_leg("yy_5", StandardParameter::Yy, "kg m^2", 0, 4, 0),
+            Parameter::of_leg("yz_5", StandardParameter::Yz, "kg m^2", 0, 4, 0),
+            Parameter::of_leg("zz_5", StandardParameter::Zz, "kg m^2", 0, 4, 0),
+            Parameter::of_leg("mx_5", StandardParameter::Mx, "kg m", 0, 4, 0),
+            Parameter::of_leg("my_5", StandardParameter::My, "kg m", 0, 4, 0),
+            Parameter::of_leg("mz_5", StandardParameter::Mz, "kg m", 0, 4, 0),
+            Parameter::of_leg("m_5", StandardParameter::M, "kg", 0, 4, 0),
+            Parameter::of_leg("ia_5", StandardParameter::Ia, "kg m^2", 0, 4, 0),
+            Parameter::of_leg("fv_5", StandardParameter::Fv, "N m s/rad", 0, 4, 0),
+            Parameter::of_leg("fs_5", StandardParameter::Fs, "N m", 0, 4, 0),
+            Parameter::of_leg("off_5", StandardParameter::Off, "N m", 0, 4, 0),
+            Parameter::of_leg("xx_6", StandardParameter::Xx, "kg m^2", 0, 5, 0),
+            Parameter::of_leg("xy_6", StandardParameter::Xy, "kg m^2", 0, 5, 0),
+            Parameter::of_leg("xz_6", StandardParameter::Xz, "kg m^2", 0, 5, 0),
+            Parameter::of_leg("yy_6", StandardParameter::Yy, "kg m^2", 0, 5, 0),
+            Parameter::of_leg("yz_6", StandardParameter::Yz, "kg m^2", 0, 5, 0),
+            Parameter::of_leg("zz_6", StandardParameter::Zz, "kg m^2", 0, 5, 0),
+            Parameter::of_leg("mx_6", StandardParameter::Mx, "kg m", 0, 5, 0),
+            Parameter::of_leg("my_6", StandardParameter::My, "kg m", 0, 5, 0),
+            Parameter::of_leg("mz_6", StandardParameter::Mz, "kg m", 0, 5, 0),
+            Parameter::of_leg("m_6", StandardParameter::M, "kg", 0, 5, 0),
+            Parameter::of_leg("ia_6", StandardParameter::Ia, "kg m^2", 0, 5, 0),
+            Parameter::of_leg("fv_6", StandardParameter::Fv, "N m s/rad", 0, 5, 0),
+            Parameter::of_leg("fs_6", StandardParameter::Fs, "N m", 0, 5, 0),
+            Parameter::of_leg("off_6", StandardParameter::Off, "N m", 0, 5, 0),
         ]
     };
     /// The payload's parameters, in column order.
@@ -276,9 +276,16 @@ impl Rx90 {
     /// Output: 6.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
-    pub fn joints(joints: &[::core::primitive::f64; 6]) -> [::core::primitive::f64; 6] {
-        [joints[0], joints[1], joints[2], joints[3], joints[4], joints[5]]
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn joints(
+        joints: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints)])?;
+        ::core::result::Result::Ok([
+            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+        ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -288,11 +295,16 @@ impl Rx90 {
     /// Output: 6.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn actuator_positions(
         joints: &[::core::primitive::f64; 6],
-    ) -> [::core::primitive::f64; 6] {
-        [joints[0], joints[1], joints[2], joints[3], joints[4], joints[5]]
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints)])?;
+        ::core::result::Result::Ok([
+            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -302,15 +314,18 @@ impl Rx90 {
     /// Output: 6 x 6.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn inverse_jacobian(
-        _joints: &[::core::primitive::f64; 6],
-    ) -> [[::core::primitive::f64; 6]; 6] {
-        [
+        joints: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints)])?;
+        ::core::result::Result::Ok([
             [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
             [0.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
-        ]
+        ])
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
@@ -321,15 +336,20 @@ impl Rx90 {
     /// Output: 6.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn joint_velocities(
-        _joints: &[::core::primitive::f64; 6],
+        joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
-    ) -> [::core::primitive::f64; 6] {
-        [
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("joints", joints), ("joint_velocities", joint_velocities)],
+        )?;
+        ::core::result::Result::Ok([
             joint_velocities[0], joint_velocities[1], joint_velocities[2], joint_velocities[3],
             joint_velocities[4], joint_velocities[5],
-        ]
+        ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
@@ -341,16 +361,24 @@ impl Rx90 {
     /// Output: 6.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn joint_accelerations(
-        _joints: &[::core::primitive::f64; 6],
-        _joint_velocities: &[::core::primitive::f64; 6],
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
-    ) -> [::core::primitive::f64; 6] {
-        [
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations),
+            ],
+        )?;
+        ::core::result::Result::Ok([
             joint_accelerations[0], joint_accelerations[1], joint_accelerations[2],
             joint_accelerations[3], joint_accelerations[4], joint_accelerations[5],
-        ]
+        ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
@@ -361,15 +389,20 @@ impl Rx90 {
     /// Output: 6.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn twist_from_actuators(
-        _joints: &[::core::primitive::f64; 6],
+        joints: &[::core::primitive::f64; 6],
         actuator_velocities: &[::core::primitive::f64; 6],
-    ) -> [::core::primitive::f64; 6] {
-        [
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("joints", joints), ("actuator_velocities", actuator_velocities)],
+        )?;
+        ::core::result::Result::Ok([
             actuator_velocities[0], actuator_velocities[1], actuator_velocities[2],
             actuator_velocities[3], actuator_velocities[4], actuator_velocities[5],
-        ]
+        ])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -381,16 +414,24 @@ impl Rx90 {
     /// Output: 6.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn acceleration_from_actuators(
-        _joints: &[::core::primitive::f64; 6],
-        _joint_velocities: &[::core::primitive::f64; 6],
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
         actuator_accelerations: &[::core::primitive::f64; 6],
-    ) -> [::core::primitive::f64; 6] {
-        [
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("actuator_accelerations", actuator_accelerations),
+            ],
+        )?;
+        ::core::result::Result::Ok([
             actuator_accelerations[0], actuator_accelerations[1], actuator_accelerations[2],
             actuator_accelerations[3], actuator_accelerations[4], actuator_accelerations[5],
-        ]
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -403,12 +444,20 @@ impl Rx90 {
     /// Columns: `PARAMETERS`.
     ///
     /// 623 operations (271 additions, 352 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 497 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn idm_red_platform(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
-    ) -> [[::core::primitive::f64; 73]; 6] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 73]; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations),
+            ],
+        )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
         // --- sines and cosines
@@ -672,7 +721,7 @@ impl Rx90 {
         let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
         let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
         let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
-        [
+        ::core::result::Result::Ok([
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
                 ::overact::math::sign(joint_velocities[0]), 1.0,
@@ -868,7 +917,7 @@ impl Rx90 {
                 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
-        ]
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -881,12 +930,20 @@ impl Rx90 {
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 601 operations (253 additions, 348 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 496 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn idm_red_platform_base(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
-    ) -> [[::core::primitive::f64; 58]; 6] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 58]; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations),
+            ],
+        )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
         // --- sines and cosines
@@ -1108,7 +1165,7 @@ impl Rx90 {
         let v6_by_3_x_arm = s6_v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
         let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
         let t12_arm = a5_y_arm * minus_w6_by_2_x_arm + w5_by_2_y_arm * a6_x_arm;
-        [
+        ::core::result::Result::Ok([
             [
                 joint_accelerations[0], joint_velocities[0],
                 ::overact::math::sign(joint_velocities[0]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
@@ -1259,7 +1316,7 @@ impl Rx90 {
                 wd6_z_arm, xx_6_on_q6, 0.0, 0.0, minus_u6_yz_arm, u6_xz_arm, xy_6_on_q6, 0.0,
                 -minus_a6_y_arm, -a6_x_arm,
             ],
-        ]
+        ])
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -1270,12 +1327,17 @@ impl Rx90 {
     /// Output: 6.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn project_platform(
-        _joints: &[::core::primitive::f64; 6],
+        joints: &[::core::primitive::f64; 6],
         torques: &[::core::primitive::f64; 6],
-    ) -> [::core::primitive::f64; 6] {
-        [torques[0], torques[1], torques[2], torques[3], torques[4], torques[5]]
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints), ("torques", torques)])?;
+        ::core::result::Result::Ok([
+            torques[0], torques[1], torques[2], torques[3], torques[4], torques[5],
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -1288,13 +1350,21 @@ impl Rx90 {
     /// Output: 6.
     ///
     /// 714 operations (334 additions, 380 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 724 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn inverse_dynamics(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
-    ) -> [::core::primitive::f64; 6] {
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations), ("parameters", parameters),
+            ],
+        )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
         // --- sines and cosines
@@ -1627,10 +1697,10 @@ impl Rx90 {
             + ::overact::math::signed(parameters[71], joint_velocities[5])
             + parameters[72];
         let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-        [
+        ::core::result::Result::Ok([
             force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
             force_on_u6_arm,
-        ]
+        ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -1641,11 +1711,14 @@ impl Rx90 {
     /// Output: 6 x 6.
     ///
     /// 717 operations (320 additions, 397 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 706 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn mass_matrix(
         joints: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
-    ) -> [[::core::primitive::f64; 6]; 6] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints), ("parameters", parameters)])?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
         // --- sines and cosines
@@ -1934,7 +2007,7 @@ impl Rx90 {
             + minus_w6_by_4_y_arm * s6_xy_6_plus_c6_yy_6_arm
             - w6_by_4_x_arm * s6_xx_6_plus_c6_xy_6_arm
             - c5_arm * s6_xz_6_plus_c6_yz_6_arm;
-        [
+        ::core::result::Result::Ok([
             [t6 + t11 + t16, t34, t45, t52, t53, t15],
             [
                 t34,
@@ -1963,7 +2036,7 @@ impl Rx90 {
             [
                 t15, t33, t44, t50, -s6_xz_6_plus_c6_yz_6_arm, parameters[64] + parameters[69],
             ],
-        ]
+        ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -1975,12 +2048,20 @@ impl Rx90 {
     /// Output: 6.
     ///
     /// 656 operations (297 additions, 359 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 666 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn bias(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
-    ) -> [::core::primitive::f64; 6] {
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("parameters", parameters),
+            ],
+        )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
         /// 2 d3
@@ -2299,34 +2380,60 @@ impl Rx90 {
             + ::overact::math::signed(parameters[71], joint_velocities[5])
             + parameters[72];
         let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-        [
+        ::core::result::Result::Ok([
             force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
             force_on_u6_arm,
-        ]
+        ])
+    }
+    /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    ///
+    /// Output: 6.
+    ///
+    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn project_torques(
+        joints: &[::core::primitive::f64; 6],
+        torques: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("joints", joints), ("torques", torques)])?;
+        ::core::result::Result::Ok([
+            torques[0], torques[1], torques[2], torques[3], torques[4], torques[5],
+        ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///
     /// # Errors
-    /// None for a robot without a loop, whose pose is its joint positions.
+    /// An input that is not finite; else none: the pose of a robot without a loop is its joint positions.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
-        _start: &[::core::primitive::f64; Self::POSE],
+        start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
         ::core::result::Result::Ok(*actuators)
     }
+}
+impl Rx90 {
+    const SIZES: ::overact::Sizes = ::overact::Sizes {
+        pose: Self::POSE,
+        dof: Self::DOF,
+        actuators: Self::ACTUATORS,
+        joints: Self::JOINTS,
+        parameters: 73,
+        base_parameters: 58,
+        payload_parameters: 0,
+    };
 }
 impl ::overact::Model for Rx90 {
     fn info(&self) -> ::overact::Info<'_> {
         ::overact::Info {
             name: Self::NAME,
-            sizes: ::overact::Sizes {
-                pose: Self::POSE,
-                dof: Self::DOF,
-                actuators: Self::ACTUATORS,
-                joints: Self::JOINTS,
-                parameters: 73,
-                payload_parameters: 0,
-            },
+            sizes: Self::SIZES,
             legs: &Self::LEGS,
             actuators: &Self::ACTUATOR_NAMES,
             actuated_joints: &Self::ACTUATED_JOINTS,
@@ -2347,135 +2454,81 @@ impl ::overact::Model for Rx90 {
     ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
-                ::overact::block::map1(
-                    6,
-                    inputs,
-                    output,
-                    |joints| ::core::result::Result::Ok(Self::joints(joints)),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joints(row.row(0)?))
             }
             ::overact::Function::ActuatorPositions => {
-                ::overact::block::map1(
-                    6,
-                    inputs,
-                    output,
-                    |joints| ::core::result::Result::Ok(Self::actuator_positions(joints)),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::actuator_positions(row.row(0)?))
             }
             ::overact::Function::InverseJacobian => {
-                ::overact::block::map1(
-                    36,
-                    inputs,
-                    output,
-                    |joints| ::core::result::Result::Ok(Self::inverse_jacobian(joints)),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_jacobian(row.row(0)?))
             }
             ::overact::Function::JointVelocities => {
-                ::overact::block::map2(
-                    6,
-                    inputs,
-                    output,
-                    |joints, joint_velocities| ::core::result::Result::Ok(
-                        Self::joint_velocities(joints, joint_velocities),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_velocities(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::JointAccelerations => {
-                ::overact::block::map3(
-                    6,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
-                        Self::joint_accelerations(
-                            joints,
-                            joint_velocities,
-                            joint_accelerations,
-                        ),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_accelerations(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::TwistFromActuators => {
-                ::overact::block::map2(
-                    6,
-                    inputs,
-                    output,
-                    |joints, actuator_velocities| ::core::result::Result::Ok(
-                        Self::twist_from_actuators(joints, actuator_velocities),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::twist_from_actuators(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::AccelerationFromActuators => {
-                ::overact::block::map3(
-                    6,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, actuator_accelerations| ::core::result::Result::Ok(
-                        Self::acceleration_from_actuators(
-                            joints,
-                            joint_velocities,
-                            actuator_accelerations,
-                        ),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::acceleration_from_actuators(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
-            ::overact::Function::IdmRedPlatform => {
-                ::overact::block::map3(
-                    438,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
-                        Self::idm_red_platform(
-                            joints,
-                            joint_velocities,
-                            joint_accelerations,
-                        ),
-                    ),
-                )
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Standard) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::ProjectPlatform => {
-                ::overact::block::map2(
-                    6,
-                    inputs,
-                    output,
-                    |joints, torques| ::core::result::Result::Ok(
-                        Self::project_platform(joints, torques),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_platform(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::InverseDynamics => {
-                ::overact::block::map4(
-                    6,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, joint_accelerations, parameters| ::core::result::Result::Ok(
-                        Self::inverse_dynamics(
-                            joints,
-                            joint_velocities,
-                            joint_accelerations,
-                            parameters,
-                        ),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::MassMatrix => {
-                ::overact::block::map2(
-                    36,
-                    inputs,
-                    output,
-                    |joints, parameters| ::core::result::Result::Ok(
-                        Self::mass_matrix(joints, parameters),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::Bias => {
-                ::overact::block::map3(
-                    6,
-                    inputs,
-                    output,
-                    |joints, joint_velocities, parameters| ::core::result::Result::Ok(
-                        Self::bias(joints, joint_velocities, parameters),
-                    ),
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ProjectTorques => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_torques(row.row(0)?, row.row(1)?))
             }
             other => {
                 ::core::result::Result::Err(::overact::SampleError {

@@ -110,39 +110,39 @@ impl ThreeLegPoint {
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
     pub const PARAMETERS: [::overact::Parameter; 31] = {
-        use ::overact::{Parameter, Symbol};
+        use ::overact::{Parameter, StandardParameter};
         [
-            Parameter::of_leg("zz_1_leg1", Symbol::Zz, "kg m^2", 0, 0, 0),
-            Parameter::of_leg("ia_1_leg1", Symbol::Ia, "kg m^2", 0, 0, 0),
-            Parameter::of_leg("fv_1_leg1", Symbol::Fv, "N m s/rad", 0, 0, 0),
-            Parameter::of_leg("fs_1_leg1", Symbol::Fs, "N m", 0, 0, 0),
-            Parameter::of_leg("off_1_leg1", Symbol::Off, "N m", 0, 0, 0),
-            Parameter::of_leg("zz_2_leg1", Symbol::Zz, "kg m^2", 0, 1, 0),
-            Parameter::of_leg("mx_2_leg1", Symbol::Mx, "kg m", 0, 1, 0),
-            Parameter::of_leg("my_2_leg1", Symbol::My, "kg m", 0, 1, 0),
-            Parameter::of_leg("m_2_leg1", Symbol::M, "kg", 0, 1, 0),
-            Parameter::of_leg("fs_2_leg1", Symbol::Fs, "N m", 0, 1, 0),
-            Parameter::of_leg("zz_1_leg2", Symbol::Zz, "kg m^2", 1, 0, 0),
-            Parameter::of_leg("ia_1_leg2", Symbol::Ia, "kg m^2", 1, 0, 0),
-            Parameter::of_leg("fv_1_leg2", Symbol::Fv, "N m s/rad", 1, 0, 0),
-            Parameter::of_leg("fs_1_leg2", Symbol::Fs, "N m", 1, 0, 0),
-            Parameter::of_leg("off_1_leg2", Symbol::Off, "N m", 1, 0, 0),
-            Parameter::of_leg("zz_2_leg2", Symbol::Zz, "kg m^2", 1, 1, 0),
-            Parameter::of_leg("mx_2_leg2", Symbol::Mx, "kg m", 1, 1, 0),
-            Parameter::of_leg("my_2_leg2", Symbol::My, "kg m", 1, 1, 0),
-            Parameter::of_leg("m_2_leg2", Symbol::M, "kg", 1, 1, 0),
-            Parameter::of_leg("fs_2_leg2", Symbol::Fs, "N m", 1, 1, 0),
-            Parameter::of_leg("zz_1_leg3", Symbol::Zz, "kg m^2", 2, 0, 0),
-            Parameter::of_leg("ia_1_leg3", Symbol::Ia, "kg m^2", 2, 0, 0),
-            Parameter::of_leg("fv_1_leg3", Symbol::Fv, "N m s/rad", 2, 0, 0),
-            Parameter::of_leg("fs_1_leg3", Symbol::Fs, "N m", 2, 0, 0),
-            Parameter::of_leg("off_1_leg3", Symbol::Off, "N m", 2, 0, 0),
-            Parameter::of_leg("zz_2_leg3", Symbol::Zz, "kg m^2", 2, 1, 0),
-            Parameter::of_leg("mx_2_leg3", Symbol::Mx, "kg m", 2, 1, 0),
-            Parameter::of_leg("my_2_leg3", Symbol::My, "kg m", 2, 1, 0),
-            Parameter::of_leg("m_2_leg3", Symbol::M, "kg", 2, 1, 0),
-            Parameter::of_leg("fs_2_leg3", Symbol::Fs, "N m", 2, 1, 0),
-            Parameter::of_platform("m_platform", Symbol::M, "kg"),
+            Parameter::of_leg("zz_1_leg1", StandardParameter::Zz, "kg m^2", 0, 0, 0),
+            Parameter::of_leg("ia_1_leg1", StandardParameter::Ia, "kg m^2", 0, 0, 0),
+            Parameter::of_leg("fv_1_leg1", StandardParameter::Fv, "N m s/rad", 0, 0, 0),
+            Parameter::of_leg("fs_1_leg1", StandardParameter::Fs, "N m", 0, 0, 0),
+            Parameter::of_leg("off_1_leg1", StandardParameter::Off, "N m", 0, 0, 0),
+            Parameter::of_leg("zz_2_leg1", StandardParameter::Zz, "kg m^2", 0, 1, 0),
+            Parameter::of_leg("mx_2_leg1", StandardParameter::Mx, "kg m", 0, 1, 0),
+            Parameter::of_leg("my_2_leg1", StandardParameter::My, "kg m", 0, 1, 0),
+            Parameter::of_leg("m_2_leg1", StandardParameter::M, "kg", 0, 1, 0),
+            Parameter::of_leg("fs_2_leg1", StandardParameter::Fs, "N m", 0, 1, 0),
+            Parameter::of_leg("zz_1_leg2", StandardParameter::Zz, "kg m^2", 1, 0, 0),
+            Parameter::of_leg("ia_1_leg2", StandardParameter::Ia, "kg m^2", 1, 0, 0),
+            Parameter::of_leg("fv_1_leg2", StandardParameter::Fv, "N m s/rad", 1, 0, 0),
+            Parameter::of_leg("fs_1_leg2", StandardParameter::Fs, "N m", 1, 0, 0),
+            Parameter::of_leg("off_1_leg2", StandardParameter::Off, "N m", 1, 0, 0),
+            Parameter::of_leg("zz_2_leg2", StandardParameter::Zz, "kg m^2", 1, 1, 0),
+            Parameter::of_leg("mx_2_leg2", StandardParameter::Mx, "kg m", 1, 1, 0),
+            Parameter::of_leg("my_2_leg2", StandardParameter::My, "kg m", 1, 1, 0),
+            Parameter::of_leg("m_2_leg2", StandardParameter::M, "kg", 1, 1, 0),
+            Parameter::of_leg("fs_2_leg2", StandardParameter::Fs, "N m", 1, 1, 0),
+            Parameter::of_leg("zz_1_leg3", StandardParameter::Zz, "kg m^2", 2, 0, 0),
+            Parameter::of_leg("ia_1_leg3", StandardParameter::Ia, "kg m^2", 2, 0, 0),
+            Parameter::of_leg("fv_1_leg3", StandardParameter::Fv, "N m s/rad", 2, 0, 0),
+            Parameter::of_leg("fs_1_leg3", StandardParameter::Fs, "N m", 2, 0, 0),
+            Parameter::of_leg("off_1_leg3", StandardParameter::Off, "N m", 2, 0, 0),
+            Parameter::of_leg("zz_2_leg3", StandardParameter::Zz, "kg m^2", 2, 1, 0),
+            Parameter::of_leg("mx_2_leg3", StandardParameter::Mx, "kg m", 2, 1, 0),
+            Parameter::of_leg("my_2_leg3", StandardParameter::My, "kg m", 2, 1, 0),
+            Parameter::of_leg("m_2_leg3", StandardParameter::M, "kg", 2, 1, 0),
+            Parameter::of_leg("fs_2_leg3", StandardParameter::Fs, "N m", 2, 1, 0),
+            Parameter::of_platform("m_platform", StandardParameter::M, "kg"),
         ]
     };
     /// The payload's parameters, in column order.
@@ -204,10 +204,11 @@ impl ThreeLegPoint {
     /// 29 operations (13 additions, 15 multiplications, 1 divisions), 1 square roots, 2 trigonometric pairs, 0 signs, 32 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("actuators", actuators)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -244,10 +245,11 @@ impl ThreeLegPoint {
     /// 94 operations (41 additions, 50 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 100 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn joints(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1²
@@ -329,10 +331,11 @@ impl ThreeLegPoint {
     /// 67 operations (29 additions, 35 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 73 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1²
@@ -394,10 +397,11 @@ impl ThreeLegPoint {
     /// 70 operations (24 additions, 40 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 67 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -474,11 +478,12 @@ impl ThreeLegPoint {
     /// 24 operations (7 additions, 14 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 27 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
@@ -520,10 +525,11 @@ impl ThreeLegPoint {
     /// 108 operations (37 additions, 63 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 105 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -617,11 +623,14 @@ impl ThreeLegPoint {
     /// Output: 6 x 6.
     ///
     /// 45 operations (17 additions, 28 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 45 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn legs_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
-    ) -> [[::core::primitive::f64; 6]; 6] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
@@ -642,7 +651,7 @@ impl ThreeLegPoint {
         let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
         let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
         let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        [
+        ::core::result::Result::Ok([
             [-(L_1 * (c1_leg1 + c12_leg1)), -(L_1 * c12_leg1), 0.0, 0.0, 0.0, 0.0],
             [-(L_1 * (s1_leg1 + s12_leg1)), -(L_1 * s12_leg1), 0.0, 0.0, 0.0, 0.0],
             [
@@ -655,7 +664,7 @@ impl ThreeLegPoint {
                 0.0, 0.0, 0.0, 0.0, L_1 * (fk2_y_leg3 + minus_fk1_y_leg3), L_1 * minus_fk1_y_leg3,
             ],
             [0.0, 0.0, 0.0, 0.0, L_1 * (minus_fk2_x_leg3 + fk1_x_leg3), L_1 * fk1_x_leg3],
-        ]
+        ])
     }
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
@@ -666,12 +675,17 @@ impl ThreeLegPoint {
     /// Output: 6 x 2.
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
-        _joints: &[::core::primitive::f64; 6],
-    ) -> [[::core::primitive::f64; 2]; 6] {
-        [[1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]]
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
+        ::core::result::Result::Ok([
+            [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0],
+        ])
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
@@ -682,11 +696,14 @@ impl ThreeLegPoint {
     /// Output: 3 x 2.
     ///
     /// 21 operations (7 additions, 14 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 21 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
-    ) -> [[::core::primitive::f64; 2]; 3] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
@@ -700,10 +717,10 @@ impl ThreeLegPoint {
         let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
         let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        [
+        ::core::result::Result::Ok([
             [-(L_1 * s12_leg1), L_1 * c12_leg1], [L_1 * minus_fk1_x_leg2, -(L_1 * fk1_y_leg2)],
             [L_1 * fk1_x_leg3, -(L_1 * minus_fk1_y_leg3)],
-        ]
+        ])
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
@@ -714,21 +731,24 @@ impl ThreeLegPoint {
     /// Output: 3 x 3.
     ///
     /// 3 operations (0 additions, 3 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 3 intermediates.
-    #[must_use]
+    ///
+    /// # Errors
+    /// An input that is not finite.
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
-    ) -> [[::core::primitive::f64; 3]; 3] {
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("joints", joints)])?;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
         // --- sines and cosines
         let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[5],
         ]);
-        [
+        ::core::result::Result::Ok([
             [-(L_1_SQUARED * s2_leg1), 0.0, 0.0], [0.0, -(L_1_SQUARED * s2_leg2), 0.0],
             [0.0, 0.0, -(L_1_SQUARED * s2_leg3)],
-        ]
+        ])
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
@@ -741,11 +761,12 @@ impl ThreeLegPoint {
     /// 115 operations (43 additions, 66 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 112 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn joint_velocities(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("twist", twist)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -850,12 +871,15 @@ impl ThreeLegPoint {
     /// 175 operations (64 additions, 105 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 172 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -997,11 +1021,14 @@ impl ThreeLegPoint {
     /// 105 operations (37 additions, 60 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 106 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
         pose: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("actuator_velocities", actuator_velocities)],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -1094,12 +1121,18 @@ impl ThreeLegPoint {
     /// 174 operations (62 additions, 104 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 175 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         actuator_accelerations: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist),
+                ("actuator_accelerations", actuator_accelerations),
+            ],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -1244,12 +1277,15 @@ impl ThreeLegPoint {
     /// 235 operations (84 additions, 145 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 198 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1
@@ -1465,13 +1501,19 @@ impl ThreeLegPoint {
     /// 200 operations (65 additions, 132 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 12 signs, 170 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
         /// l_1 = l_2
@@ -1643,13 +1685,19 @@ impl ThreeLegPoint {
     /// 296 operations (111 additions, 174 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 256 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -1910,12 +1958,15 @@ impl ThreeLegPoint {
     /// 259 operations (91 additions, 160 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 228 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1
@@ -2127,13 +2178,19 @@ impl ThreeLegPoint {
     /// 221 operations (70 additions, 147 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 10 signs, 199 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
         /// l_1 = l_2
@@ -2306,13 +2363,19 @@ impl ThreeLegPoint {
     /// 320 operations (116 additions, 194 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 289 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -2570,12 +2633,15 @@ impl ThreeLegPoint {
     /// 209 operations (72 additions, 131 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 184 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1
@@ -2763,13 +2829,19 @@ impl ThreeLegPoint {
     /// 175 operations (53 additions, 119 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 12 signs, 157 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
         /// l_1 = l_2
@@ -2915,13 +2987,19 @@ impl ThreeLegPoint {
     /// 270 operations (99 additions, 160 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 242 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -3150,12 +3228,15 @@ impl ThreeLegPoint {
     /// 237 operations (81 additions, 148 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 216 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("acceleration", acceleration)],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1
@@ -3346,13 +3427,19 @@ impl ThreeLegPoint {
     /// 199 operations (60 additions, 135 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 10 signs, 187 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
         /// l_1 = l_2
@@ -3500,13 +3587,19 @@ impl ThreeLegPoint {
     /// 298 operations (106 additions, 182 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 277 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -3739,11 +3832,12 @@ impl ThreeLegPoint {
     /// 80 operations (28 additions, 46 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 81 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn project_platform(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -3823,11 +3917,12 @@ impl ThreeLegPoint {
     /// 88 operations (29 additions, 52 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 89 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn project_actuators(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -3915,13 +4010,19 @@ impl ThreeLegPoint {
     /// 333 operations (133 additions, 192 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 339 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
+                ("parameters", parameters),
+            ],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1
@@ -4148,14 +4249,20 @@ impl ThreeLegPoint {
     /// 291 operations (110 additions, 176 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 6 signs, 306 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        _pose: &[::core::primitive::f64; 2],
+        pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration), ("parameters", parameters),
+            ],
+        )?;
         /// 1 / l_1
         const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
         /// l_1 = l_2
@@ -4343,7 +4450,7 @@ impl ThreeLegPoint {
     /// 375 operations (151 additions, 216 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 381 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -4351,6 +4458,13 @@ impl ThreeLegPoint {
         parameters: &[::core::primitive::f64; 31],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations), ("parameters", parameters),
+                ("start", start),
+            ],
+        )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -4614,11 +4728,12 @@ impl ThreeLegPoint {
     /// 254 operations (96 additions, 152 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 254 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn mass_matrix(
         pose: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1
@@ -4793,12 +4908,15 @@ impl ThreeLegPoint {
     /// 265 operations (104 additions, 155 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 272 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn bias(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("parameters", parameters)],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1
@@ -5001,7 +5119,7 @@ impl ThreeLegPoint {
     /// 360 operations (142 additions, 209 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 367 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -5009,6 +5127,12 @@ impl ThreeLegPoint {
         parameters: &[::core::primitive::f64; 31],
         preload: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
+                ("parameters", parameters), ("preload", preload),
+            ],
+        )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// 1 / l_1
@@ -5238,7 +5362,7 @@ impl ThreeLegPoint {
                 + preload[0] * (normal_3_1 * inv_norm_1),
         ])
     }
-    /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
+    /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -5249,11 +5373,12 @@ impl ThreeLegPoint {
     /// 114 operations (40 additions, 66 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 114 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose), ("torques", torques)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -5345,10 +5470,11 @@ impl ThreeLegPoint {
     /// 109 operations (37 additions, 63 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 110 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
     pub fn null_space(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
+        ::overact::guard::finite(&[("pose", pose)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
         /// l_1 = l_2
@@ -5435,11 +5561,12 @@ impl ThreeLegPoint {
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
     ///
     /// # Errors
-    /// No convergence, or a singular or unreachable configuration on the way.
+    /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
         let from = |mut pose: [::core::primitive::f64; Self::POSE]| {
             ::overact::forward::gauss_newton(
                     ::overact::forward::Measured {
@@ -5473,18 +5600,22 @@ impl ThreeLegPoint {
             })
     }
 }
+impl ThreeLegPoint {
+    const SIZES: ::overact::Sizes = ::overact::Sizes {
+        pose: Self::POSE,
+        dof: Self::DOF,
+        actuators: Self::ACTUATORS,
+        joints: Self::JOINTS,
+        parameters: 31,
+        base_parameters: 22,
+        payload_parameters: 0,
+    };
+}
 impl ::overact::Model for ThreeLegPoint {
     fn info(&self) -> ::overact::Info<'_> {
         ::overact::Info {
             name: Self::NAME,
-            sizes: ::overact::Sizes {
-                pose: Self::POSE,
-                dof: Self::DOF,
-                actuators: Self::ACTUATORS,
-                joints: Self::JOINTS,
-                parameters: 31,
-                payload_parameters: 0,
-            },
+            sizes: Self::SIZES,
             legs: &Self::LEGS,
             actuators: &Self::ACTUATOR_NAMES,
             actuated_joints: &Self::ACTUATED_JOINTS,
@@ -5504,52 +5635,152 @@ impl ::overact::Model for ThreeLegPoint {
         output: &mut [::core::primitive::f64],
     ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
+            ::overact::Function::PoseInClosedForm => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::pose_in_closed_form(row.row(0)?))
+            }
             ::overact::Function::Joints => {
-                ::overact::block::map1(6, inputs, output, Self::joints)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joints(row.row(0)?))
             }
             ::overact::Function::ActuatorPositions => {
-                ::overact::block::map1(3, inputs, output, Self::actuator_positions)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::actuator_positions(row.row(0)?))
             }
             ::overact::Function::InverseJacobian => {
-                ::overact::block::map1(6, inputs, output, Self::inverse_jacobian)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_jacobian(row.row(0)?))
+            }
+            ::overact::Function::Jacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::jacobian(row.row(0)?))
+            }
+            ::overact::Function::LegsJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::legs_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
+            }
+            ::overact::Function::LegsPlatformJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::legs_platform_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
+            }
+            ::overact::Function::ClosurePlatformJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::closure_platform_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
+            }
+            ::overact::Function::ClosureActuatorJacobian => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::closure_actuator_jacobian_from_joints(
+                        row.row(0)?,
+                        row.row(1)?,
+                    ))
             }
             ::overact::Function::JointVelocities => {
-                ::overact::block::map2(6, inputs, output, Self::joint_velocities)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_velocities(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::JointAccelerations => {
-                ::overact::block::map3(6, inputs, output, Self::joint_accelerations)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::joint_accelerations(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::TwistFromActuators => {
-                ::overact::block::map2(2, inputs, output, Self::twist_from_actuators)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::twist_from_actuators(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::AccelerationFromActuators => {
-                ::overact::block::map3(
-                    2,
-                    inputs,
-                    output,
-                    Self::acceleration_from_actuators,
-                )
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::acceleration_from_actuators(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
-            ::overact::Function::IdmRedPlatform => {
-                ::overact::block::map3(62, inputs, output, Self::idm_red_platform)
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Standard) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedActuators(::overact::Columns::Standard) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_actuators(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedPlatform(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_platform_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
+            }
+            ::overact::Function::IdmRedActuators(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::idm_red_actuators_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                    ))
             }
             ::overact::Function::ProjectPlatform => {
-                ::overact::block::map2(2, inputs, output, Self::project_platform)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_platform(row.row(0)?, row.row(1)?))
+            }
+            ::overact::Function::ProjectActuators => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_actuators(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::InverseDynamics => {
-                ::overact::block::map4(3, inputs, output, Self::inverse_dynamics)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::MassMatrix => {
-                ::overact::block::map2(4, inputs, output, Self::mass_matrix)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::Bias => {
-                ::overact::block::map3(2, inputs, output, Self::bias)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::InverseDynamicsPreloaded => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics_preloaded(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                        row.row(4)?,
+                    ))
             }
             ::overact::Function::ProjectTorques => {
-                ::overact::block::map2(3, inputs, output, Self::project_torques)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::project_torques(row.row(0)?, row.row(1)?))
             }
             ::overact::Function::NullSpace => {
-                ::overact::block::map1(3, inputs, output, Self::null_space)
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::null_space(row.row(0)?))
             }
             other => {
                 ::core::result::Result::Err(::overact::SampleError {

@@ -148,6 +148,7 @@ fn with_info<T>(mechanism: &Mechanism, then: impl FnOnce(&Info<'_>) -> T) -> T {
             actuators: actuators.len(),
             joints: joints.len(),
             parameters: 0,
+            base_parameters: 0,
             payload_parameters: 0,
         },
         legs: &[],

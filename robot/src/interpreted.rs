@@ -9,21 +9,23 @@ mod newton;
 
 use names::Names;
 use overact::{
-    Error, Function, Info, Input, Model, SampleError,
+    Columns, Error, Function, Info, Input, Model, SampleError,
+    block::samples,
     forward::{self, Measured},
+    guard,
 };
 use overact_codegen::{
     RobotModel,
-    derivation::{Columns, Family, MotionInput},
+    derivation::MotionInput,
     evaluation::{Evaluator, Failed, Rows},
-    lowering::{Condition, Program},
+    lowering::{Array, Condition, Program},
     mechanism::Mechanism,
 };
 use std::sync::{Mutex, PoisonError};
 
 /// Most inputs that a program has: those of a function of [`overact::Model`], and joints that are found
 /// before it runs.
-const INPUTS: usize = 5;
+const INPUTS: usize = 6;
 
 /// Where an input of a program comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,27 +104,33 @@ impl InterpretedRobot {
             functions: Vec::new(),
             scratch: Pool::default(),
         };
-        robot.functions = ALL
-            .iter()
-            .filter_map(|&(f, family)| robot.serve(f, family))
-            .collect();
+        let served = |function| robot.serve(function);
+        robot.functions = Function::ALL.into_iter().filter_map(served).collect();
         robot
     }
 
-    /// Whether a function of a model is served, or serves to find pose and joints. A model needs no
-    /// others to be interpreted.
+    /// Whether identification and simulation ask for a function, or it serves to find pose and joints. A
+    /// model of these functions alone is compiled sooner; it does not offer the others.
     #[must_use]
-    pub fn serves(mechanism: &Mechanism, family: Family, from: MotionInput) -> bool {
+    pub fn serves(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
         let plain = match mechanism.platform {
             Some(_) => MotionInput::Pose,
             None => MotionInput::Joints,
         };
-        match family {
-            Family::PoseInClosedForm => true,
-            Family::ClosureError | Family::LegsJacobian | Family::ClosureActuatorJacobian => {
+        match function {
+            Function::PoseInClosedForm => true,
+            Function::ClosureError | Function::LegsJacobian | Function::ClosureActuatorJacobian => {
                 from == MotionInput::Joints
             }
-            _ => from == plain && ALL.iter().any(|(_, served)| *served == family),
+            Function::Jacobian
+            | Function::LegsPlatformJacobian
+            | Function::ClosurePlatformJacobian
+            | Function::IdmRedPlatform(Columns::Base)
+            | Function::IdmRedActuators(_)
+            | Function::IdmRedPayloadActuators
+            | Function::ProjectActuators
+            | Function::InverseDynamicsPreloaded => false,
+            _ => from == plain,
         }
     }
 
@@ -132,29 +140,22 @@ impl InterpretedRobot {
         &self.model
     }
 
-    fn serve(&self, function: Function, family: Family) -> Option<Served> {
-        let from_joints = || self.model.function(family, MotionInput::Joints);
-        let wanted = self.model.plain(family).or_else(from_joints)?;
-        let index = self
-            .model
-            .functions
-            .iter()
-            .position(|f| std::ptr::eq(f, wanted))?;
+    fn serve(&self, function: Function) -> Option<Served> {
+        let wanted = self.model.served(function)?;
+        let all = &self.model.functions;
+        let index = all.iter().position(|f| std::ptr::eq(f, wanted))?;
         let finds_joints = self.model.finds_joints(wanted);
-        let place = |(array, used): (&overact_codegen::lowering::Array, bool)| {
+        let place = |(array, used): (&Array, bool)| {
             if finds_joints && array.name == "joints" {
                 return Some(Given::Joints);
             }
             if !used {
                 return Some(Given::Unread);
             }
-            let joints = array.name == "joints" && function.inputs().contains(&Input::Joints);
-            let input = match joints {
-                true => Input::Joints,
-                false => input_of(&array.name)?,
-            };
             let mut known = function.inputs().iter();
-            known.position(|i| *i == input).map(Given::At)
+            known
+                .position(|&i| self.called(i) == array.name)
+                .map(Given::At)
         };
         let arrays = wanted.program.inputs.iter();
         let inputs: Option<Vec<Given>> = arrays
@@ -162,7 +163,7 @@ impl InterpretedRobot {
             .map(place)
             .collect();
         let (rows, columns) = function.shape(&self.names.sizes);
-        // A program that does not fit the trait is not offered rather than misread.
+        // A program that does not fit the table is not offered rather than misread.
         let inputs = inputs
             .filter(|i| i.len() <= INPUTS && wanted.program.entries.len() == rows * columns)?;
         let evaluators = Pool::default();
@@ -178,7 +179,7 @@ impl InterpretedRobot {
     fn pose_in_closed_form(&self, actuators: &[f64]) -> Option<Vec<f64>> {
         let function = self
             .model
-            .function(Family::PoseInClosedForm, MotionInput::Actuators)?;
+            .function(Function::PoseInClosedForm, MotionInput::Actuators)?;
         let mut pose = vec![0.0; self.names.sizes.pose];
         let given = [Rows {
             values: actuators,
@@ -252,7 +253,7 @@ impl InterpretedRobot {
                 actuators,
                 condition: times(*home),
             },
-            None => Error::NotFinite,
+            None => Error::Overflow,
         };
         SampleError {
             sample: failed.sample,
@@ -260,63 +261,100 @@ impl InterpretedRobot {
         }
     }
 
-    /// Lengths and finiteness of all inputs.
-    fn check(
-        &self,
-        function: Function,
-        inputs: &[&[f64]],
-        samples: usize,
-    ) -> Result<(), SampleError> {
-        let kinds = function.inputs();
-        let whole = |error| SampleError { sample: 0, error };
-        if inputs.len() != kinds.len() {
-            return Err(whole(Error::Length {
-                expected: kinds.len(),
-                found: inputs.len(),
-            }));
-        }
-        let mut first: Option<usize> = None;
-        for (kind, values) in kinds.iter().zip(inputs) {
-            let row = self.names.sizes.of(*kind);
-            let shared = *kind == Input::Parameters;
-            let expected = if shared { row } else { row * samples };
-            if values.len() != expected {
-                return Err(whole(Error::Length {
-                    expected,
-                    found: values.len(),
-                }));
-            }
-            if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-                let sample = if shared { 0 } else { at / row };
-                first = Some(first.map_or(sample, |known| known.min(sample)));
-            }
-        }
-        first.map_or(Ok(()), |sample| {
-            Err(SampleError {
-                sample,
-                error: Error::NotFinite,
+    /// The first sample with an input that is not finite, and the input's name.
+    fn first_not_finite(&self, function: Function, inputs: &[&[f64]]) -> Option<SampleError> {
+        let sizes = &self.names.sizes;
+        let kinds = function.inputs().iter().zip(inputs);
+        let of = |(kind, values): (&Input, &&[f64])| {
+            let at = values.iter().position(|value| !value.is_finite())?;
+            let row = sizes.of(*kind);
+            let input = self.called(*kind);
+            Some(SampleError {
+                sample: if values.len() == row { 0 } else { at / row },
+                error: Error::NotFinite { input },
             })
-        })
+        };
+        kinds.filter_map(of).min_by_key(|error| error.sample)
     }
 
-    /// Functions that a robot without redundancy does not need, but that have a meaning.
-    fn trivial(
-        &self,
-        function: Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), Error> {
-        let sizes = &self.names.sizes;
-        match (function, inputs) {
-            // Without redundancy there are no internal torques to remove.
-            (Function::ProjectTorques, [_, torques]) if sizes.actuators == sizes.dof => {
-                output.copy_from_slice(torques);
-                Ok(())
-            }
-            _ => Err(Error::NotOffered {
-                function: function.name(),
-            }),
+    /// Poses whose quaternions have length 1, and the first one that has none.
+    fn unit_quaternions(&self, poses: &[f64]) -> (Vec<f64>, Option<SampleError>) {
+        let mut unit = poses.to_vec();
+        let mut poses = unit.chunks_mut(self.names.sizes.pose).enumerate();
+        let bad = poses.find_map(|(sample, pose)| {
+            let error = guard::normalise(pose, Input::Pose.name()).err()?;
+            Some(SampleError { sample, error })
+        });
+        (unit, bad)
+    }
+
+    /// The name of an input as generated code has it.
+    fn called(&self, input: Input) -> &'static str {
+        match self.model.is_tree() {
+            true => input.name_without_platform(),
+            false => input.name(),
         }
+    }
+
+    fn has_quaternion(&self) -> bool {
+        let platform = self.model.mechanism.platform.as_ref();
+        platform.is_some_and(|platform| platform.motion.has_quaternion())
+    }
+
+    /// Runs a program at the first samples of a block.
+    fn run_samples(
+        &self,
+        served: &Served,
+        inputs: &[&[f64]],
+        samples: usize,
+        output: &mut [f64],
+    ) -> Result<(), SampleError> {
+        let kinds = served.function.inputs();
+        // An input of a single row serves all samples.
+        let rows = |at: usize| {
+            let (values, row) = (inputs[at], self.names.sizes.of(kinds[at]));
+            let shared = values.len() == row;
+            let values = if shared {
+                values
+            } else {
+                &values[..row * samples]
+            };
+            Rows { values, shared }
+        };
+        const NOTHING: Rows<'_> = Rows {
+            values: &[],
+            shared: false,
+        };
+        let poses = rows(0);
+        let found = match served.inputs.contains(&Given::Joints) {
+            true => self.find_joints(poses.values)?,
+            false => Vec::new(),
+        };
+        if served.function == Function::Joints && !found.is_empty() {
+            let joints = output.chunks_mut(self.names.sizes.joints);
+            joints
+                .zip(found.chunks(self.names.sizes.joints).cycle())
+                .for_each(|(out, found)| out.copy_from_slice(found));
+            return Ok(());
+        }
+        let mut given = [NOTHING; INPUTS];
+        for (slot, &at) in given.iter_mut().zip(&served.inputs) {
+            *slot = match at {
+                Given::At(at) => rows(at),
+                Given::Joints => Rows {
+                    values: &found,
+                    shared: poses.shared,
+                },
+                Given::Unread => NOTHING,
+            };
+        }
+        let given = &given[..served.inputs.len()];
+        let program = self.program(served);
+        let run = |evaluator: &mut Evaluator| evaluator.evaluate(samples, given, output);
+        served
+            .evaluators
+            .with(|| Evaluator::new(program), run)
+            .map_err(|failed| self.error(program, &failed))
     }
 }
 
@@ -331,59 +369,36 @@ impl Model for InterpretedRobot {
         inputs: &[&[f64]],
         output: &mut [f64],
     ) -> Result<(), SampleError> {
-        let whole = |error| SampleError { sample: 0, error };
-        let (rows, columns) = function.shape(&self.names.sizes);
-        let width = rows * columns;
-        let samples = output.len().checked_div(width).unwrap_or(0);
-        if output.len() != samples * width {
-            let expected = (samples + usize::from(width > 0)) * width;
-            return Err(whole(Error::Length {
-                expected,
-                found: output.len(),
-            }));
-        }
-        if width == 0 {
+        let served = self.functions.iter().find(|s| s.function == function);
+        let served = served.ok_or(SampleError {
+            sample: 0,
+            error: Error::NotOffered {
+                function: function.name(),
+            },
+        })?;
+        let samples = samples(function, &self.names.sizes, inputs, output)?;
+        if samples == 0 {
             return Ok(());
         }
-        self.check(function, inputs, samples)?;
-        let Some(served) = self.functions.iter().find(|s| s.function == function) else {
-            return self.trivial(function, inputs, output).map_err(whole);
-        };
-        let mut given = [Rows {
-            values: &[],
-            shared: false,
-        }; INPUTS];
-        let found = match served.inputs.contains(&Given::Joints) {
-            true => self.find_joints(inputs[0])?,
-            false => Vec::new(),
-        };
-        if function == Function::Joints && !found.is_empty() {
-            output.copy_from_slice(&found);
-            return Ok(());
+        // As in compiled robots, the first sample that fails is told, whatever is wrong with it.
+        let mut bad = self.first_not_finite(function, inputs);
+        let (mut scaled, unit);
+        let mut inputs = inputs;
+        if self.has_quaternion() && function.inputs().first() == Some(&Input::Pose) {
+            let zero;
+            (unit, zero) = self.unit_quaternions(inputs[0]);
+            let earlier = |zero: &SampleError| bad.is_none_or(|bad| zero.sample < bad.sample);
+            bad = zero.filter(earlier).or(bad);
+            scaled = inputs.to_vec();
+            scaled[0] = &unit;
+            inputs = &scaled;
         }
-        for (slot, &at) in given.iter_mut().zip(&served.inputs) {
-            *slot = match at {
-                Given::At(at) => Rows {
-                    values: inputs[at],
-                    shared: function.inputs()[at] == Input::Parameters,
-                },
-                Given::Joints => Rows {
-                    values: &found,
-                    shared: false,
-                },
-                Given::Unread => Rows {
-                    values: &[],
-                    shared: false,
-                },
-            };
+        let good = bad.map_or(samples, |error| error.sample);
+        let width = output.len() / samples;
+        if good > 0 {
+            self.run_samples(served, inputs, good, &mut output[..good * width])?;
         }
-        let given = &given[..served.inputs.len()];
-        let program = self.program(served);
-        let run = |evaluator: &mut Evaluator| evaluator.evaluate(samples, given, output);
-        served
-            .evaluators
-            .with(|| Evaluator::new(program), run)
-            .map_err(|failed| self.error(program, &failed))
+        bad.map_or(Ok(()), Err)
     }
 
     fn pose_from_actuators(&self, actuators: &[f64], pose: &mut [f64]) -> Result<(), Error> {
@@ -393,33 +408,30 @@ impl Model for InterpretedRobot {
                 return Err(Error::Length { expected, found });
             }
         }
-        if actuators.iter().any(|q| !q.is_finite()) {
-            return Err(Error::NotFinite);
-        }
+        guard::finite(&[("actuators", actuators), ("start", pose)])?;
         if self.model.is_tree() {
             pose.copy_from_slice(actuators);
             return Ok(());
+        }
+        let mut start = pose.to_vec();
+        if self.has_quaternion() {
+            guard::normalise(&mut start, "start")?;
         }
         let closed = self.pose_in_closed_form(actuators);
         if let (Some(found), true) = (&closed, sizes.actuators == sizes.dof) {
             pose.copy_from_slice(found);
             return Ok(());
         }
-        self.fit_pose(actuators, pose).or_else(|error| {
-            let found = closed.ok_or(error)?;
-            pose.copy_from_slice(&found);
-            self.fit_pose(actuators, pose)
-        })
+        self.fit_pose(actuators, &mut start).or_else(|error| {
+            start.copy_from_slice(&closed.ok_or(error)?);
+            self.fit_pose(actuators, &mut start)
+        })?;
+        pose.copy_from_slice(&start);
+        Ok(())
     }
 
     fn displace(&self, pose: &mut [f64], step: &[f64]) {
-        let motion = self
-            .model
-            .mechanism
-            .platform
-            .as_ref()
-            .map(|platform| platform.motion);
-        if motion.is_some_and(overact_codegen::mechanism::Motion::has_quaternion) {
+        if self.has_quaternion() {
             forward::displace_quaternion(pose, step);
         } else {
             forward::displace(pose, step);
@@ -436,47 +448,4 @@ impl Scratch {
         self.step.resize(r, 0.0);
         self.pose.resize(sizes.pose, 0.0);
     }
-}
-
-/// The functions of the trait and what they are called in the generator.
-const ALL: [(Function, Family); 16] = [
-    (Function::Joints, Family::Joints),
-    (Function::ActuatorPositions, Family::ActuatorPositions),
-    (Function::InverseJacobian, Family::InverseJacobian),
-    (Function::JointVelocities, Family::JointVelocities),
-    (Function::JointAccelerations, Family::JointAccelerations),
-    (Function::TwistFromActuators, Family::TwistFromActuators),
-    (
-        Function::AccelerationFromActuators,
-        Family::AccelerationFromActuators,
-    ),
-    (
-        Function::IdmRedPlatform,
-        Family::IdmRedPlatform(Columns::Standard),
-    ),
-    (Function::IdmRedPayload, Family::IdmRedPayload),
-    (Function::ProjectPlatform, Family::ProjectPlatform),
-    (Function::InverseDynamics, Family::InverseDynamics),
-    (Function::MassMatrix, Family::MassMatrix),
-    (Function::Bias, Family::Bias),
-    (Function::ProjectTorques, Family::ProjectTorques),
-    (Function::NullSpace, Family::NullSpace),
-    (
-        Function::ClosureActuatorJacobian,
-        Family::ClosureActuatorJacobian,
-    ),
-];
-
-/// The input that a program's array of this name is. A tree's joints are its pose.
-fn input_of(name: &str) -> Option<Input> {
-    Some(match name {
-        "pose" | "joints" => Input::Pose,
-        "twist" | "joint_velocities" => Input::Twist,
-        "acceleration" | "joint_accelerations" => Input::Acceleration,
-        "actuator_velocities" => Input::ActuatorVelocities,
-        "actuator_accelerations" => Input::ActuatorAccelerations,
-        "torques" => Input::Torques,
-        "parameters" => Input::Parameters,
-        _ => return None,
-    })
 }

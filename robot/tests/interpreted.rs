@@ -1,6 +1,6 @@
 //! The interpreted robot against finite differences, and its forward kinematics.
 
-use overact::{Body, Error, Function, Model, Symbol};
+use overact::{Body, Columns, Error, Function, Model, StandardParameter};
 use overact_codegen::Request;
 use overact_robot::{CompiledFile, InterpretedRobot, Robot};
 use std::path::{Path, PathBuf};
@@ -44,7 +44,12 @@ fn the_closure_is_served_from_joints() {
     let lean = loaded.expect("a robot");
     for robot in [&robot("dualv.toml"), lean.model()] {
         let joints = evaluate(robot, Function::Joints, &[&POSE], 12);
-        let closure = evaluate(robot, Function::ClosureActuatorJacobian, &[&joints], 16);
+        let closure = evaluate(
+            robot,
+            Function::ClosureActuatorJacobian,
+            &[&POSE, &joints],
+            16,
+        );
         for (at, value) in closure.iter().enumerate() {
             let (row, column) = (at / 4, at % 4);
             let expected = if row == column {
@@ -69,7 +74,7 @@ fn rates_are_derivatives_of_positions() {
     let joints = |time: f64| evaluate(&robot, Function::Joints, &[&moved(time)], 12);
     let (before, now, after) = (joints(-h), joints(0.0), joints(h));
     let inputs: [&[f64]; 3] = [&POSE, &TWIST, &ACCELERATION];
-    let velocities = evaluate(&robot, Function::JointVelocities, &inputs, 12);
+    let velocities = evaluate(&robot, Function::JointVelocities, &inputs[..2], 12);
     let accelerations = evaluate(&robot, Function::JointAccelerations, &inputs, 12);
     let jacobian = evaluate(&robot, Function::InverseJacobian, &[&POSE], 12);
     for i in 0..12 {
@@ -112,7 +117,7 @@ fn forward_kinematics_finds_the_pose_back() {
     let nan = [f64::NAN, 0.0, 0.0, 0.0];
     assert_eq!(
         robot.pose_from_actuators(&nan, &mut pose),
-        Err(Error::NotFinite)
+        Err(Error::NotFinite { input: "actuators" })
     );
 }
 
@@ -125,7 +130,12 @@ fn columns_times_parameters_are_the_torques() {
         .map(|i| 0.1 + (i as f64 * 0.7).sin().abs())
         .collect();
     let inputs: [&[f64]; 3] = [&POSE, &TWIST, &ACCELERATION];
-    let columns = evaluate(&robot, Function::IdmRedPlatform, &inputs, 3 * own);
+    let columns = evaluate(
+        &robot,
+        Function::IdmRedPlatform(Columns::Standard),
+        &inputs,
+        3 * own,
+    );
     let loaded = evaluate(&robot, Function::IdmRedPayload, &inputs, 3 * payload);
     let inputs: [&[f64]; 4] = [&POSE, &TWIST, &ACCELERATION, &values];
     let torques = evaluate(&robot, Function::InverseDynamics, &inputs, 4);
@@ -159,7 +169,10 @@ fn bad_samples_are_named() {
     let error = robot
         .evaluate(Function::InverseJacobian, &[&poses], &mut output)
         .expect_err("infinite");
-    assert_eq!((error.sample, error.error), (1, Error::NotFinite));
+    assert_eq!(
+        (error.sample, error.error),
+        (1, Error::NotFinite { input: "pose" })
+    );
     poses[3] = 3.0;
     let error = robot
         .evaluate(Function::InverseJacobian, &[&poses], &mut output)
@@ -196,7 +209,7 @@ fn what_a_robot_says_of_itself() {
     assert_eq!(
         (zz.symbol, zz.body),
         (
-            Symbol::Zz,
+            StandardParameter::Zz,
             Body::Leg {
                 leg: 2,
                 index: 1,
@@ -219,29 +232,19 @@ fn a_tree_is_its_joints() {
         .pose_from_actuators(&[0.3], &mut pose)
         .expect("a pose");
     assert_eq!(pose, [0.3]);
-    let velocity = evaluate(
-        &robot,
-        Function::JointVelocities,
-        &[&[0.3], &[2.0], &[1.0]],
-        1,
-    );
+    let velocity = evaluate(&robot, Function::JointVelocities, &[&[0.3], &[2.0]], 1);
     assert_eq!(velocity, [2.0]);
-    // There are no internal torques and no null space.
+    // There are no internal torques, and neither a null space nor a payload.
     assert_eq!(
         evaluate(&robot, Function::ProjectTorques, &[&[0.3], &[5.0]], 1),
         [5.0]
     );
-    assert_eq!(
-        evaluate(&robot, Function::NullSpace, &[&[0.3]], 0),
-        [0.0; 0]
-    );
-    assert_eq!(
-        evaluate(
-            &robot,
-            Function::IdmRedPayload,
-            &[&[0.3], &[2.0], &[1.0]],
-            0
-        ),
-        [0.0; 0]
-    );
+    let states: [&[f64]; 3] = [&[0.3], &[2.0], &[1.0]];
+    for function in [Function::NullSpace, Function::IdmRedPayload] {
+        let inputs = &states[..function.inputs().len()];
+        let found = robot.evaluate(function, inputs, &mut []);
+        let name = function.name();
+        let expected = Error::NotOffered { function: name };
+        assert_eq!(found.expect_err("not offered").error, expected);
+    }
 }

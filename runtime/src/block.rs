@@ -1,38 +1,31 @@
 //! Blocks of samples for compiled robots: generated functions take one state; [`crate::Model`] hands
 //! over slices of many.
 
-use crate::{Error, SampleError};
+use crate::{Error, Function, SampleError, Sizes};
 
 /// An output as a flat slice, row-major.
 pub trait Flat {
+    /// How many numbers there are.
+    const LEN: usize;
+
     /// The numbers.
     fn flat(&self) -> &[f64];
 }
 
 impl<const N: usize> Flat for [f64; N] {
+    const LEN: usize = N;
+
     fn flat(&self) -> &[f64] {
         self
     }
 }
 
 impl<const R: usize, const C: usize> Flat for [[f64; C]; R] {
+    const LEN: usize = R * C;
+
     fn flat(&self) -> &[f64] {
         self.as_flattened()
     }
-}
-
-/// The row of an input for a sample; an input of a single row serves all samples.
-fn row<'a, const N: usize>(
-    input: Option<&&'a [f64]>,
-    sample: usize,
-) -> Result<&'a [f64; N], Error> {
-    let input: &'a [f64] = input.copied().unwrap_or_default();
-    let start = if input.len() == N { 0 } else { sample * N };
-    let rest = input.get(start..).unwrap_or_default();
-    rest.first_chunk::<N>().ok_or(Error::Length {
-        expected: start + N,
-        found: input.len(),
-    })
 }
 
 /// A slice as an array.
@@ -53,93 +46,102 @@ pub fn write(value: &impl Flat, out: &mut [f64]) {
     }
 }
 
-/// Evaluates a function sample by sample; `size` is the number of its results.
-fn each<O: Flat>(
-    size: usize,
-    output: &mut [f64],
-    mut f: impl FnMut(usize) -> Result<O, Error>,
-) -> Result<(), SampleError> {
-    if size == 0 {
-        return Ok(());
+/// How many samples a call of [`crate::Model::evaluate`] means: as many as the output has room for. Each
+/// input must hold a row of numbers for every sample, or one row that serves all.
+///
+/// # Errors
+/// [`Error::Inputs`] or [`Error::Length`], of sample 0.
+pub fn samples(
+    function: Function,
+    sizes: &Sizes,
+    inputs: &[&[f64]],
+    output: &[f64],
+) -> Result<usize, SampleError> {
+    let whole = |error| SampleError { sample: 0, error };
+    let kinds = function.inputs();
+    if inputs.len() != kinds.len() {
+        return Err(whole(Error::Inputs {
+            expected: kinds.len(),
+            found: inputs.len(),
+        }));
     }
-    for (sample, out) in output.chunks_mut(size).enumerate() {
-        let value = f(sample).map_err(|error| SampleError { sample, error })?;
-        let value = value.flat();
-        if out.len() != value.len() {
-            let error = Error::Length {
-                expected: value.len(),
-                found: out.len(),
-            };
-            return Err(SampleError { sample, error });
+    let length = |expected, found| whole(Error::Length { expected, found });
+    let (rows, columns) = function.shape(sizes);
+    let width = rows * columns;
+    let samples = output.len().checked_div(width).unwrap_or(0);
+    if output.len() != samples * width {
+        let whole_samples = samples + usize::from(width > 0);
+        return Err(length(whole_samples * width, output.len()));
+    }
+    for (kind, values) in kinds.iter().zip(inputs) {
+        let row = sizes.of(*kind);
+        if values.len() != row && values.len() != row * samples {
+            return Err(length(row * samples, values.len()));
         }
-        out.copy_from_slice(value);
     }
-    Ok(())
+    Ok(samples)
 }
 
-/// A function of one input.
-///
-/// # Errors
-/// The first sample at which the function fails.
-pub fn map1<const A: usize, O: Flat>(
-    size: usize,
-    inputs: &[&[f64]],
-    output: &mut [f64],
-    f: impl Fn(&[f64; A]) -> Result<O, Error>,
-) -> Result<(), SampleError> {
-    each(size, output, |i| f(row(inputs.first(), i)?))
+/// Inputs and output of a call of [`crate::Model::evaluate`], of lengths that fit the function.
+#[derive(Debug)]
+pub struct Block<'a> {
+    inputs: &'a [&'a [f64]],
+    output: &'a mut [f64],
 }
 
-/// A function of two inputs.
-///
-/// # Errors
-/// The first sample at which the function fails.
-pub fn map2<const A: usize, const B: usize, O: Flat>(
-    size: usize,
-    inputs: &[&[f64]],
-    output: &mut [f64],
-    f: impl Fn(&[f64; A], &[f64; B]) -> Result<O, Error>,
-) -> Result<(), SampleError> {
-    each(size, output, |i| {
-        f(row(inputs.first(), i)?, row(inputs.get(1), i)?)
-    })
+/// The inputs at a sample.
+#[derive(Debug, Clone, Copy)]
+pub struct Inputs<'a> {
+    inputs: &'a [&'a [f64]],
+    sample: usize,
 }
 
-/// A function of three inputs.
-///
-/// # Errors
-/// The first sample at which the function fails.
-pub fn map3<const A: usize, const B: usize, const C: usize, O: Flat>(
-    size: usize,
-    inputs: &[&[f64]],
-    output: &mut [f64],
-    f: impl Fn(&[f64; A], &[f64; B], &[f64; C]) -> Result<O, Error>,
-) -> Result<(), SampleError> {
-    each(size, output, |i| {
-        f(
-            row(inputs.first(), i)?,
-            row(inputs.get(1), i)?,
-            row(inputs.get(2), i)?,
-        )
-    })
+impl<'a> Inputs<'a> {
+    /// The row of an input; an input of a single row serves all samples.
+    ///
+    /// # Errors
+    /// [`Error::Length`].
+    pub fn row<const N: usize>(&self, input: usize) -> Result<&'a [f64; N], Error> {
+        let input = self.inputs.get(input).copied().unwrap_or_default();
+        let start = if input.len() == N { 0 } else { self.sample * N };
+        let rest = input.get(start..).unwrap_or_default();
+        rest.first_chunk::<N>().ok_or(Error::Length {
+            expected: start + N,
+            found: input.len(),
+        })
+    }
 }
 
-/// A function of four inputs.
-///
-/// # Errors
-/// The first sample at which the function fails.
-pub fn map4<const A: usize, const B: usize, const C: usize, const D: usize, O: Flat>(
-    size: usize,
-    inputs: &[&[f64]],
-    output: &mut [f64],
-    f: impl Fn(&[f64; A], &[f64; B], &[f64; C], &[f64; D]) -> Result<O, Error>,
-) -> Result<(), SampleError> {
-    each(size, output, |i| {
-        f(
-            row(inputs.first(), i)?,
-            row(inputs.get(1), i)?,
-            row(inputs.get(2), i)?,
-            row(inputs.get(3), i)?,
-        )
-    })
+impl<'a> Block<'a> {
+    /// A call of a function of a robot of these sizes.
+    ///
+    /// # Errors
+    /// See [`samples`].
+    pub fn new(
+        function: Function,
+        sizes: &Sizes,
+        inputs: &'a [&'a [f64]],
+        output: &'a mut [f64],
+    ) -> Result<Self, SampleError> {
+        samples(function, sizes, inputs, output)?;
+        Ok(Self { inputs, output })
+    }
+
+    /// Evaluates a generated function sample by sample.
+    ///
+    /// # Errors
+    /// The first sample at which the function fails.
+    pub fn each<O: Flat>(
+        self,
+        function: impl Fn(Inputs<'a>) -> Result<O, Error>,
+    ) -> Result<(), SampleError> {
+        let inputs = self.inputs;
+        // An output without numbers has no samples.
+        for (sample, out) in self.output.chunks_mut(O::LEN.max(1)).enumerate() {
+            let value = function(Inputs { inputs, sample });
+            let value = value.map_err(|error| SampleError { sample, error })?;
+            write(&value, out);
+        }
+        Ok(())
+    }
 }

@@ -38,7 +38,8 @@ pub struct Workspace<'a> {
 }
 
 /// Finds the pose of least squares from the start in `pose`. `evaluate` writes q(x) and J_p^inv(x)
-/// (n x r, row-major) of a pose; `displace` moves a pose along the twist coordinates.
+/// (n x r, row-major) of a pose; `displace` moves a pose along the twist coordinates. All numbers are
+/// finite: the caller has seen to that.
 ///
 /// The remaining residual of a redundant robot is not zero when its encoders are noisy, so
 /// convergence is judged by the step.
@@ -58,30 +59,12 @@ pub fn gauss_newton(
         normal,
         step,
     } = workspace;
-    if measured.positions.iter().any(|q| !q.is_finite()) {
-        return Err(Error::NotFinite);
-    }
-    let dof = step.len();
     let mut residual = 0.0_f64;
     for _ in 0..STEPS {
         evaluate(pose, actuators, inverse_jacobian)?;
-        residual = 0.0;
         normal.fill(0.0);
         step.fill(0.0);
-        for (i, q) in actuators.iter().enumerate() {
-            let mut difference = measured.positions[i] - q;
-            if measured.is_revolute[i] {
-                difference = wrap_angle(difference);
-            }
-            residual = residual.max(difference.abs());
-            let row = &inverse_jacobian[i * dof..(i + 1) * dof];
-            for a in 0..dof {
-                step[a] += row[a] * difference;
-                for b in 0..dof {
-                    normal[a * dof + b] += row[a] * row[b];
-                }
-            }
-        }
+        residual = accumulate(measured, actuators, inverse_jacobian, normal, step);
         solve_positive_definite(normal, step)?;
         displace(pose, step);
         let largest = step.iter().fold(0.0_f64, |m, s| m.max(s.abs()));
@@ -95,34 +78,88 @@ pub fn gauss_newton(
     Err(Error::NoConvergence { residual })
 }
 
+/// Adds Jᵀ J to `normal` and Jᵀ Δq to `step`, J being J_p^inv; returns the largest difference.
+fn accumulate(
+    measured: Measured<'_>,
+    actuators: &[f64],
+    inverse_jacobian: &[f64],
+    normal: &mut [f64],
+    step: &mut [f64],
+) -> f64 {
+    let mut residual = 0.0_f64;
+    let dof = step.len().max(1);
+    let positions = measured.positions.iter().zip(measured.is_revolute);
+    let rows = inverse_jacobian.chunks_exact(dof);
+    for (((position, is_revolute), reached), row) in positions.zip(actuators).zip(rows) {
+        let mut difference = position - reached;
+        if *is_revolute {
+            difference = wrap_angle(difference);
+        }
+        residual = residual.max(difference.abs());
+        let sums = step.iter_mut().zip(normal.chunks_exact_mut(dof));
+        for ((step, normal), entry) in sums.zip(row) {
+            *step += entry * difference;
+            for (normal, other) in normal.iter_mut().zip(row) {
+                *normal += entry * other;
+            }
+        }
+    }
+    residual
+}
+
 /// Solves S x = y in place for a symmetric positive definite S (row-major, overwritten) by L D Lᵀ.
 ///
 /// # Errors
-/// [`Error::SingularPlatform`] when a pivot vanishes.
+/// [`Error::SingularPlatform`] when a pivot vanishes, [`Error::Length`] for a matrix that is not square.
 pub fn solve_positive_definite(matrix: &mut [f64], vector: &mut [f64]) -> Result<(), Error> {
     let n = vector.len();
-    let largest = (0..n).fold(0.0_f64, |m, i| m.max(matrix[i * n + i]));
-    for k in 0..n {
-        let pivot = matrix[k * n + k];
+    if n.checked_mul(n) != Some(matrix.len()) {
+        return Err(Error::Length {
+            expected: n.saturating_mul(n),
+            found: matrix.len(),
+        });
+    }
+    eliminate(matrix, vector)?;
+    // From the last row upwards; in the vector everything behind the row's own place is solved. Rows and
+    // places are taken by iterators, which leave no check of bounds behind.
+    for (k, row) in matrix.chunks_exact(n.max(1)).enumerate().rev() {
+        let mut known = row.iter().zip(vector.iter_mut()).skip(k);
+        if let Some((pivot, value)) = known.next() {
+            let rest: f64 = known.map(|(entry, solved)| entry * *solved).sum();
+            *value = (*value - rest) / pivot;
+        }
+    }
+    Ok(())
+}
+
+/// Brings S to upper triangular form, and the right-hand side with it.
+fn eliminate(matrix: &mut [f64], vector: &mut [f64]) -> Result<(), Error> {
+    let n = vector.len().max(1);
+    let diagonal = matrix.chunks_exact(n).enumerate();
+    let diagonal = diagonal.filter_map(|(k, row)| row.get(k));
+    let largest = diagonal.fold(0.0_f64, |m, entry| m.max(*entry));
+    let (mut matrix, mut vector) = (matrix, vector);
+    let mut k = 0;
+    while let (Some((row, below)), Some((known, unknown))) =
+        (matrix.split_at_mut_checked(n), vector.split_first_mut())
+    {
+        let pivot = row.get(k).copied().unwrap_or_default();
         if pivot.is_nan() || pivot <= 1e-15 * largest {
             return Err(Error::SingularPlatform {
                 actuators: "actuators",
                 condition: largest / pivot.abs(),
             });
         }
-        for i in k + 1..n {
-            let factor = matrix[i * n + k] / pivot;
-            for j in k + 1..n {
-                matrix[i * n + j] -= factor * matrix[k * n + j];
+        for (other, value) in below.chunks_exact_mut(n).zip(unknown.iter_mut()) {
+            let mut entries = other.iter_mut().zip(&*row).skip(k);
+            let factor = entries.next().map_or(0.0, |(first, _)| *first / pivot);
+            for (entry, above) in entries {
+                *entry -= factor * above;
             }
-            vector[i] -= factor * vector[k];
+            *value -= factor * *known;
         }
-    }
-    for k in (0..n).rev() {
-        for j in k + 1..n {
-            vector[k] -= matrix[k * n + j] * vector[j];
-        }
-        vector[k] /= matrix[k * n + k];
+        (matrix, vector) = (below, unknown);
+        k += 1;
     }
     Ok(())
 }
@@ -137,12 +174,10 @@ pub fn displace(pose: &mut [f64], step: &[f64]) {
 /// Moves a pose that ends with a unit quaternion (w, x, y, z): the last three numbers of `step` are a
 /// rotation vector in the base frame, by whose exponential the quaternion is multiplied from the left.
 pub fn displace_quaternion(pose: &mut [f64], step: &[f64]) {
-    let (Some(linear), Some(turn)) = (step.len().checked_sub(3), step.last_chunk::<3>()) else {
+    let Some((linear, turn)) = step.split_last_chunk::<3>() else {
         return;
     };
-    for (coordinate, step) in pose.iter_mut().zip(&step[..linear]) {
-        *coordinate += step;
-    }
+    displace(pose, linear);
     let Some([w, x, y, z]) = pose.last_chunk_mut::<4>() else {
         return;
     };
@@ -159,4 +194,46 @@ pub fn displace_quaternion(pose: &mut [f64], step: &[f64]) {
     ];
     let norm = sqrt(product.iter().map(|q| q * q).sum());
     [*w, *x, *y, *z] = product.map(|q| q / norm);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Error, solve_positive_definite};
+
+    #[test]
+    fn a_positive_definite_system_is_solved() {
+        let matrix = [[4.0, 2.0, -2.0], [2.0, 10.0, 2.0], [-2.0, 2.0, 6.0]];
+        let solution = [3.0, -1.0, 2.0];
+        let product = matrix.map(|row| row.iter().zip(solution).map(|(a, x)| a * x).sum::<f64>());
+        let (mut found, mut factors) = (product, matrix);
+        solve_positive_definite(factors.as_flattened_mut(), &mut found).expect("regular");
+        for (found, wanted) in found.iter().zip(solution) {
+            assert!((found - wanted).abs() < 1e-14, "{found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn singular_and_misshapen_systems_are_refused() {
+        let mut singular = [[1.0, 2.0], [2.0, 4.0]];
+        let found = solve_positive_definite(singular.as_flattened_mut(), &mut [1.0, 2.0]);
+        assert!(
+            matches!(found, Err(Error::SingularPlatform { .. })),
+            "{found:?}"
+        );
+        let mut broken = [[f64::NAN, 0.0], [0.0, 1.0]];
+        let found = solve_positive_definite(broken.as_flattened_mut(), &mut [1.0, 2.0]);
+        assert!(
+            matches!(found, Err(Error::SingularPlatform { .. })),
+            "{found:?}"
+        );
+        let expected = Error::Length {
+            expected: 4,
+            found: 3,
+        };
+        assert_eq!(
+            solve_positive_definite(&mut [1.0; 3], &mut [1.0; 2]),
+            Err(expected)
+        );
+        assert_eq!(solve_positive_definite(&mut [], &mut []), Ok(()));
+    }
 }

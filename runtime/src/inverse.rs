@@ -5,7 +5,7 @@
 //! its working mode (the sign of its determinant), the way from the home pose is walked in more and
 //! smaller steps.
 
-use crate::{Error, guard::SINGULAR};
+use crate::{Error, SINGULAR};
 
 /// A robot's legs and home configuration.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +38,8 @@ const TOLERANCE: f64 = 1e-13;
 const LONGEST_STEP: f64 = 0.5;
 
 /// Finds the joint positions of a pose in the working mode of the home configuration. `evaluate` writes
-/// the closure error (n_t) and J_k (n_t x n_t, row-major) of a pose and joint positions.
+/// the closure error (n_t) and J_k (n_t x n_t, row-major) of a pose and joint positions. The pose is finite:
+/// the caller has seen to that.
 ///
 /// # Errors
 /// [`Error::OutOfReach`] or [`Error::SingularLeg`] of the leg that does not follow.
@@ -54,9 +55,6 @@ pub fn solve(
         jacobian,
         pose: way,
     } = workspace;
-    if pose.iter().any(|x| !x.is_finite()) {
-        return Err(Error::NotFinite);
-    }
     let mut result = Ok(());
     for steps in [1_u32, 8, 64] {
         joints.copy_from_slice(legs.home_joints);

@@ -8,7 +8,6 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 pub mod block;
-pub mod error;
 pub mod forward;
 pub mod guard;
 pub mod inverse;
@@ -17,7 +16,10 @@ pub mod model;
 pub mod partition;
 mod trigonometry;
 
-pub use error::{Error, SampleError};
-pub use model::{BaseParameter, Body, Function, Info, Input, Model, Parameter, Sizes, Symbol};
+pub use model::{BaseParameter, Body, Info, Model, Parameter};
+pub use overact_core::{
+    Actuators, Columns, Condition, Error, Extent, Function, Input, SINGULAR, SampleError, Sizes,
+    StandardParameter,
+};
 #[cfg(feature = "macro")]
 pub use overact_macros::redundant_robot;

@@ -21,9 +21,8 @@
 //! # Ok::<(), overact::Error>(())
 //! ```
 
-use crate::error::Actuators;
-use crate::guard::SINGULAR;
-use crate::{Error, math::sqrt};
+use crate::Actuators;
+use crate::{Error, SINGULAR, guard, math::sqrt};
 
 /// Smallest length of a column of J_p^inv, relative to the longest, by which a coordinate is scaled: far
 /// below what a change of units makes of it, far above rounding.
@@ -53,13 +52,7 @@ impl<const R: usize> Partition<R> {
         if let Some(&index) = kept.iter().find(|&&at| at >= actuators) {
             return Err(Error::NoActuator { index, actuators });
         }
-        if inverse_jacobian
-            .as_flattened()
-            .iter()
-            .any(|e| !e.is_finite())
-        {
-            return Err(Error::NotFinite);
-        }
+        guard::finite(&[("inverse_jacobian", inverse_jacobian.as_flattened())])?;
         let mut transposed = [[0.0; R]; R];
         for (column, &actuator) in kept.iter().enumerate() {
             for (row, entries) in transposed.iter_mut().enumerate() {
@@ -259,7 +252,8 @@ mod tests {
         };
         assert_eq!(outside, Err(expected));
         let broken = Partition::new(&[[1.0, f64::NAN], [0.0, 1.0]], &[0, 1]);
-        assert_eq!(broken, Err(Error::NotFinite));
+        let input = "inverse_jacobian";
+        assert_eq!(broken, Err(Error::NotFinite { input }));
         let partition = Partition::new(&JACOBIAN, &[0, 1]).unwrap();
         let short = partition.project(&mut [1.0; 3]);
         assert_eq!(

@@ -10,7 +10,7 @@
 //! J_p^inv are divided by their norms at home, which makes metres and radians comparable.
 
 use nalgebra::{DMatrix, SymmetricEigen};
-use overact::{Function, Model, SampleError};
+use overact::{Columns, Function, Model, SampleError};
 
 /// Poses, twists and accelerations of many samples.
 pub(crate) struct Motion {
@@ -42,7 +42,10 @@ pub(crate) fn gram(
             &values,
         ))
     };
-    let own = block(Function::IdmRedPlatform, sizes.parameters)?;
+    let own = block(
+        Function::IdmRedPlatform(Columns::Standard),
+        sizes.parameters,
+    )?;
     let count = if payload { sizes.payload_parameters } else { 0 };
     let added = block(Function::IdmRedPayload, count)?;
     let mut regressor = own.resize_horizontally(sizes.parameters + count, 0.0);

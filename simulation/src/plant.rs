@@ -111,7 +111,7 @@ impl<'a> Plant<'a> {
         {
             Ok(())
         } else {
-            Err(Cause::Model(ModelError::NotFinite))
+            Err(Cause::Model(ModelError::Overflow))
         }
     }
 

@@ -4,7 +4,7 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use overact::{Function, Model};
+use overact::{Columns, Function, Model};
 use overact_simulation::{
     Cause, Error, Experiment, Record, Run, Stage, Term, Trajectory, simulate, write_csv,
 };
@@ -272,7 +272,7 @@ fn the_log_of_a_dual_v_gives_its_parameters_back() {
         let (mut w, mut force) = ([0.0; 48], [0.0; 3]);
         let inputs: [&[f64]; 3] = [&rows[0], &rows[1], &rows[2]];
         model
-            .evaluate(Function::IdmRedPlatform, &inputs, &mut w)
+            .evaluate(Function::IdmRedPlatform(Columns::Standard), &inputs, &mut w)
             .unwrap();
         let torques = &record.torques[4 * k..4 * k + 4];
         model

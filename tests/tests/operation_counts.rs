@@ -4,7 +4,8 @@
 //! An operation is an addition, a subtraction, a multiplication or a division; square roots and
 //! trigonometric pairs stand apart.
 
-use overact_codegen::derivation::{Columns, Family, MotionInput};
+use overact::{Columns, Function};
+use overact_codegen::derivation::MotionInput;
 use overact_codegen::mechanism::{JointKind, Mechanism, StandardParameter};
 use overact_codegen::{Effort, Request, Source, description, mechanism, model_with};
 use overact_tests::support::{Failure, repository};
@@ -70,9 +71,9 @@ fn line(work: &Work, effort: Effort) -> Result<(String, usize), Failure> {
     if work.full {
         robot = with_all_parameters(robot);
     }
-    let family = Family::IdmRedPlatform(work.columns);
+    let function = Function::IdmRedPlatform(work.columns);
     let request = Request {
-        wanted: &|_, f, from| f == family && from == MotionInput::Joints,
+        wanted: &|_, f, from| f == function && from == MotionInput::Joints,
         ..Request::with_effort(effort)
     };
     let model = model_with(robot, &request).map_err(|error| format!("{error:?}"))?;

@@ -6,9 +6,10 @@
 //! others a sixth each time, in turn.
 
 use nalgebra::{DMatrix, DVector};
+use overact::{Columns, Function};
 use overact_codegen::Effort;
 use overact_codegen::compile_with;
-use overact_codegen::derivation::{Columns, Family, MotionInput};
+use overact_codegen::derivation::{MotionInput, function_name};
 use overact_codegen::mechanism::Mechanism;
 use overact_codegen::{Diagnostics, Request, RobotModel, Source};
 use overact_tests::reference::energy::total_energy;
@@ -129,7 +130,7 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     let evaluated = Evaluated(&model);
     let is_well_kept = is_well_kept(&model, &evaluated, &all)?;
     for function in &model.functions {
-        if is_well_kept || !depends_on_kept(function.family) {
+        if is_well_kept || !depends_on_kept(function.computes) {
             comparison.function(function, &evaluated, &all, &truths)?;
         }
     }
@@ -156,21 +157,21 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
 
 /// The model with the functions that this seed looks at; for one in sixteen, operations are searched.
 fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
-    let wanted = |mechanism: &Mechanism, family: Family, from: MotionInput| {
-        let always = match family {
+    let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
+        let always = match function {
             // The closure error is what Newton's method drives to zero, not a quantity of its own. The
             // pose in closed form has the assembly mode of home, which a state may have left.
-            Family::ClosureError | Family::PoseInClosedForm => return false,
-            Family::Joints
-            | Family::InverseJacobian
-            | Family::JointVelocities
-            | Family::JointAccelerations
-            | Family::InverseDynamics
-            | Family::IdmRedPlatform(_)
-            | Family::IdmRedActuators(Columns::Standard) => from != MotionInput::Actuators,
+            Function::ClosureError | Function::PoseInClosedForm => return false,
+            Function::Joints
+            | Function::InverseJacobian
+            | Function::JointVelocities
+            | Function::JointAccelerations
+            | Function::InverseDynamics
+            | Function::IdmRedPlatform(_)
+            | Function::IdmRedActuators(Columns::Standard) => from != MotionInput::Actuators,
             _ => false,
         };
-        let name = family.function_name(from, mechanism.platform.is_none());
+        let name = function_name(function, from, mechanism.platform.is_none());
         let turn = name.bytes().map(u64::from).sum::<u64>() + seed / 8;
         always || turn.is_multiple_of(6)
     };
@@ -189,14 +190,14 @@ fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
 }
 
 /// Whether a function is another one for other kept actuators.
-const fn depends_on_kept(family: Family) -> bool {
+const fn depends_on_kept(function: Function) -> bool {
     matches!(
-        family,
-        Family::IdmRedActuators(_)
-            | Family::IdmRedPayloadActuators
-            | Family::ProjectActuators
-            | Family::InverseDynamicsPreloaded
-            | Family::NullSpace
+        function,
+        Function::IdmRedActuators(_)
+            | Function::IdmRedPayloadActuators
+            | Function::ProjectActuators
+            | Function::InverseDynamicsPreloaded
+            | Function::NullSpace
     )
 }
 

@@ -2,8 +2,9 @@
 //!
 //! The cost table pins the operation counts of all functions.
 
+use overact::{Columns, Function};
 use overact_codegen::CompiledFunction;
-use overact_codegen::derivation::{Columns, Family, MotionInput};
+use overact_codegen::derivation::MotionInput;
 use overact_codegen::description::{self, Description};
 use overact_codegen::emission;
 use overact_codegen::internals::{Arena, Derived, derive, random_states};
@@ -13,9 +14,9 @@ use overact_tests::support::backend::evaluate;
 use overact_tests::support::{Failure, dualv};
 use std::fmt::Write;
 
-fn function(family: Family, from: MotionInput) -> Result<&'static CompiledFunction, Failure> {
-    let found = dualv()?.function(family, from);
-    found.ok_or_else(|| format!("no {family:?} from {from:?}").into())
+fn function(function: Function, from: MotionInput) -> Result<&'static CompiledFunction, Failure> {
+    let found = dualv()?.function(function, from);
+    found.ok_or_else(|| format!("no {function:?} from {from:?}").into())
 }
 
 #[test]
@@ -88,15 +89,15 @@ fn legs(mechanism: &Mechanism) -> Result<String, Failure> {
 #[test]
 fn derivation_of_the_dualv() -> Result<(), Failure> {
     let model = dualv()?;
-    let derived_text = |family: Family, picked: &dyn Fn(usize, usize) -> bool| {
+    let derived_text = |wanted: Function, picked: &dyn Fn(usize, usize) -> bool| {
         let arena = Arena::new();
         let (mechanism, selection) = (&model.mechanism, &model.selection);
-        let derived = derive(&arena, mechanism, selection, family, MotionInput::Joints)
+        let derived = derive(&arena, mechanism, selection, wanted, MotionInput::Joints)
             .map_err(|e| format!("{e:?}"))?;
         Ok::<String, Failure>(printed(&derived, picked))
     };
-    let jacobian = derived_text(Family::InverseJacobian, &|_, _| true)?;
-    let regressor = Family::IdmRedPlatform(Columns::Standard);
+    let jacobian = derived_text(Function::InverseJacobian, &|_, _| true)?;
+    let regressor = Function::IdmRedPlatform(Columns::Standard);
     let column = model
         .columns_of(regressor)
         .iter()
@@ -117,7 +118,7 @@ fn printed(derived: &Derived<'_>, picked: &dyn Fn(usize, usize) -> bool) -> Stri
 
 #[test]
 fn lowering_of_the_inverse_jacobian() -> Result<(), Failure> {
-    let program = &function(Family::InverseJacobian, MotionInput::Joints)?.program;
+    let program = &function(Function::InverseJacobian, MotionInput::Joints)?.program;
     insta::assert_snapshot!(listing(program)?);
     Ok(())
 }
@@ -215,7 +216,7 @@ fn cost_of_all_functions() -> Result<(), Failure> {
 #[test]
 fn regressor_from_joints_stays_as_small_as_it_is() -> Result<(), Failure> {
     let program = &function(
-        Family::IdmRedPlatform(Columns::Standard),
+        Function::IdmRedPlatform(Columns::Standard),
         MotionInput::Joints,
     )?
     .program;
@@ -249,7 +250,7 @@ fn emission_of_two_functions() -> Result<(), Failure> {
 fn evaluation_of_the_regressor() -> Result<(), Failure> {
     let model = dualv()?;
     let function = function(
-        Family::IdmRedPlatform(Columns::Standard),
+        Function::IdmRedPlatform(Columns::Standard),
         MotionInput::Joints,
     )?;
     let state = &random_states(&model.mechanism, 1, 7)[0];
@@ -261,7 +262,7 @@ fn evaluation_of_the_regressor() -> Result<(), Failure> {
         _ => None,
     })?;
     let mut text = String::new();
-    for (column, parameter) in model.columns_of(function.family).iter().enumerate() {
+    for (column, parameter) in model.columns_of(function.computes).iter().enumerate() {
         write!(text, "{:<12}", model.parameter_name(*parameter))?;
         for row in 0..3 {
             write!(text, " {:>19}", digits(values[row * 64 + column]))?;

@@ -1,6 +1,7 @@
 //! Times a generated function and the evaluation of its program over blocks, in turns, and prints the
 //! shortest times per sample in nanoseconds: function, blocks as they lie, rows.
-use overact_codegen::derivation::{Columns, Family, MotionInput};
+use overact::{Columns, Function};
+use overact_codegen::derivation::{MotionInput};
 use overact_codegen::evaluation::{Evaluator, Number, Rows};
 use overact_codegen::{Source, compile};
 use overact_timed::@MODULE@;
@@ -26,8 +27,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let states = rows().map(state).collect::<Result<Vec<State>, _>>()?;
     let text = fs::read_to_string("@DESCRIPTION@")?;
     let model = compile(&Source::new("description", &text)).map_err(|error| format!("{error:?}"))?.model;
-    let family = Family::IdmRedPlatform(Columns::@COLUMNS@);
-    let program = &model.function(family, MotionInput::Joints).ok_or("no such function")?.program;
+    let function = Function::IdmRedPlatform(Columns::@COLUMNS@);
+    let program = &model.function(function, MotionInput::Joints).ok_or("no such function")?.program;
     let mut start = 0;
     let inputs: Vec<Vec<f64>> = LENGTHS
         .iter()

@@ -9,9 +9,10 @@ use crate::{
     states::States,
 };
 use clap::ValueEnum;
+use overact::{Columns, Function};
 use overact_codegen::{
     Effort, Request, RobotModel,
-    derivation::{Columns, Family, MotionInput},
+    derivation::{MotionInput, function_name},
     evaluation::Rows,
     lowering::Program,
     mechanism::Mechanism,
@@ -104,9 +105,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let inputs = [arguments.file.as_path(), arguments.states.as_path()];
     output::check(&inputs, arguments.output.as_deref().as_slice())?;
     let name = arguments.function.as_str();
-    let wanted = |mechanism: &Mechanism, family: Family, from: MotionInput| {
-        let full = || family.function_name(from, mechanism.platform.is_none());
-        InterpretedRobot::serves(mechanism, family, from) || family.name() == name || full() == name
+    let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
+        let full = || function_name(function, from, mechanism.platform.is_none());
+        InterpretedRobot::serves(mechanism, function, from)
+            || function.name() == name
+            || full() == name
     };
     let request = Request {
         wanted: &wanted,
@@ -118,8 +121,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         model = with_kept(model, names, &request)?;
     }
     let function = resolve::function(&model, arguments, &states)?;
-    let (family, from, name) = (function.family, function.from, function.name.clone());
     let program = function.program.clone();
+    let (function, from, name) = (function.computes, function.from, function.name.clone());
     let robot = InterpretedRobot::new(model);
     let values = evaluate(&robot, &program, from, &states)?;
     let width = program.entries.len();
@@ -128,14 +131,14 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let text = if as_json {
         output::json(&Document {
             function: name,
-            parameters: parameters(robot.model(), family),
-            shapes: BTreeMap::from([(family.name(), shape)]),
+            parameters: parameters(robot.model(), function),
+            shapes: BTreeMap::from([(function.name(), shape)]),
             results: rows
-                .map(|row| BTreeMap::from([(family.name(), row.to_vec())]))
+                .map(|row| BTreeMap::from([(function.name(), row.to_vec())]))
                 .collect(),
         })?
     } else {
-        csv(family.name(), &shape, rows)
+        csv(function.name(), &shape, rows)
     };
     output::emit(&text, arguments.output.as_deref())
 }
@@ -157,15 +160,15 @@ fn with_kept(
 }
 
 /// Names of the columns.
-fn parameters(model: &RobotModel, family: Family) -> Vec<String> {
-    match family {
-        Family::IdmRedPlatform(Columns::Base) | Family::IdmRedActuators(Columns::Base) => model
+fn parameters(model: &RobotModel, function: Function) -> Vec<String> {
+    match function {
+        Function::IdmRedPlatform(Columns::Base) | Function::IdmRedActuators(Columns::Base) => model
             .base
             .iter()
             .map(|base| model.base_name(base))
             .collect(),
         _ => model
-            .columns_of(family)
+            .columns_of(function)
             .iter()
             .map(|&p| model.parameter_name(p))
             .collect(),

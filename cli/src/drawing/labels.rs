@@ -263,8 +263,8 @@ pub(super) fn legend(scene: &Scene, sheet: &Sheet) -> String {
             n(y)
         )
     };
-    type Symbol<'a> = Box<dyn Fn(f64) -> String + 'a>;
-    let mut entries: Vec<(Symbol<'_>, &str)> = Vec::new();
+    type StandardParameter<'a> = Box<dyn Fn(f64) -> String + 'a>;
+    let mut entries: Vec<(StandardParameter<'_>, &str)> = Vec::new();
     let driven = |p: &Part| {
         matches!(
             p,

@@ -1,10 +1,11 @@
 //! Every robot of the library closes with the joints that a rule gives, in the home's working mode.
 
 use crate::cas::Arena;
-use crate::derivation::{Derived, Family, MotionInput, Selection, Underivable, derive};
+use crate::derivation::{Derived, MotionInput, Selection, Underivable, derive};
 use crate::diagnostic::Source;
 use crate::mechanism::numeric::{platform_frame, target};
 use crate::mechanism::{Home, Mechanism, check};
+use overact_core::Function;
 use std::path::PathBuf;
 
 /// Of positions, m and rad.
@@ -79,11 +80,11 @@ impl Values<'_, '_> {
 fn derived<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
-    family: Family,
+    function: Function,
     from: MotionInput,
 ) -> Result<Derived<'a>, Underivable> {
     let selection = Selection::default();
-    derive(arena, mechanism, &selection, family, from)
+    derive(arena, mechanism, &selection, function, from)
 }
 
 #[test]
@@ -93,7 +94,7 @@ fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
             continue;
         };
         let arena = Arena::new();
-        let derived = derived(&arena, &mechanism, Family::Joints, MotionInput::Pose)
+        let derived = derived(&arena, &mechanism, Function::Joints, MotionInput::Pose)
             .unwrap_or_else(|e| panic!("{name}: {e:?}"));
         let joints = Values {
             arena: &arena,
@@ -128,14 +129,14 @@ fn poses_by_rule_are_those_that_the_actuators_came_from() {
         let found = derived(
             &arena,
             &mechanism,
-            Family::PoseInClosedForm,
+            Function::PoseInClosedForm,
             MotionInput::Actuators,
         );
         let Ok(found) = found else { continue };
         let inverse = derived(
             &arena,
             &mechanism,
-            Family::ActuatorPositions,
+            Function::ActuatorPositions,
             MotionInput::Pose,
         )
         .unwrap_or_else(|e| panic!("{name}: {e:?}"));

@@ -2,7 +2,6 @@
 
 use super::configuration::angle_near;
 use super::elimination::Rows;
-use super::family::{Columns, Family};
 use super::forward_kinematics::closed_form;
 use super::guard::{Guard, GuardKind};
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
@@ -15,6 +14,7 @@ use super::selection::{JointsBy, Selection};
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr};
 use crate::mechanism::{JointKind, Mechanism};
+use overact_core::{Columns, Function};
 
 /// A function as expressions.
 #[derive(Debug)]
@@ -56,10 +56,10 @@ pub fn derive<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
     selection: &Selection,
-    family: Family,
+    function: Function,
     from: MotionInput,
 ) -> Result<Derived<'a>, Underivable> {
-    if family == Family::PoseInClosedForm {
+    if function == Function::PoseInClosedForm {
         return pose_in_closed_form(arena, mechanism);
     }
     let configuration = match (from, selection.joints) {
@@ -75,7 +75,7 @@ pub fn derive<'a>(
         twist: Vec::new(),
         guards: Vec::new(),
     };
-    let rows = sheet.rows(family)?;
+    let rows = sheet.rows(function)?;
     sheet.robot.give_names();
     let shape = (rows.len(), rows.first().map_or(0, Vec::len));
     let mut guards = sheet.robot.guards.clone();
@@ -170,12 +170,12 @@ impl<'a> Sheet<'a, '_> {
         )
     }
 
-    fn rows(&mut self, family: Family) -> Result<Rows<'a>, Underivable> {
+    fn rows(&mut self, function: Function) -> Result<Rows<'a>, Underivable> {
         let n = self.robot.mechanism.actuated().len();
-        Ok(match family {
-            Family::PoseInClosedForm => return Err(Underivable::ForwardKinematics),
-            Family::Joints => column(self.joint_positions()),
-            Family::ActuatorPositions => {
+        Ok(match function {
+            Function::PoseInClosedForm => return Err(Underivable::ForwardKinematics),
+            Function::Joints => column(self.joint_positions()),
+            Function::ActuatorPositions => {
                 let all = self.joint_positions();
                 column(
                     self.robot
@@ -186,67 +186,70 @@ impl<'a> Sheet<'a, '_> {
                         .collect(),
                 )
             }
-            Family::InverseJacobian => self.robot.inverse_jacobian(),
-            Family::Jacobian => self.pseudo_inverse(),
-            Family::ClosurePlatformJacobian => self.closure_matrices().0,
-            Family::ClosureActuatorJacobian => self.closure_matrices().1,
-            Family::LegsJacobian => self.leg_matrices().0,
-            Family::LegsPlatformJacobian => self.leg_matrices().1,
-            Family::ClosureError => self.closure_error(),
-            Family::JointVelocities => {
+            Function::InverseJacobian => self.robot.inverse_jacobian(),
+            Function::Jacobian => self.pseudo_inverse(),
+            Function::ClosurePlatformJacobian => self.closure_matrices().0,
+            Function::ClosureActuatorJacobian => self.closure_matrices().1,
+            Function::LegsJacobian => self.leg_matrices().0,
+            Function::LegsPlatformJacobian => self.leg_matrices().1,
+            Function::ClosureError => self.closure_error(),
+            Function::JointVelocities => {
                 let twist = self.twist();
                 let still = self.zeros();
                 column(self.joint_motion(&twist, &still).0)
             }
-            Family::JointAccelerations => {
+            Function::JointAccelerations => {
                 let (twist, acceleration) = (self.twist(), self.acceleration());
                 column(self.joint_motion(&twist, &acceleration).1)
             }
-            Family::TwistFromActuators => {
+            Function::TwistFromActuators => {
                 let rates = self.input("actuator_velocities", n);
                 column(self.least_squares(&rates))
             }
-            Family::AccelerationFromActuators => {
+            Function::AccelerationFromActuators => {
                 let twist = self.twist();
                 column(self.acceleration_of(&twist))
             }
-            Family::IdmRedPlatform(columns) => {
+            Function::IdmRedPlatform(columns) => {
                 let projection = self.robot.project_on_platform();
                 self.columns(&projection, &self.chosen(columns))
             }
-            Family::IdmRedActuators(columns) => {
+            Function::IdmRedActuators(columns) => {
                 let projection = self.on_actuators()?;
                 self.columns(&projection, &self.chosen(columns))
             }
-            Family::IdmRedPayload => {
+            Function::IdmRedPayload => {
                 let projection = self.robot.project_on_platform();
                 self.columns(&projection, &self.selection.payload.clone())
             }
-            Family::IdmRedPayloadActuators => {
+            Function::IdmRedPayloadActuators => {
                 let projection = self.on_actuators()?;
                 self.columns(&projection, &self.selection.payload.clone())
             }
-            Family::ProjectPlatform => {
+            Function::ProjectPlatform => {
                 let torques = self.input("torques", n);
                 column(self.robot.projected_torques(&torques))
             }
-            Family::ProjectActuators => self.project_actuators(n)?,
-            Family::InverseDynamics => column(self.least_norm_torques()),
-            Family::InverseDynamicsPreloaded => self.preloaded_torques(n),
-            Family::MassMatrix => self.mass_matrix(),
-            Family::Bias => {
+            Function::ProjectActuators => self.project_actuators(n)?,
+            Function::InverseDynamics => column(self.least_norm_torques()),
+            Function::InverseDynamicsPreloaded => self.preloaded_torques(n),
+            Function::MassMatrix => self.mass_matrix(),
+            Function::Bias => {
                 let twist = self.twist();
                 let still = self.zeros();
                 column(self.projected_dynamics(&twist, &still))
             }
-            Family::ProjectTorques => {
+            Function::ProjectTorques => {
                 let torques = self.input("torques", n);
+                if n == self.robot.mechanism.dof() {
+                    return Ok(column(torques));
+                }
                 let jacobian = self.robot.inverse_jacobian();
                 let inner = apply(&transposed(&jacobian), &torques);
                 let solved = self.factored(&jacobian).solve(&inner);
                 column(apply(&jacobian, &solved))
             }
-            Family::NullSpace => self.null_space(),
+            Function::NullSpace => self.null_space(),
         })
     }
 

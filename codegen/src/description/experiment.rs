@@ -5,10 +5,11 @@ use super::drives::{self, Drives};
 use super::inventory::Inventory;
 use super::joint;
 use super::model::{JointKind, Spanned};
-use super::parameter::StandardParameter;
+use super::parameter::dimension;
 use super::reader::{Item, Table};
 use super::scope::Scope;
 use crate::diagnostic::{Diagnostic, Span, did_you_mean};
+use overact_core::StandardParameter;
 
 /// A virtual experiment.
 #[derive(Debug, Clone, PartialEq)]
@@ -168,7 +169,7 @@ fn position(kind: JointKind) -> Dimension {
 }
 
 pub(super) fn effort(kind: JointKind) -> Dimension {
-    StandardParameter::Fs.dimension(kind)
+    dimension(StandardParameter::Fs, kind)
 }
 
 /// One value for all actuators, or a list with one for each.

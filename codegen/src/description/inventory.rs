@@ -6,8 +6,9 @@ use super::dimension::Dimension;
 use super::experiment::Body;
 use super::joint;
 use super::model::{JointKind, Leg, Motion, Platform, actuators};
-use super::parameter::StandardParameter;
+use super::parameter::dimension;
 use super::scope::Scope;
+use overact_core::StandardParameter;
 
 /// What the tables that follow the legs need to know of the robot.
 pub(super) struct Inventory<'r> {
@@ -57,13 +58,13 @@ impl Inventory<'_> {
                             format!("{}_{}_{}", symbol.name(), joint.name.value, leg.name.value)
                         }
                     };
-                    all.push((name, body, *symbol, symbol.dimension(joint.kind.value)));
+                    all.push((name, body, *symbol, dimension(*symbol, joint.kind.value)));
                 }
             }
         }
         let mut free = |body, name: &str, symbols: &[StandardParameter]| {
             for symbol in symbols {
-                let dimension = symbol.dimension(JointKind::Fixed);
+                let dimension = dimension(*symbol, JointKind::Fixed);
                 all.push((
                     format!("{}_{name}", symbol.name()),
                     body,

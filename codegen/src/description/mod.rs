@@ -41,7 +41,7 @@ pub use model::{
     BaseColumns, Description, End, Joint, JointKind, Leg, Motion, Placement, Platform,
     PlatformHome, Spanned,
 };
-pub use parameter::StandardParameter;
+pub use overact_core::StandardParameter;
 pub use place::place;
 pub use settings::{Data, Factor, Friction, Identification, Normalisation, Reversals};
 

@@ -1,9 +1,9 @@
 //! What a description says, evaluated: one value per placement, lengths in m, masses in kg.
 
-use super::parameter::StandardParameter;
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::Span;
 use crate::effort::Effort;
+use overact_core::StandardParameter;
 
 /// A value and where the description gives it.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,139 +1,23 @@
-//! The standard parameters of a body and its joint.
+//! Dimensions of the standard parameters of a body and its joint.
 
 use super::dimension::Dimension;
 use super::model::JointKind;
 
-/// A standard parameter; the order is that of the paper's χ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum StandardParameter {
-    /// Moment of inertia about x through the body frame's origin, kg m².
-    Xx,
-    /// Product of inertia, -∫ x y dm, kg m².
-    Xy,
-    /// Product of inertia, -∫ x z dm, kg m².
-    Xz,
-    /// Moment of inertia about y, kg m².
-    Yy,
-    /// Product of inertia, -∫ y z dm, kg m².
-    Yz,
-    /// Moment of inertia about z, kg m².
-    Zz,
-    /// First moment along x, kg m.
-    Mx,
-    /// First moment along y, kg m.
-    My,
-    /// First moment along z, kg m.
-    Mz,
-    /// Mass, kg.
-    M,
-    /// Inertia of rotor and gears on the joint's side, kg m² or kg.
-    Ia,
-    /// Viscous friction, N m s/rad or N s/m.
-    Fv,
-    /// Coulomb friction, N m or N.
-    Fs,
-    /// Constant offset of friction and drive, N m or N.
-    Off,
-}
+use overact_core::StandardParameter;
 
-impl StandardParameter {
-    /// All fourteen, in order.
-    pub const ALL: [Self; 14] = [
-        Self::Xx,
-        Self::Xy,
-        Self::Xz,
-        Self::Yy,
-        Self::Yz,
-        Self::Zz,
-        Self::Mx,
-        Self::My,
-        Self::Mz,
-        Self::M,
-        Self::Ia,
-        Self::Fv,
-        Self::Fs,
-        Self::Off,
-    ];
-
-    /// The ten of a rigid body.
-    pub const INERTIA: [Self; 10] = [
-        Self::Xx,
-        Self::Xy,
-        Self::Xz,
-        Self::Yy,
-        Self::Yz,
-        Self::Zz,
-        Self::Mx,
-        Self::My,
-        Self::Mz,
-        Self::M,
-    ];
-
-    /// The three of friction.
-    pub const FRICTION: [Self; 3] = [Self::Fv, Self::Fs, Self::Off];
-
-    /// Field-standard name, `zz` for instance.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Xx => "xx",
-            Self::Xy => "xy",
-            Self::Xz => "xz",
-            Self::Yy => "yy",
-            Self::Yz => "yz",
-            Self::Zz => "zz",
-            Self::Mx => "mx",
-            Self::My => "my",
-            Self::Mz => "mz",
-            Self::M => "m",
-            Self::Ia => "ia",
-            Self::Fv => "fv",
-            Self::Fs => "fs",
-            Self::Off => "off",
+/// Dimension of a parameter of a joint of this kind.
+pub(super) fn dimension(parameter: StandardParameter, kind: JointKind) -> Dimension {
+    let slides = kind == JointKind::Prismatic;
+    match parameter {
+        StandardParameter::Mx | StandardParameter::My | StandardParameter::Mz => {
+            Dimension::FIRST_MOMENT
         }
-    }
-
-    /// The parameter with this name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|p| p.name() == name)
-    }
-
-    /// Whether it belongs to the rigid body and not to the joint.
-    #[must_use]
-    pub fn is_inertial(self) -> bool {
-        self <= Self::M
-    }
-
-    /// Unit of the parameter of a joint of this kind, in SI.
-    #[must_use]
-    pub const fn unit(self, kind: JointKind) -> &'static str {
-        let slides = matches!(kind, JointKind::Prismatic);
-        match self {
-            Self::Xx | Self::Xy | Self::Xz | Self::Yy | Self::Yz | Self::Zz => "kg m^2",
-            Self::Mx | Self::My | Self::Mz => "kg m",
-            Self::M => "kg",
-            Self::Ia if slides => "kg",
-            Self::Ia => "kg m^2",
-            Self::Fv if slides => "N s/m",
-            Self::Fv => "N m s/rad",
-            Self::Fs | Self::Off if slides => "N",
-            Self::Fs | Self::Off => "N m",
-        }
-    }
-
-    /// Dimension of the parameter of a joint of this kind.
-    pub(super) fn dimension(self, kind: JointKind) -> Dimension {
-        let slides = kind == JointKind::Prismatic;
-        match self {
-            Self::Mx | Self::My | Self::Mz => Dimension::FIRST_MOMENT,
-            Self::M => Dimension::MASS,
-            Self::Ia if slides => Dimension::MASS,
-            Self::Fv if slides => Dimension::LINEAR_VISCOSITY,
-            Self::Fv => Dimension::ANGULAR_VISCOSITY,
-            Self::Fs | Self::Off if slides => Dimension::FORCE,
-            Self::Fs | Self::Off => Dimension::TORQUE,
-            _ => Dimension::INERTIA,
-        }
+        StandardParameter::M => Dimension::MASS,
+        StandardParameter::Ia if slides => Dimension::MASS,
+        StandardParameter::Fv if slides => Dimension::LINEAR_VISCOSITY,
+        StandardParameter::Fv => Dimension::ANGULAR_VISCOSITY,
+        StandardParameter::Fs | StandardParameter::Off if slides => Dimension::FORCE,
+        StandardParameter::Fs | StandardParameter::Off => Dimension::TORQUE,
+        _ => Dimension::INERTIA,
     }
 }

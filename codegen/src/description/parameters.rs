@@ -1,9 +1,9 @@
 //! Lists of standard parameters: symbols, and groups of them.
 
 use super::model::JointKind;
-use super::parameter::StandardParameter as P;
 use super::reader::Item;
 use crate::diagnostic::did_you_mean;
+use overact_core::StandardParameter as P;
 
 /// Whose parameters a list names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

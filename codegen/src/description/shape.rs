@@ -1,11 +1,11 @@
 //! The tables `[leg.NAME]`: legs written once, read without evaluating their expressions.
 
 use super::model::{JointKind, Spanned};
-use super::parameter::StandardParameter;
 use super::parameters::Owner;
 use super::reader::{Item, Table};
 use super::scope::{Scope, is_word, name_problem};
 use crate::diagnostic::{Diagnostic, Span, did_you_mean};
+use overact_core::StandardParameter;
 
 /// A leg's shape.
 pub(super) struct Shape<'c, 't> {

@@ -156,22 +156,22 @@ fn parameters(name: &str, doc: &str, model: &RobotModel, of: &[BodyParameter]) -
                 let shape = model.mechanism.legs[leg].shape;
                 let (leg, joint, shape) = (index(leg), index(joint), index(shape));
                 let symbol = symbol(s);
-                quote!(Parameter::of_leg(#name, Symbol::#symbol, #unit, #leg, #joint, #shape))
+                quote!(Parameter::of_leg(#name, StandardParameter::#symbol, #unit, #leg, #joint, #shape))
             }
             BodyParameter::Platform(s) => {
                 let symbol = symbol(s);
-                quote!(Parameter::of_platform(#name, Symbol::#symbol, #unit))
+                quote!(Parameter::of_platform(#name, StandardParameter::#symbol, #unit))
             }
             BodyParameter::Payload(s) => {
                 let symbol = symbol(s);
-                quote!(Parameter::of_payload(#name, Symbol::#symbol, #unit))
+                quote!(Parameter::of_payload(#name, StandardParameter::#symbol, #unit))
             }
         }
     });
     let (name, count) = (format_ident!("{name}"), Literal::usize_unsuffixed(of.len()));
     let names = (!of.is_empty()).then(|| {
         quote!(
-            use ::overact::{Parameter, Symbol};
+            use ::overact::{Parameter, StandardParameter};
         )
     });
     quote! {

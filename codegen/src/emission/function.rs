@@ -3,10 +3,11 @@
 use super::expression::Body;
 use super::labels::Labels;
 use super::layout::Sections;
-use crate::derivation::{Family, MotionInput};
+use crate::derivation::MotionInput;
 use crate::lowering::Array;
 use crate::model::{CompiledFunction, RobotModel};
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use overact_core::{Columns, Function};
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// A function as an item of an `impl` block.
@@ -22,58 +23,26 @@ pub struct Item {
 /// The function as an item of an `impl` block.
 #[must_use]
 pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
-    if model.finds_joints(function) && function.family == Family::Joints {
+    if model.finds_joints(function) && function.computes == Function::Joints {
         return Item {
             tokens: super::inverse::item(model),
             sections: Sections::none(&function.name),
             names: Vec::new(),
         };
     }
-    let program = &function.program;
-    let fallible = is_fallible(model, function);
     let (mut sections, mut names) = (Vec::new(), Vec::new());
     let (statements, value) = match twin(model, function) {
-        Some(twin) => (TokenStream::new(), call(twin, is_fallible(model, twin))),
+        Some(twin) => (TokenStream::new(), call(twin)),
         None => {
-            let written = Body::write(program, &Labels::new(model, function));
+            let written = Body::write(&function.program, &Labels::new(model, function));
             (sections, names) = (written.sections, written.names);
             let value = written.value;
-            let value = if fallible {
-                quote!(::core::result::Result::Ok(#value))
-            } else {
-                value
-            };
+            let value = quote!(::core::result::Result::Ok(#value));
             (written.statements, value)
         }
     };
-    let name = format_ident!("{}", function.name);
-    let from_actuators = model.finds_pose(function);
-    let finds_joints = needs_joints(model, function);
-    let output = array_type(&program.output);
-    let arguments = arguments(model, function);
-    let documentation = documentation(model, function);
-    let find_pose = (from_actuators && needs_pose(model, function)).then(|| {
-        quote! {
-            let pose = &Self::pose_from_actuators(actuators, start)?;
-        }
-    });
-    let find_joints = finds_joints.then(|| quote!(let joints = &Self::joints(pose)?;));
-    let signature = if fallible {
-        quote!(pub fn #name(#arguments) -> ::core::result::Result<#output, ::overact::Error>)
-    } else {
-        quote!(#[must_use] pub fn #name(#arguments) -> #output)
-    };
-    let tokens = quote! {
-        #(#[doc = #documentation])*
-        #signature {
-            #find_pose
-            #find_joints
-            #statements
-            #value
-        }
-    };
     Item {
-        tokens,
+        tokens: around(model, function, &statements, &value),
         sections: Sections {
             function: function.name.clone(),
             starts: sections,
@@ -82,37 +51,77 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
     }
 }
 
+/// The function with these statements and this value.
+fn around(
+    model: &RobotModel,
+    function: &CompiledFunction,
+    statements: &TokenStream,
+    value: &TokenStream,
+) -> TokenStream {
+    let arguments = arguments(model, function);
+    let name = format_ident!("{}", function.name);
+    let output = array_type(&function.program.output);
+    let documentation = documentation(model, function);
+    let check = boundary(model, &arguments);
+    let find_pose = (model.finds_pose(function) && needs_pose(model, function)).then(|| {
+        quote! {
+            let pose = &Self::pose_from_actuators(actuators, start)?;
+        }
+    });
+    let find_joints =
+        needs_joints(model, function).then(|| quote!(let joints = &Self::joints(pose)?;));
+    let parameters = arguments.iter().map(|argument| {
+        let (name, kind) = (format_ident!("{}", argument.name), array_type(argument));
+        quote!(#name: &#kind)
+    });
+    quote! {
+        #(#[doc = #documentation])*
+        pub fn #name(#(#parameters),*) -> ::core::result::Result<#output, ::overact::Error> {
+            #check
+            #find_pose
+            #find_joints
+            #statements
+            #value
+        }
+    }
+}
+
+/// What a function does before all else: it refuses numbers that are not finite, and scales the
+/// quaternion of a pose to length 1.
+#[must_use]
+pub fn boundary(model: &RobotModel, arguments: &[Array]) -> TokenStream {
+    let named = arguments.iter().map(|argument| {
+        let (name, value) = (&argument.name, format_ident!("{}", argument.name));
+        quote!((#name, #value))
+    });
+    let platform = model.mechanism.platform.as_ref();
+    let has_quaternion = platform.is_some_and(|p| p.motion.has_quaternion());
+    let poses = arguments.iter().filter(|a| a.name == "pose");
+    let unit = poses.filter(|_| has_quaternion).map(|pose| {
+        let (name, value) = (&pose.name, format_ident!("{}", pose.name));
+        quote!(let #value = &::overact::guard::unit_quaternion(#value, #name)?;)
+    });
+    quote! {
+        ::overact::guard::finite(&[#(#named),*])?;
+        #(#unit)*
+    }
+}
+
 /// The function from joints that has the same program: where Newton's method finds the joints of a
 /// pose, the function from the pose only calls it.
 fn twin<'m>(model: &'m RobotModel, function: &CompiledFunction) -> Option<&'m CompiledFunction> {
     let is_pose = needs_joints(model, function) && function.from == MotionInput::Pose;
     is_pose
-        .then(|| model.function(function.family, MotionInput::Joints))
+        .then(|| model.function(function.computes, MotionInput::Joints))
         .flatten()
 }
 
-/// The call of a function with arguments of the names of its inputs, as a `Result`.
-fn call(function: &CompiledFunction, fallible: bool) -> TokenStream {
+/// The call of a function with arguments of the names of its inputs.
+fn call(function: &CompiledFunction) -> TokenStream {
     let name = format_ident!("{}", function.name);
-    let inputs = function
-        .program
-        .inputs
-        .iter()
-        .map(|array| format_ident!("{}", array.name));
-    let call = quote!(Self::#name(#(#inputs),*));
-    if fallible {
-        call
-    } else {
-        quote!(::core::result::Result::Ok(#call))
-    }
-}
-
-/// Whether the function returns a `Result`.
-#[must_use]
-pub fn is_fallible(model: &RobotModel, function: &CompiledFunction) -> bool {
-    model.finds_pose(function)
-        || needs_joints(model, function)
-        || !function.program.guards.is_empty()
+    let inputs = function.program.inputs.iter();
+    let inputs = inputs.map(|array| format_ident!("{}", array.name));
+    quote!(Self::#name(#(#inputs),*))
 }
 
 /// Whether the function's program, or the search of its joints, uses the pose.
@@ -135,7 +144,7 @@ fn needs_joints(model: &RobotModel, function: &CompiledFunction) -> bool {
         .zip(used)
         .any(|(array, used)| array.name == "joints" && used);
     // The joints themselves are what Newton's method gives.
-    model.finds_joints(function) && (joints || function.family == Family::Joints)
+    model.finds_joints(function) && (joints || function.computes == Function::Joints)
 }
 
 /// `[f64; 3]` or `[[f64; 64]; 3]`.
@@ -154,48 +163,31 @@ pub fn array_type(array: &Array) -> TokenStream {
     }
 }
 
-fn arguments(model: &RobotModel, function: &CompiledFunction) -> TokenStream {
-    let used = function.program.used_inputs();
-    // A pose is needed to find the joints; a function that only calls another one hands all on.
-    let hands_on = twin(model, function).is_some();
-    let finds_joints = needs_joints(model, function);
-    let is_needed = |name: &str| hands_on || (finds_joints && name == "pose");
-    let unused = if needs_pose(model, function) { "" } else { "_" };
+/// The arguments in order: the program's inputs, but for what is found first, and what it is found from.
+fn arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Array> {
+    let array = |name: &str, length: usize| Array {
+        name: name.to_owned(),
+        shape: vec![length],
+    };
     let mut arguments = Vec::new();
-    for (index, array) in function.program.inputs.iter().enumerate() {
-        if model.finds_joints(function) && array.name == "joints" {
-            continue;
+    for input in &function.program.inputs {
+        match input.name.as_str() {
+            "joints" if model.finds_joints(function) => {}
+            "pose" if model.finds_pose(function) => {
+                arguments.push(array("actuators", model.mechanism.actuated().len()));
+            }
+            _ => arguments.push(input.clone()),
         }
-        let pose_is_found = model.finds_pose(function) && array.name == "pose";
-        let (name, array) = if pose_is_found {
-            let actuators = model.mechanism.actuated().len();
-            (
-                format!("{unused}actuators"),
-                Array {
-                    name: String::new(),
-                    shape: vec![actuators],
-                },
-            )
-        } else if used[index] || is_needed(&array.name) {
-            (array.name.clone(), array.clone())
-        } else {
-            (format!("_{}", array.name), array.clone())
-        };
-        let name = Ident::new(&name, Span::call_site());
-        let kind = array_type(&array);
-        arguments.push(quote!(#name: &#kind));
     }
     if model.finds_pose(function) {
-        let pose = Literal::usize_unsuffixed(model.mechanism.pose_len());
-        let start = format_ident!("{unused}start");
-        arguments.push(quote!(#start: &[::core::primitive::f64; #pose]));
+        arguments.push(array("start", model.mechanism.pose_len()));
     }
-    quote!(#(#arguments),*)
+    arguments
 }
 
 /// Lines of documentation: meaning, inputs, output, errors, operations.
 fn documentation(model: &RobotModel, function: &CompiledFunction) -> Vec<String> {
-    let mut lines = vec![format!(" {}", function.family.summary()), String::new()];
+    let mut lines = vec![format!(" {}", function.computes.summary()), String::new()];
     let from = match (function.from, model.is_tree()) {
         (_, true) => " From the joints' positions and rates.",
         (MotionInput::Pose, _) => " From the platform's pose and motion.",
@@ -234,23 +226,27 @@ fn documentation(model: &RobotModel, function: &CompiledFunction) -> Vec<String>
         .collect();
     lines.push(String::new());
     lines.push(format!(" Output: {}.", shape.join(" x ")));
-    if function.family.columns().is_some() {
+    if function.computes.columns().is_some() {
         lines.push(format!(" Columns: {}.", columns_constant(function)));
     }
     lines.push(String::new());
     lines.push(format!(" {}.", function.program.cost()));
-    if is_fallible(model, function) {
-        lines.push(String::new());
-        lines.push(" # Errors".to_owned());
-        lines.push(" A pose out of reach, or a singular configuration.".to_owned());
-    }
+    lines.push(String::new());
+    lines.push(" # Errors".to_owned());
+    let can_fail = model.finds_pose(function)
+        || needs_joints(model, function)
+        || !function.program.guards.is_empty();
+    lines.push(if can_fail {
+        " An input that is not finite, a pose out of reach, or a singular configuration.".to_owned()
+    } else {
+        " An input that is not finite.".to_owned()
+    });
     lines
 }
 
 fn columns_constant(function: &CompiledFunction) -> &'static str {
-    use crate::derivation::Columns;
-    match (function.family, function.family.columns()) {
-        (Family::IdmRedPayload | Family::IdmRedPayloadActuators, _) => "`PAYLOAD_PARAMETERS`",
+    match (function.computes, function.computes.columns()) {
+        (Function::IdmRedPayload | Function::IdmRedPayloadActuators, _) => "`PAYLOAD_PARAMETERS`",
         (_, Some(Columns::Base)) => "`BASE_PARAMETERS`",
         _ => "`PARAMETERS`",
     }
@@ -269,6 +265,10 @@ fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
             .unwrap_or_default()
     };
     Some(match name {
+        "pose" if platform.is_some_and(|p| p.motion.has_quaternion()) => format!(
+            "x = `[{}]` (m), in the base frame; the quaternion is scaled to length 1",
+            coordinates()
+        ),
         "pose" => format!("x = `[{}]` (m, rad), in the base frame", coordinates()),
         "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),
         "actuators" => "q, positions of the actuated joints (m, rad)".to_owned(),

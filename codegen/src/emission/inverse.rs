@@ -1,7 +1,7 @@
 //! Inverse kinematics of robots whose legs no rule solves: Newton's method on the generated closure.
 
-use super::function::is_fallible;
-use crate::derivation::{Family, MotionInput};
+use super::function::boundary;
+use crate::lowering::Array;
 use crate::mechanism::Motion;
 use crate::model::RobotModel;
 use proc_macro2::{Literal, TokenStream};
@@ -11,13 +11,6 @@ use quote::quote;
 #[must_use]
 pub fn item(model: &RobotModel) -> TokenStream {
     let mechanism = &model.mechanism;
-    let mark = |family: Family| {
-        let function = model.function(family, MotionInput::Joints);
-        function
-            .filter(|f| is_fallible(model, f))
-            .map(|_| quote!(?))
-    };
-    let (error, jacobian) = (mark(Family::ClosureError), mark(Family::LegsJacobian));
     let counts = mechanism
         .legs
         .iter()
@@ -26,14 +19,20 @@ pub fn item(model: &RobotModel) -> TokenStream {
         .platform
         .as_ref()
         .is_some_and(|p| Motion::has_quaternion(p.motion));
+    let pose = Array {
+        name: "pose".to_owned(),
+        shape: vec![mechanism.pose_len()],
+    };
+    let check = boundary(model, &[pose]);
     quote! {
         #[doc = " Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method."]
         #[doc = ""]
         #[doc = " # Errors"]
-        #[doc = " A pose out of reach, or a singular configuration on the way from home."]
+        #[doc = " An input that is not finite, a pose out of reach, or a singular configuration on the way from home."]
         pub fn joints(
             pose: &[::core::primitive::f64; Self::POSE],
         ) -> ::core::result::Result<[::core::primitive::f64; Self::JOINTS], ::overact::Error> {
+            #check
             let mut joints = Self::HOME_JOINTS;
             ::overact::inverse::solve(
                 ::overact::inverse::Legs {
@@ -52,8 +51,8 @@ pub fn item(model: &RobotModel) -> TokenStream {
                 },
                 |pose, joints, error, jacobian| {
                     let (pose, joints) = (::overact::block::array(pose)?, ::overact::block::array(joints)?);
-                    ::overact::block::write(&Self::closure_error_from_joints(pose, joints)#error, error);
-                    ::overact::block::write(&Self::legs_jacobian_from_joints(pose, joints)#jacobian, jacobian);
+                    ::overact::block::write(&Self::closure_error_from_joints(pose, joints)?, error);
+                    ::overact::block::write(&Self::legs_jacobian_from_joints(pose, joints)?, jacobian);
                     ::core::result::Result::Ok(())
                 },
             )?;

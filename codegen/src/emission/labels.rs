@@ -1,10 +1,10 @@
 //! What inputs and outputs of a function are called where a name is made of them.
 
 use super::dimensions::{Dimension, Dimensions};
-use crate::derivation::Family;
 use crate::lowering::Program;
 use crate::mechanism::TwistCoordinate;
 use crate::model::{CompiledFunction, RobotModel};
+use overact_core::Function;
 use std::collections::BTreeSet;
 
 /// Short names of a function's inputs and outputs.
@@ -213,12 +213,12 @@ fn twist(model: &RobotModel) -> Vec<String> {
 /// What the entries of an output are called.
 fn outputs(model: &RobotModel, function: &CompiledFunction) -> Vec<String> {
     let shape = &function.program.output.shape;
-    let columns = model.columns_of(function.family);
+    let columns = model.columns_of(function.computes);
     if let ([_, width], false) = (&shape[..], columns.is_empty()) {
         let count = function.program.entries.len();
         let name = |at: usize| {
             let column = columns.get(at % width).map(|&p| model.parameter_name(p));
-            let row = row(model, function.family, at / width);
+            let row = row(model, function.computes, at / width);
             column.map_or_else(String::new, |column| format!("{column}_on_{row}"))
         };
         return (0..count).map(name).collect();
@@ -227,7 +227,7 @@ fn outputs(model: &RobotModel, function: &CompiledFunction) -> Vec<String> {
 }
 
 /// What an identification model's row is the equation of: a twist coordinate or a joint.
-fn row(model: &RobotModel, family: Family, row: usize) -> String {
+fn row(model: &RobotModel, function: Function, row: usize) -> String {
     let joints = model.mechanism.joints();
     let joint = |at: usize| {
         let index = joints[at];
@@ -238,8 +238,8 @@ fn row(model: &RobotModel, family: Family, row: usize) -> String {
         }
     };
     let on_actuators = matches!(
-        family,
-        Family::IdmRedActuators(_) | Family::IdmRedPayloadActuators
+        function,
+        Function::IdmRedActuators(_) | Function::IdmRedPayloadActuators
     );
     if model.is_tree() {
         return joint(row);

@@ -1,42 +1,19 @@
 //! The generated `impl overact::Model`, which hands blocks of samples to the generated functions.
 
-use super::function::is_fallible;
-use crate::derivation::{Columns, Family, MotionInput};
+use crate::derivation::MotionInput;
 use crate::model::RobotModel;
+use overact_core::Function;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
-
-/// The `Model` functions and the families behind them.
-const FUNCTIONS: [(&str, Family); 15] = [
-    ("Joints", Family::Joints),
-    ("ActuatorPositions", Family::ActuatorPositions),
-    ("InverseJacobian", Family::InverseJacobian),
-    ("JointVelocities", Family::JointVelocities),
-    ("JointAccelerations", Family::JointAccelerations),
-    ("TwistFromActuators", Family::TwistFromActuators),
-    (
-        "AccelerationFromActuators",
-        Family::AccelerationFromActuators,
-    ),
-    ("IdmRedPlatform", Family::IdmRedPlatform(Columns::Standard)),
-    ("IdmRedPayload", Family::IdmRedPayload),
-    ("ProjectPlatform", Family::ProjectPlatform),
-    ("InverseDynamics", Family::InverseDynamics),
-    ("MassMatrix", Family::MassMatrix),
-    ("Bias", Family::Bias),
-    ("ProjectTorques", Family::ProjectTorques),
-    ("NullSpace", Family::NullSpace),
-];
 
 /// `impl overact::Model for NAME` and `pose_from_actuators`.
 #[must_use]
 pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
-    let arms = FUNCTIONS
-        .iter()
-        .filter_map(|(label, family)| arm(model, label, *family));
+    let arms = Function::ALL.into_iter().filter_map(|f| arm(model, f));
     let mechanism = &model.mechanism;
     let payload = Literal::usize_unsuffixed(model.selection.payload.len());
     let standard = Literal::usize_unsuffixed(model.selection.standard.len());
+    let base = Literal::usize_unsuffixed(model.selection.base.len());
     let displace = mechanism
         .platform
         .as_ref()
@@ -49,18 +26,23 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
             }
         });
     quote! {
+        impl #name {
+            const SIZES: ::overact::Sizes = ::overact::Sizes {
+                pose: Self::POSE,
+                dof: Self::DOF,
+                actuators: Self::ACTUATORS,
+                joints: Self::JOINTS,
+                parameters: #standard,
+                base_parameters: #base,
+                payload_parameters: #payload,
+            };
+        }
+
         impl ::overact::Model for #name {
             fn info(&self) -> ::overact::Info<'_> {
                 ::overact::Info {
                     name: Self::NAME,
-                    sizes: ::overact::Sizes {
-                        pose: Self::POSE,
-                        dof: Self::DOF,
-                        actuators: Self::ACTUATORS,
-                        joints: Self::JOINTS,
-                        parameters: #standard,
-                        payload_parameters: #payload,
-                    },
+                    sizes: Self::SIZES,
                     legs: &Self::LEGS,
                     actuators: &Self::ACTUATOR_NAMES,
                     actuated_joints: &Self::ACTUATED_JOINTS,
@@ -107,22 +89,34 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
     }
 }
 
-fn arm(model: &RobotModel, label: &str, family: Family) -> Option<TokenStream> {
-    let function = model.plain(family)?;
-    let (label, name) = (format_ident!("{label}"), format_ident!("{}", function.name));
-    let size = Literal::usize_unsuffixed(function.program.entries.len());
-    let given = function.program.inputs.iter();
-    let given = given.filter(|a| !(model.finds_joints(function) && a.name == "joints"));
-    let arguments: Vec<Ident> = given.map(|a| format_ident!("{}", a.name)).collect();
-    let map = format_ident!("map{}", arguments.len());
-    let call = if is_fallible(model, function) {
-        quote!(Self::#name)
-    } else {
-        quote!(|#(#arguments),*| ::core::result::Result::Ok(Self::#name(#(#arguments),*)))
-    };
+/// The arm of a function that the robot has.
+fn arm(model: &RobotModel, function: Function) -> Option<TokenStream> {
+    let compiled = model.served(function)?;
+    let name = format_ident!("{}", compiled.name);
+    let rows = (0..function.inputs().len()).map(Literal::usize_unsuffixed);
+    let call = quote!(Self::#name(#(row.row(#rows)?),*));
+    let pattern = pattern(function);
     Some(quote! {
-        ::overact::Function::#label => ::overact::block::#map(#size, inputs, output, #call),
+        #pattern => ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+            .each(|row| #call),
     })
+}
+
+/// The function as a path of the runtime, which is how its derived `Debug` writes it.
+fn pattern(function: Function) -> TokenStream {
+    let path = |text: &str| {
+        let name = format_ident!("{text}");
+        quote!(::overact::Function::#name)
+    };
+    let variant = format!("{function:?}");
+    match variant.split_once('(') {
+        Some((variant, columns)) => {
+            let variant = path(variant);
+            let columns = format_ident!("{}", columns.trim_end_matches(')'));
+            quote!(#variant(::overact::Columns::#columns))
+        }
+        None => path(&variant),
+    }
 }
 
 /// Forward kinematics as an associated function.
@@ -134,11 +128,12 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             #[doc = #doc]
             #[doc = ""]
             #[doc = " # Errors"]
-            #[doc = " None for a robot without a loop, whose pose is its joint positions."]
+            #[doc = " An input that is not finite; else none: the pose of a robot without a loop is its joint positions."]
             pub fn pose_from_actuators(
                 actuators: &[::core::primitive::f64; Self::ACTUATORS],
-                _start: &[::core::primitive::f64; Self::POSE],
+                start: &[::core::primitive::f64; Self::POSE],
             ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+                ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
                 ::core::result::Result::Ok(*actuators)
             }
         };
@@ -153,10 +148,8 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
     } else {
         quote!(displace)
     };
-    let fallible = |family: Family| model.plain(family).is_some_and(|f| is_fallible(model, f));
-    let unwrap = |fallible: bool| fallible.then(|| quote!(?));
-    let position = unwrap(fallible(Family::ActuatorPositions));
-    let jacobian = unwrap(fallible(Family::InverseJacobian));
+    let unit = quaternion
+        .then(|| quote!(let start = &::overact::guard::unit_quaternion(start, "start")?;));
     let iterate = quote! {
         ::overact::forward::gauss_newton(
             ::overact::forward::Measured {
@@ -172,15 +165,15 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             },
             |pose, positions, jacobian| {
                 let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)#position);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)#jacobian.as_flattened());
+                positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
                 ::core::result::Result::Ok(())
             },
             ::overact::forward::#displace,
         )
     };
     let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
-    let (way, body) = match model.function(Family::PoseInClosedForm, MotionInput::Actuators) {
+    let (way, body) = match model.function(Function::PoseInClosedForm, MotionInput::Actuators) {
         Some(_) if is_redundant => (
             " Where the iteration fails from there, it starts again from `pose_in_closed_form`.",
             quote! {
@@ -214,11 +207,13 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         #[doc = #doc]
         #[doc = ""]
         #[doc = " # Errors"]
-        #[doc = " No convergence, or a singular or unreachable configuration on the way."]
+        #[doc = " An input that is not finite, no convergence, or a singular or unreachable configuration on the way."]
         pub fn pose_from_actuators(
             actuators: &[::core::primitive::f64; Self::ACTUATORS],
             start: &[::core::primitive::f64; Self::POSE],
         ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+            ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
+            #unit
             #body
         }
     }

@@ -2,21 +2,22 @@
 
 use crate::Request;
 use crate::compile::compile_with;
-use crate::derivation::{Columns, Family, MotionInput};
+use crate::derivation::MotionInput;
 use crate::diagnostic::Source;
 use crate::evaluation::Rows;
 use crate::lowering::{Array, Entry, Operand, Program};
 use crate::mechanism::states::{State, random_states};
 use crate::model::RobotModel;
+use overact_core::{Columns, Function};
 use std::collections::HashMap;
 
 /// The model with velocities, accelerations and the identification model.
 fn model(text: &str) -> RobotModel {
     let source = Source::new("robot.toml", text);
     let request = Request {
-        wanted: &|_, family, _| {
-            let idm = Family::IdmRedPlatform(Columns::Standard);
-            [idm, Family::JointVelocities, Family::JointAccelerations].contains(&family)
+        wanted: &|_, function, _| {
+            let idm = Function::IdmRedPlatform(Columns::Standard);
+            [idm, Function::JointVelocities, Function::JointAccelerations].contains(&function)
         },
         ..Request::default()
     };
@@ -59,13 +60,16 @@ fn steps(program: &Program, state: &State) -> Vec<f64> {
 fn meanings(model: &RobotModel, state: &State) -> HashMap<String, f64> {
     let mut meanings = HashMap::new();
     let mechanism = &model.mechanism;
-    let of = |family| {
+    let of = |function| {
         evaluated(
-            &model.function(family, MotionInput::Pose).unwrap().program,
+            &model.function(function, MotionInput::Pose).unwrap().program,
             state,
         )
     };
-    let (rates, accelerations) = (of(Family::JointVelocities), of(Family::JointAccelerations));
+    let (rates, accelerations) = (
+        of(Function::JointVelocities),
+        of(Function::JointAccelerations),
+    );
     let (phi, w, dw) = match state.pose.len() {
         3 => (state.pose[2], state.twist[2], state.acceleration[2]),
         _ => (0.0, 0.0, 0.0),

@@ -2,7 +2,8 @@
 
 use super::plan::Slot;
 use super::{BLOCK, Failed};
-use crate::lowering::{Condition, Guard, SINGULAR};
+use crate::lowering::{Condition, Guard};
+use overact_core::SINGULAR;
 use pulp::NullaryFnOnce;
 
 /// The guards, whose values are in `places`, at `count` samples from number `start` on. Lanes beyond the

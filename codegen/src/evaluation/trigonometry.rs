@@ -1,45 +1,12 @@
 //! Sines and cosines of several angles at once, as loops that become vectors.
 //!
-//! As in the runtime crate, which generated code calls, but for the last digit: the angle is reduced to
-//! [-π/4, π/4] by a multiple n of π/2 in three parts (Cody and Waite), of which the first two have 33
-//! bits, so that their products with n are exact; what remains goes into the minimax polynomials of
-//! fdlibm; the two lowest bits of n exchange sine and cosine and turn their signs.
+//! The method and its numbers are those of [`overact_core::trigonometry`], as in generated code; results
+//! may differ in the last digit, for processors that add products in one rounding.
 
-/// Largest angle (rad) that is reduced here; beyond it the library's own functions answer.
-const LARGEST: f64 = 1e5;
-
-/// Adding and subtracting 1.5 × 2⁵² rounds to an integer, which then stands in the lowest bits.
-const ROUND: f64 = 6_755_399_441_055_744.0;
+use overact_core::trigonometry::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
 
 /// The bit of the sign.
 const SIGN: u64 = 1 << 63;
-
-/// π/2 in three parts: 33 bits, 33 bits, the rest.
-const HALF_PI: [f64; 3] = [
-    f64::from_bits(0x3FF9_21FB_5440_0000),
-    f64::from_bits(0x3DD0_B461_1A60_0000),
-    f64::from_bits(0x3BA3_198A_2E03_7073),
-];
-
-/// (sin x - x) / x³ in powers of x², the highest first.
-const SINE: [f64; 6] = [
-    1.589_690_995_211_55e-10,
-    -2.505_076_025_340_686_3e-8,
-    2.755_731_370_707_006_8e-6,
-    -1.984_126_982_985_795e-4,
-    8.333_333_333_322_49e-3,
-    -1.666_666_666_666_663_2e-1,
-];
-
-/// (cos x - 1 + x²/2) / x⁴ in powers of x², the highest first.
-const COSINE: [f64; 6] = [
-    -1.135_964_755_778_819_5e-11,
-    2.087_572_321_298_175e-9,
-    -2.755_731_435_139_066_3e-7,
-    2.480_158_728_947_673e-5,
-    -1.388_888_888_887_411e-3,
-    4.166_666_666_666_66e-2,
-];
 
 /// Whether [`sines_and_cosines`] serves these angles; never for what is no number.
 #[inline(always)]

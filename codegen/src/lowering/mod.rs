@@ -25,9 +25,7 @@ mod tests;
 
 pub use dag::rays::States;
 pub use limits::SearchLimits;
-pub use program::{
-    Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, SINGULAR, Step,
-};
+pub use program::{Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, Step};
 
 use crate::cas::{Arena, Expr};
 use crate::diagnostic::InternalError;

@@ -2,9 +2,10 @@
 
 use super::search::Search;
 use crate::cas::Arena;
-use crate::derivation::{Columns, Family, JointsBy, MotionInput, Selection, Underivable, derive};
+use crate::derivation::{JointsBy, MotionInput, Selection, Underivable, derive};
 use crate::lowering::Program;
 use crate::mechanism::Mechanism;
+use overact_core::{Columns, Function};
 
 /// What the programs of a robot are made from.
 #[derive(Debug, Clone, Copy)]
@@ -22,12 +23,12 @@ impl Assembler<'_> {
     ///
     /// # Errors
     /// See [`Underivable`].
-    pub fn program(&self, family: Family, from: MotionInput) -> Result<Program, Underivable> {
+    pub fn program(&self, function: Function, from: MotionInput) -> Result<Program, Underivable> {
         let arena = Arena::new();
-        let derived = derive(&arena, self.mechanism, self.selection, family, from)?;
+        let derived = derive(&arena, self.mechanism, self.selection, function, from)?;
         let program = self
             .search
-            .lower(&arena, self.mechanism, family, &derived)?;
+            .lower(&arena, self.mechanism, function, &derived)?;
         Ok(program)
     }
 
@@ -35,16 +36,16 @@ impl Assembler<'_> {
     ///
     /// # Errors
     /// See [`Underivable`].
-    pub fn cheapest(&self, family: Family, from: MotionInput) -> Result<Program, Underivable> {
-        let combined = self.program(family, from)?;
-        if self.selection.combined.is_empty() || family.columns() != Some(Columns::Standard) {
+    pub fn cheapest(&self, function: Function, from: MotionInput) -> Result<Program, Underivable> {
+        let combined = self.program(function, from)?;
+        if self.selection.combined.is_empty() || function.columns() != Some(Columns::Standard) {
             return Ok(combined);
         }
         let selection = &Selection {
             combined: Vec::new(),
             ..self.selection.clone()
         };
-        let plain = Assembler { selection, ..*self }.program(family, from)?;
+        let plain = Assembler { selection, ..*self }.program(function, from)?;
         let is_better = plain.cost().operations() < combined.cost().operations();
         Ok(if is_better { plain } else { combined })
     }
@@ -62,7 +63,7 @@ pub(super) fn joints(
         Some(_) => MotionInput::Pose,
         None => MotionInput::Joints,
     };
-    match derive(&Arena::new(), mechanism, selection, Family::Joints, from) {
+    match derive(&Arena::new(), mechanism, selection, Function::Joints, from) {
         Ok(_) => Ok(JointsBy::Rule),
         Err(Underivable::InverseKinematics { .. }) => Ok(JointsBy::Newton),
         Err(error) => Err(error),

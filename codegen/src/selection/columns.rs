@@ -5,12 +5,13 @@ use super::base::{BaseParameter, select, symmetric_order};
 use super::combine::exact_combinations;
 use super::regressor::Regressor;
 use super::search::Search;
-use crate::derivation::{Columns, Combination, Family, MotionInput, Selection, Underivable};
+use crate::derivation::{Combination, MotionInput, Selection, Underivable};
 use crate::evaluation::{BLOCK, Evaluator, Rows};
 use crate::lowering::{Operand, Program};
 use crate::mechanism::states::{State, random_states};
 use crate::mechanism::{BaseColumns, Mechanism};
 use nalgebra::DMatrix;
+use overact_core::{Columns, Function};
 use std::collections::BTreeSet;
 
 /// Independent columns over random states, and what the others are made of, with the combinations that
@@ -56,8 +57,8 @@ fn operations(
         },
         search: &Search::short(),
     };
-    let family = Family::IdmRedPlatform(Columns::Base);
-    let program = trial.program(family, MotionInput::Joints)?;
+    let function = Function::IdmRedPlatform(Columns::Base);
+    let program = trial.program(function, MotionInput::Joints)?;
     Ok(program.cost().operations())
 }
 

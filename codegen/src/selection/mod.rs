@@ -22,8 +22,9 @@ pub use columns::sample;
 pub use search::Search;
 
 use crate::cas::Arena;
-use crate::derivation::{BodyParameter, Family, MotionInput, Selection, Underivable, derive};
+use crate::derivation::{BodyParameter, MotionInput, Selection, Underivable, derive};
 use crate::mechanism::Mechanism;
+use overact_core::Function;
 
 /// Chooses form and columns of a robot's model.
 ///
@@ -59,7 +60,7 @@ fn payload_columns(mechanism: &Mechanism) -> Result<Vec<BodyParameter>, Underiva
         &arena,
         mechanism,
         &selection,
-        Family::IdmRedPayload,
+        Function::IdmRedPayload,
         MotionInput::Joints,
     )?;
     let present = derived.present_columns();

@@ -4,14 +4,13 @@
 use super::search::Search;
 use crate::cas::arena::Handle;
 use crate::cas::{Arena, Expr, Number};
-use crate::derivation::{
-    BodyParameter, Columns, Family, MotionInput, Selection, Underivable, derive,
-};
+use crate::derivation::{BodyParameter, MotionInput, Selection, Underivable, derive};
 use crate::lowering::Program;
 use crate::mechanism::Mechanism;
+use overact_core::{Columns, Function};
 
 /// The function that is looked at: its operations are most of an identification's work.
-pub(super) const FAMILY: Family = Family::IdmRedPlatform(Columns::Standard);
+pub(super) const FAMILY: Function = Function::IdmRedPlatform(Columns::Standard);
 
 /// The regressor of one formulation.
 #[derive(Debug)]

@@ -2,7 +2,7 @@
 //! the digits of their forms.
 
 use crate::cas::{Arena, InputElement};
-use crate::derivation::{Derived, Family, GuardKind};
+use crate::derivation::{Derived, GuardKind};
 use crate::diagnostic::InternalError;
 use crate::effort::Effort;
 use crate::lowering::{
@@ -11,6 +11,7 @@ use crate::lowering::{
 use crate::mechanism::Mechanism;
 use crate::mechanism::states::{Spread, State, spread_states};
 use crate::parallel;
+use overact_core::Function;
 
 /// States of each kind by which the search compares the digits of forms.
 const STATES: usize = 16;
@@ -61,10 +62,10 @@ impl Search {
         &self,
         arena: &'a Arena,
         mechanism: &Mechanism,
-        family: Family,
+        function: Function,
         derived: &Derived<'a>,
     ) -> Result<Program, InternalError> {
-        let limits = self.limits_of(family);
+        let limits = self.limits_of(function);
         let compared = if limits.compares_regular_states {
             &self.states[..]
         } else {
@@ -72,7 +73,7 @@ impl Search {
         };
         let function = Expressions {
             inputs: inputs(derived),
-            output: output(family, derived.shape),
+            output: output(function, derived.shape),
             entries: &derived.entries,
             guards: guards(derived),
         };
@@ -88,9 +89,9 @@ impl Search {
 
     /// How far the search of a function goes: the identification models, which run at every sample of
     /// every log, are searched as far as asked; of the others only the nodes one by one.
-    const fn limits_of(&self, family: Family) -> SearchLimits {
-        match family {
-            Family::IdmRedPlatform(_) => self.limits,
+    const fn limits_of(&self, function: Function) -> SearchLimits {
+        match function {
+            Function::IdmRedPlatform(_) => self.limits,
             _ => self.limits.of_lesser_functions(),
         }
     }
@@ -104,10 +105,10 @@ fn inputs(derived: &Derived<'_>) -> Vec<Array> {
     derived.inputs.iter().map(array).collect()
 }
 
-fn output(family: Family, (rows, columns): (usize, usize)) -> Array {
+fn output(function: Function, (rows, columns): (usize, usize)) -> Array {
     Array {
-        name: family.name().to_owned(),
-        shape: if family.is_vector() {
+        name: function.name().to_owned(),
+        shape: if function.is_vector() {
             vec![rows]
         } else {
             vec![rows, columns]

@@ -12,7 +12,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
-use overact::{Body, Model, Symbol};
+use overact::{Body, Model, StandardParameter};
 
 use crate::{
     error::{Error, Problem},
@@ -84,11 +84,11 @@ fn true_value(column: &Column, values: &BTreeMap<String, f64>) -> Option<f64> {
     }
     let value = values.get(&column.standard).copied()?;
     match (column.direction, column.symbol) {
-        (Some((_, direction)), Symbol::Fs) => {
+        (Some((_, direction)), StandardParameter::Fs) => {
             let offset = column
                 .standard
-                .strip_prefix(Symbol::Fs.name())
-                .and_then(|rest| values.get(&format!("{}{rest}", Symbol::Off.name())))
+                .strip_prefix(StandardParameter::Fs.name())
+                .and_then(|rest| values.get(&format!("{}{rest}", StandardParameter::Off.name())))
                 .copied()
                 .unwrap_or(0.0);
             Some(match direction {

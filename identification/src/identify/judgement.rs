@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use overact::{Model, Symbol};
+use overact::{Model, StandardParameter};
 
 use super::{
     dataset::Dataset,
@@ -100,13 +100,13 @@ fn is_positive(prepared: &Prepared, place: usize) -> bool {
         columns.get(column).is_some_and(|column| {
             matches!(
                 column.symbol,
-                Symbol::M
-                    | Symbol::Ia
-                    | Symbol::Fv
-                    | Symbol::Fs
-                    | Symbol::Xx
-                    | Symbol::Yy
-                    | Symbol::Zz
+                StandardParameter::M
+                    | StandardParameter::Ia
+                    | StandardParameter::Fv
+                    | StandardParameter::Fs
+                    | StandardParameter::Xx
+                    | StandardParameter::Yy
+                    | StandardParameter::Zz
             )
         })
     };

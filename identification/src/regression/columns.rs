@@ -12,7 +12,7 @@
 //! Around standstill the sign of a measured velocity is noise. Within a dead band the columns fs can
 //! be zero.
 
-use overact::{Body, Function, Model, Parameter, SampleError, Symbol};
+use overact::{Body, Columns, Function, Model, Parameter, SampleError, StandardParameter};
 
 use super::friction::friction_joints;
 use crate::{error::Error, settings::Settings};
@@ -46,7 +46,7 @@ pub struct Column {
     /// SI unit of the parameter.
     pub unit: &'static str,
     /// Which standard parameter it is.
-    pub symbol: Symbol,
+    pub symbol: StandardParameter,
     /// Where its body is.
     pub body: Body,
     /// The joint, and the direction of its motion, to which a friction parameter is confined.
@@ -144,7 +144,7 @@ impl ColumnSet {
         let has_fs = |body: Body| {
             info.parameters
                 .iter()
-                .any(|p| p.symbol == Symbol::Fs && p.body == body)
+                .any(|p| p.symbol == StandardParameter::Fs && p.body == body)
         };
         let mut columns = Vec::new();
         for (index, (parameter, joint)) in info.parameters.iter().zip(joints).enumerate() {
@@ -152,7 +152,7 @@ impl ColumnSet {
             match joint {
                 Some(joint) => columns.extend(whole.split(joint)),
                 None if asymmetric_friction
-                    && parameter.symbol == Symbol::Off
+                    && parameter.symbol == StandardParameter::Off
                     && has_fs(parameter.body) => {}
                 None => columns.push(whole),
             }
@@ -175,7 +175,9 @@ impl ColumnSet {
         if band > 0.0 || averaged {
             let joints = friction_joints(model, settings.seed)?;
             for column in &mut self.columns {
-                if let (Origin::Robot(index), Symbol::Fs) = (column.origin, column.symbol) {
+                if let (Origin::Robot(index), StandardParameter::Fs) =
+                    (column.origin, column.symbol)
+                {
                     column.reversal = joints[index].map(|joint| Reversal {
                         joint,
                         band,
@@ -232,14 +234,15 @@ impl ColumnSet {
             let (rows, columns) = function.shape(&sizes);
             let mut output = vec![0.0; if wanted { samples * rows * columns } else { 0 }];
             if !output.is_empty() {
-                model.evaluate(function, states, &mut output)?;
+                let inputs = &states[..function.inputs().len()];
+                model.evaluate(function, inputs, &mut output)?;
             }
             Ok(output)
         };
         let columns = || picked.iter().filter_map(|&index| self.columns.get(index));
         let split = columns().any(|column| column.joint().is_some());
         let has_payload = columns().any(|column| matches!(column.origin, Origin::Payload(_)));
-        let robot = ask(Function::IdmRedPlatform, true)?;
+        let robot = ask(Function::IdmRedPlatform(Columns::Standard), true)?;
         let payload = ask(Function::IdmRedPayload, loaded && has_payload)?;
         let averaged = columns().any(|column| column.reversal.is_some_and(|own| own.averaged));
         let velocities = ask(Function::JointVelocities, split)?;

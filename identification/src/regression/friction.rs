@@ -1,6 +1,6 @@
 //! Which joint a friction parameter belongs to, found out by the power that its column takes.
 
-use overact::{Function, Model, Symbol};
+use overact::{Columns, Function, Model, StandardParameter};
 
 use super::states::random_states;
 use crate::error::{Error, Problem};
@@ -33,7 +33,7 @@ impl FrictionPower {
             let (rows, columns) = function.shape(&sizes);
             let mut output = vec![0.0; states.samples * rows * columns];
             model
-                .evaluate(function, &inputs, &mut output)
+                .evaluate(function, &inputs[..function.inputs().len()], &mut output)
                 .map_err(|error| Problem::new(error.to_string()))?;
             Ok(output)
         };
@@ -42,7 +42,7 @@ impl FrictionPower {
             dof: sizes.dof,
             joints: sizes.joints,
             parameters: sizes.parameters,
-            regressor: ask(Function::IdmRedPlatform)?,
+            regressor: ask(Function::IdmRedPlatform(Columns::Standard))?,
             velocities: ask(Function::JointVelocities)?,
             twist: states.twist,
         })
@@ -56,11 +56,11 @@ impl FrictionPower {
     }
 
     /// Whether a friction column is that of a joint.
-    fn matches(&self, joint: usize, column: usize, symbol: Symbol) -> bool {
+    fn matches(&self, joint: usize, column: usize, symbol: StandardParameter) -> bool {
         (0..self.samples).all(|sample| {
             let velocity = self.velocities[sample * self.joints + joint].abs();
             let expected = match symbol {
-                Symbol::Fv => velocity * velocity,
+                StandardParameter::Fv => velocity * velocity,
                 _ => velocity,
             };
             let difference = self.power(sample, column) - expected;
@@ -75,11 +75,11 @@ pub(super) fn friction_joints(model: &dyn Model, seed: u64) -> Result<Vec<Option
     let info = model.info();
     let friction = FrictionPower::new(model, seed)?;
     let mut problems = Vec::new();
-    let mut taken: Vec<(Symbol, usize)> = Vec::new();
+    let mut taken: Vec<(StandardParameter, usize)> = Vec::new();
     let mut found = vec![None; info.parameters.len()];
     for (column, parameter) in info.parameters.iter().enumerate() {
         let symbol = parameter.symbol;
-        if !matches!(symbol, Symbol::Fv | Symbol::Fs) {
+        if !matches!(symbol, StandardParameter::Fv | StandardParameter::Fs) {
             continue;
         }
         let joint = (0..info.sizes.joints)

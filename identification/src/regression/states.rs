@@ -3,7 +3,7 @@
 //! Poses lie around the home pose. A pose that the robot can't reach is replaced by one of half the
 //! spread, again and again, so that any robot, large or small, yields states.
 
-use overact::{Function, Model};
+use overact::{Columns, Function, Model};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -95,7 +95,7 @@ fn try_state(
     let functions = [
         (Function::InverseJacobian, true),
         (Function::JointVelocities, true),
-        (Function::IdmRedPlatform, true),
+        (Function::IdmRedPlatform(Columns::Standard), true),
         (Function::IdmRedPayload, sizes.payload_parameters > 0),
     ];
     for (function, wanted) in functions {
@@ -110,7 +110,7 @@ fn try_state(
             .evaluate(function, inputs, &mut output)
             .map_err(|error| error.error)?;
         if output.iter().any(|value| !value.is_finite()) {
-            return Err(overact::Error::NotFinite);
+            return Err(overact::Error::Overflow);
         }
     }
     Ok(())

@@ -314,7 +314,11 @@ fn closures(model: &dyn Model, poses: &[f64], count: usize) -> Option<Vec<f64>> 
         .ok()?;
     let mut closures = vec![0.0; count * sizes.actuators * sizes.actuators];
     model
-        .evaluate(Function::ClosureActuatorJacobian, &[&joints], &mut closures)
+        .evaluate(
+            Function::ClosureActuatorJacobian,
+            &[poses, &joints],
+            &mut closures,
+        )
         .ok()?;
     Some(closures)
 }

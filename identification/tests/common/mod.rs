@@ -3,7 +3,9 @@
 
 use std::path::PathBuf;
 
-use overact::{Body, Error, Function, Info, Model, Parameter, SampleError, Sizes, Symbol};
+use overact::{
+    Body, Columns, Error, Function, Info, Model, Parameter, SampleError, Sizes, StandardParameter,
+};
 
 /// The folder of reference data: `OVERACT_SHARED`, or `shared` beside the repository. `None`, with
 /// a word about it, when there is none.
@@ -26,7 +28,7 @@ pub(crate) fn shared(path: &str) -> Option<PathBuf> {
 /// A parameter of a leg's body.
 pub(crate) const fn leg(
     name: &'static str,
-    symbol: Symbol,
+    symbol: StandardParameter,
     unit: &'static str,
     leg: u16,
 ) -> Parameter {
@@ -58,11 +60,11 @@ pub(crate) const EMPS: Drives = Drives {
     ratios: &[1.0],
     names: &["1"],
     parameters: &[
-        leg("m_1", Symbol::M, "kg", 0),
-        leg("ia_1", Symbol::Ia, "kg", 0),
-        leg("fv_1", Symbol::Fv, "N s/m", 0),
-        leg("fs_1", Symbol::Fs, "N", 0),
-        leg("off_1", Symbol::Off, "N", 0),
+        leg("m_1", StandardParameter::M, "kg", 0),
+        leg("ia_1", StandardParameter::Ia, "kg", 0),
+        leg("fv_1", StandardParameter::Fv, "N s/m", 0),
+        leg("fs_1", StandardParameter::Fs, "N", 0),
+        leg("off_1", StandardParameter::Off, "N", 0),
     ],
     payload: &[],
     reach: f64::INFINITY,
@@ -73,24 +75,24 @@ pub(crate) const PAIR: Drives = Drives {
     ratios: &[1.0, -2.0],
     names: &["leg1", "leg2"],
     parameters: &[
-        leg("ia_1_leg1", Symbol::Ia, "kg", 0),
-        leg("fv_1_leg1", Symbol::Fv, "N s/m", 0),
-        leg("fs_1_leg1", Symbol::Fs, "N", 0),
-        leg("off_1_leg1", Symbol::Off, "N", 0),
-        leg("ia_1_leg2", Symbol::Ia, "kg", 1),
-        leg("fv_1_leg2", Symbol::Fv, "N s/m", 1),
-        leg("fs_1_leg2", Symbol::Fs, "N", 1),
-        leg("off_1_leg2", Symbol::Off, "N", 1),
+        leg("ia_1_leg1", StandardParameter::Ia, "kg", 0),
+        leg("fv_1_leg1", StandardParameter::Fv, "N s/m", 0),
+        leg("fs_1_leg1", StandardParameter::Fs, "N", 0),
+        leg("off_1_leg1", StandardParameter::Off, "N", 0),
+        leg("ia_1_leg2", StandardParameter::Ia, "kg", 1),
+        leg("fv_1_leg2", StandardParameter::Fv, "N s/m", 1),
+        leg("fs_1_leg2", StandardParameter::Fs, "N", 1),
+        leg("off_1_leg2", StandardParameter::Off, "N", 1),
         Parameter {
             name: "m_platform",
-            symbol: Symbol::M,
+            symbol: StandardParameter::M,
             unit: "kg",
             body: Body::Platform,
         },
     ],
     payload: &[Parameter {
         name: "m_payload",
-        symbol: Symbol::M,
+        symbol: StandardParameter::M,
         unit: "kg",
         body: Body::Payload,
     }],
@@ -106,10 +108,10 @@ impl Drives {
         };
         ratio
             * match parameter.symbol {
-                Symbol::M | Symbol::Ia => ratio * a,
-                Symbol::Fv => ratio * v,
-                Symbol::Fs => overact::math::sign(ratio * v),
-                Symbol::Off => 1.0,
+                StandardParameter::M | StandardParameter::Ia => ratio * a,
+                StandardParameter::Fv => ratio * v,
+                StandardParameter::Fs => overact::math::sign(ratio * v),
+                StandardParameter::Off => 1.0,
                 _ => 0.0,
             }
     }
@@ -136,8 +138,8 @@ impl Drives {
             Function::TwistFromActuators => out[0] = dot(inputs[1]) / square,
             Function::AccelerationFromActuators => out[0] = dot(inputs[2]) / square,
             Function::ProjectPlatform => out[0] = dot(inputs[1]),
-            Function::IdmRedPlatform | Function::IdmRedPayload => {
-                let parameters = if function == Function::IdmRedPlatform {
+            Function::IdmRedPlatform(Columns::Standard) | Function::IdmRedPayload => {
+                let parameters = if function == Function::IdmRedPlatform(Columns::Standard) {
                     self.parameters
                 } else {
                     self.payload
@@ -176,6 +178,7 @@ impl Model for Drives {
                 actuators: n,
                 joints: n,
                 parameters: self.parameters.len(),
+                base_parameters: 0,
                 payload_parameters: self.payload.len(),
             },
             legs: self.names,

@@ -2,7 +2,7 @@
 //! a Jacobian that depends on the pose.
 
 use overact::{
-    Body, Error, Function, Info, Model, Parameter, SampleError, Sizes, Symbol,
+    Body, Columns, Error, Function, Info, Model, Parameter, SampleError, Sizes, StandardParameter,
     forward::{Measured, Workspace, gauss_newton},
 };
 
@@ -11,7 +11,7 @@ pub(crate) const ANCHORS: [[f64; 2]; 3] = [[-1.0, -0.6], [1.0, -0.5], [0.1, 1.2]
 
 const GRAVITY: f64 = 9.81;
 
-const fn parameter(name: &'static str, symbol: Symbol, leg: u16) -> Parameter {
+const fn parameter(name: &'static str, symbol: StandardParameter, leg: u16) -> Parameter {
     let body = Body::Leg {
         leg,
         index: 0,
@@ -26,21 +26,21 @@ const fn parameter(name: &'static str, symbol: Symbol, leg: u16) -> Parameter {
 }
 
 const PARAMETERS: [Parameter; 13] = [
-    parameter("ia_1_leg1", Symbol::Ia, 0),
-    parameter("fv_1_leg1", Symbol::Fv, 0),
-    parameter("fs_1_leg1", Symbol::Fs, 0),
-    parameter("off_1_leg1", Symbol::Off, 0),
-    parameter("ia_1_leg2", Symbol::Ia, 1),
-    parameter("fv_1_leg2", Symbol::Fv, 1),
-    parameter("fs_1_leg2", Symbol::Fs, 1),
-    parameter("off_1_leg2", Symbol::Off, 1),
-    parameter("ia_1_leg3", Symbol::Ia, 2),
-    parameter("fv_1_leg3", Symbol::Fv, 2),
-    parameter("fs_1_leg3", Symbol::Fs, 2),
-    parameter("off_1_leg3", Symbol::Off, 2),
+    parameter("ia_1_leg1", StandardParameter::Ia, 0),
+    parameter("fv_1_leg1", StandardParameter::Fv, 0),
+    parameter("fs_1_leg1", StandardParameter::Fs, 0),
+    parameter("off_1_leg1", StandardParameter::Off, 0),
+    parameter("ia_1_leg2", StandardParameter::Ia, 1),
+    parameter("fv_1_leg2", StandardParameter::Fv, 1),
+    parameter("fs_1_leg2", StandardParameter::Fs, 1),
+    parameter("off_1_leg2", StandardParameter::Off, 1),
+    parameter("ia_1_leg3", StandardParameter::Ia, 2),
+    parameter("fv_1_leg3", StandardParameter::Fv, 2),
+    parameter("fs_1_leg3", StandardParameter::Fs, 2),
+    parameter("off_1_leg3", StandardParameter::Off, 2),
     Parameter {
         name: "m_platform",
-        symbol: Symbol::M,
+        symbol: StandardParameter::M,
         unit: "kg",
         body: Body::Platform,
     },
@@ -132,7 +132,7 @@ impl Point {
                     *out = (0..3).map(|k| rows[k][i] * inputs[1][k]).sum();
                 }
             }
-            Function::IdmRedPlatform => {
+            Function::IdmRedPlatform(Columns::Standard) => {
                 for index in 0..PARAMETERS.len() {
                     let [first, second] = column(index, x, pair(1), pair(2));
                     out[index] = first;
@@ -159,6 +159,7 @@ impl Model for Point {
                 actuators: 3,
                 joints: 3,
                 parameters: PARAMETERS.len(),
+                base_parameters: 0,
                 payload_parameters: 0,
             },
             legs: &["leg1", "leg2", "leg3"],

@@ -1,11 +1,7 @@
 //! What a model says about its robot, as [`overact::Info`] wants it.
 
-use overact::{Body, Info, Parameter, Sizes, Symbol};
-use overact_codegen::{
-    RobotModel,
-    derivation::BodyParameter,
-    mechanism::{JointKind, StandardParameter},
-};
+use overact::{Body, Info, Parameter, Sizes};
+use overact_codegen::{RobotModel, derivation::BodyParameter, mechanism::JointKind};
 
 /// Names, sizes and parameters of a robot.
 #[derive(Debug)]
@@ -42,6 +38,7 @@ impl Names {
                 actuators: actuated_joints.len(),
                 joints: joints.len(),
                 parameters: model.selection.standard.len(),
+                base_parameters: model.base.len(),
                 payload_parameters: model.selection.payload.len(),
             },
             legs: mechanism
@@ -106,7 +103,7 @@ fn parameters(model: &RobotModel, all: &[BodyParameter]) -> Vec<Parameter> {
         };
         Parameter {
             name: leaked(model.parameter_name(parameter)),
-            symbol: symbol_of(symbol),
+            symbol,
             unit: model.parameter_unit(parameter),
             body,
         }
@@ -117,23 +114,4 @@ fn parameters(model: &RobotModel, all: &[BodyParameter]) -> Vec<Parameter> {
 /// No robot has so many legs or joints that this saturates.
 fn small(index: usize) -> u16 {
     u16::try_from(index).unwrap_or(u16::MAX)
-}
-
-const fn symbol_of(parameter: StandardParameter) -> Symbol {
-    match parameter {
-        StandardParameter::Xx => Symbol::Xx,
-        StandardParameter::Xy => Symbol::Xy,
-        StandardParameter::Xz => Symbol::Xz,
-        StandardParameter::Yy => Symbol::Yy,
-        StandardParameter::Yz => Symbol::Yz,
-        StandardParameter::Zz => Symbol::Zz,
-        StandardParameter::Mx => Symbol::Mx,
-        StandardParameter::My => Symbol::My,
-        StandardParameter::Mz => Symbol::Mz,
-        StandardParameter::M => Symbol::M,
-        StandardParameter::Ia => Symbol::Ia,
-        StandardParameter::Fv => Symbol::Fv,
-        StandardParameter::Fs => Symbol::Fs,
-        StandardParameter::Off => Symbol::Off,
-    }
 }

@@ -1,30 +1,28 @@
 //! Joints of robots whose legs no rule solves: Newton's method on the interpreted closure.
 
 use super::InterpretedRobot;
+use overact::Function;
 use overact::{
     Error, Model, SampleError,
     inverse::{self, Legs},
 };
-use overact_codegen::{
-    derivation::{Family, MotionInput},
-    evaluation::Rows,
-    lowering::Program,
-};
+use overact_codegen::{derivation::MotionInput, evaluation::Rows, lowering::Program};
 
 impl InterpretedRobot {
     /// Joint positions of all poses, one after the other.
     pub(super) fn find_joints(&self, poses: &[f64]) -> Result<Vec<f64>, SampleError> {
         let mechanism = &self.model.mechanism;
         let sizes = self.info().sizes;
-        let program = |family| {
+        let program = |function| {
             self.model
-                .function(family, MotionInput::Joints)
+                .function(function, MotionInput::Joints)
                 .map(|f| &f.program)
         };
-        let (Some(closure), Some(jacobian)) =
-            (program(Family::ClosureError), program(Family::LegsJacobian))
-        else {
-            let function = Family::ClosureError.name();
+        let (Some(closure), Some(jacobian)) = (
+            program(Function::ClosureError),
+            program(Function::LegsJacobian),
+        ) else {
+            let function = Function::ClosureError.name();
             return Err(SampleError {
                 sample: 0,
                 error: Error::NotOffered { function },

@@ -11,7 +11,7 @@ pub mod mechanisms;
 
 use mechanisms::Kinematics;
 use overact::{
-    Body, Error, Function, Info, Model, Parameter, SampleError, Sizes, Symbol,
+    Body, Columns, Error, Function, Info, Model, Parameter, SampleError, Sizes, StandardParameter,
     forward::solve_positive_definite, math::sign,
 };
 
@@ -32,13 +32,22 @@ pub struct Robot<K> {
 impl<K: Kinematics> Robot<K> {
     pub fn new(kinematics: K) -> Self {
         let (n, r) = (kinematics.actuators().len(), kinematics.coordinates().len());
-        let symbols: &[Symbol] = match r {
-            3 => &[Symbol::M, Symbol::Mx, Symbol::My, Symbol::Zz],
-            _ => &[Symbol::M],
+        let symbols: &[StandardParameter] = match r {
+            3 => &[
+                StandardParameter::M,
+                StandardParameter::Mx,
+                StandardParameter::My,
+                StandardParameter::Zz,
+            ],
+            _ => &[StandardParameter::M],
         };
         let mut parameters = Vec::new();
         for leg in 0..n {
-            for symbol in [Symbol::Ia, Symbol::Fv, Symbol::Fs] {
+            for symbol in [
+                StandardParameter::Ia,
+                StandardParameter::Fv,
+                StandardParameter::Fs,
+            ] {
                 let body = Body::Leg {
                     leg: leg as u16,
                     index: 0,
@@ -66,6 +75,7 @@ impl<K: Kinematics> Robot<K> {
             actuators: n,
             joints: n,
             parameters: parameters.len(),
+            base_parameters: 0,
             payload_parameters: payload.len(),
         };
         Self {
@@ -183,10 +193,10 @@ impl<K: Kinematics> Robot<K> {
                 unit[k] = 1.0;
                 self.force(x, &zero[..r], &unit[..r], input[1], column)
             }),
-            Function::IdmRedPlatform | Function::IdmRedPayload => {
+            Function::IdmRedPlatform(Columns::Standard) | Function::IdmRedPayload => {
                 let own = self.sizes.parameters;
                 let (first, count) = match function {
-                    Function::IdmRedPlatform => (0, own),
+                    Function::IdmRedPlatform(Columns::Standard) => (0, own),
                     _ => (own, self.sizes.payload_parameters),
                 };
                 let mut chi = vec![0.0; own + self.sizes.payload_parameters];
@@ -231,7 +241,7 @@ impl<K: Kinematics> Robot<K> {
     }
 }
 
-fn parameter(name: String, symbol: Symbol, body: Body) -> Parameter {
+fn parameter(name: String, symbol: StandardParameter, body: Body) -> Parameter {
     Parameter {
         name: name.leak(),
         symbol,

@@ -3,7 +3,8 @@
 
 use super::precise::{Precise, difference, rounded};
 use super::{Failure, description};
-use overact_codegen::derivation::{Columns, Family, MotionInput};
+use overact::{Columns, Function};
+use overact_codegen::derivation::MotionInput;
 use overact_codegen::evaluation::Rows;
 use overact_codegen::internals::{Stream, pose_towards, random_states};
 use overact_codegen::lowering::Program;
@@ -47,9 +48,9 @@ pub fn study(stem: &str, effort: Effort) -> Result<Vec<Errors>, Failure> {
     let (derived, searched) = (model(stem, Effort::None)?, model(stem, effort)?);
     let mechanism = &derived.mechanism;
     let mut groups = vec![(None, regular(mechanism))];
-    let guarded = derived.plain(Family::IdmRedPlatform(Columns::Standard));
+    let guarded = derived.plain(Function::IdmRedPlatform(Columns::Standard));
     let by_rule = guarded.filter(|f| !derived.is_tree() && !derived.finds_joints(f));
-    if let (Some(guarded), Some(joints)) = (by_rule, derived.plain(Family::Joints)) {
+    if let (Some(guarded), Some(joints)) = (by_rule, derived.plain(Function::Joints)) {
         groups.extend(towards_singular(
             mechanism,
             &guarded.program,
@@ -59,8 +60,8 @@ pub fn study(stem: &str, effort: Effort) -> Result<Vec<Errors>, Failure> {
     let mut precise = Precise::new()?;
     let mut errors = Vec::new();
     for function in &derived.functions {
-        let other = searched.function(function.family, function.from);
-        let (Family::IdmRedPlatform(columns), Some(other)) = (function.family, other) else {
+        let other = searched.function(function.computes, function.from);
+        let (Function::IdmRedPlatform(columns), Some(other)) = (function.computes, other) else {
             continue;
         };
         if derived.finds_joints(function) || function.from == MotionInput::Actuators {
@@ -102,9 +103,9 @@ fn name(columns: Columns, from: MotionInput) -> &'static str {
 
 fn model(stem: &str, effort: Effort) -> Result<RobotModel, Failure> {
     let source = description(stem)?;
-    let wanted = |_: &Mechanism, family: Family, from: MotionInput| {
+    let wanted = |_: &Mechanism, function: Function, from: MotionInput| {
         from != MotionInput::Actuators
-            && matches!(family, Family::IdmRedPlatform(_) | Family::Joints)
+            && matches!(function, Function::IdmRedPlatform(_) | Function::Joints)
     };
     let request = Request {
         wanted: &wanted,

@@ -8,7 +8,8 @@ use super::{Backend, Failure, Sample};
 use crate::reference::linear::relative_difference;
 use nalgebra::DMatrix;
 use overact::Error;
-use overact_codegen::derivation::{Columns, Family, MotionInput, Selection, Underivable};
+use overact::{Columns, Function};
+use overact_codegen::derivation::{MotionInput, Selection, Underivable};
 use overact_codegen::internals::{Assembler, Search};
 use overact_codegen::lowering::Program;
 use overact_codegen::{CompiledFunction, RobotModel};
@@ -60,12 +61,12 @@ impl Comparison {
     ) -> Result<(), Failure> {
         let mut agreement = Agreement::new();
         for (sample, truth) in all.iter().zip(truths) {
-            let wanted = truth.output(function.family, function.from)?;
+            let wanted = truth.output(function.computes, function.from)?;
             let called = backend.call(&function.name, sample);
             let mut found = called.map_err(|error| format!("`{}`: {error}", function.name))?;
             if matches!(
-                function.family,
-                Family::Joints | Family::ActuatorPositions | Family::PoseInClosedForm
+                function.computes,
+                Function::Joints | Function::ActuatorPositions | Function::PoseInClosedForm
             ) {
                 found.zip_apply(&wanted, |q, wanted| *q = unwound(*q, wanted));
             }
@@ -150,13 +151,13 @@ fn program_of(model: &RobotModel, kept: &[usize]) -> Result<Option<Program>, Fai
         kept_actuators: kept.to_vec(),
         ..model.selection.clone()
     };
-    let family = Family::IdmRedActuators(Columns::Standard);
+    let function = Function::IdmRedActuators(Columns::Standard);
     let assembler = Assembler {
         mechanism: &model.mechanism,
         selection: &selection,
         search: &Search::none(),
     };
-    match assembler.program(family, MotionInput::Joints) {
+    match assembler.program(function, MotionInput::Joints) {
         Ok(program) => Ok(Some(program)),
         Err(Underivable::SingularPartition) => Ok(None),
         Err(error) => Err(format!("{error:?}").into()),

@@ -7,8 +7,9 @@ use crate::reference::linear::pseudo_inverse;
 use crate::reference::parameters::{BODY, INERTIAL, leg_start, names, platform_start};
 use crate::reference::{Dynamics, Mechanism, State};
 use nalgebra::{DMatrix, DVector};
+use overact::{Columns, Function};
 use overact_codegen::RobotModel;
-use overact_codegen::derivation::{BodyParameter, Columns, Family, MotionInput};
+use overact_codegen::derivation::{BodyParameter, MotionInput};
 use std::cell::OnceCell;
 
 /// The reference of a robot, its columns arranged as the model arranges them.
@@ -107,11 +108,11 @@ impl Expected {
     /// If the reference can't compute it.
     pub fn output(
         &self,
-        family: Family,
+        function: Function,
         from: MotionInput,
         sample: &Sample,
     ) -> Result<DMatrix<f64>, Failure> {
-        self.at(sample)?.output(family, from)
+        self.at(sample)?.output(function, from)
     }
 
     fn chosen(&self, columns: Columns) -> &[usize] {
@@ -201,54 +202,54 @@ impl Truth<'_> {
     /// # Errors
     ///
     /// If the reference can't compute it.
-    pub fn output(&self, family: Family, from: MotionInput) -> Result<DMatrix<f64>, Failure> {
+    pub fn output(&self, function: Function, from: MotionInput) -> Result<DMatrix<f64>, Failure> {
         let dynamic = matches!(
-            family,
-            Family::IdmRedPlatform(_)
-                | Family::IdmRedActuators(_)
-                | Family::IdmRedPayload
-                | Family::InverseDynamics
+            function,
+            Function::IdmRedPlatform(_)
+                | Function::IdmRedActuators(_)
+                | Function::IdmRedPayload
+                | Function::InverseDynamics
         );
         let fitted = dynamic && from == MotionInput::Actuators;
         let side = if fitted { &self.fitted } else { &self.here };
-        match kinematic(&side.dynamics, family, self.sample)? {
+        match kinematic(&side.dynamics, function, self.sample)? {
             Some(matrix) => Ok(matrix),
-            None => self.dynamic(side, family),
+            None => self.dynamic(side, function),
         }
     }
 
-    fn dynamic(&self, side: &Side<'_>, family: Family) -> Result<DMatrix<f64>, Failure> {
+    fn dynamic(&self, side: &Side<'_>, function: Function) -> Result<DMatrix<f64>, Failure> {
         let (expected, dynamics) = (self.expected, &side.dynamics);
         let chi = &self.sample.all_parameters;
         let torques = DVector::from_column_slice(&self.sample.torques);
         let least_norm = || dynamics.least_norm_torques(chi);
-        Ok(match family {
-            Family::IdmRedPlatform(columns) => {
+        Ok(match function {
+            Function::IdmRedPlatform(columns) => {
                 side.platform()?.select_columns(expected.chosen(columns))
             }
-            Family::IdmRedActuators(columns) => {
+            Function::IdmRedActuators(columns) => {
                 let partition = side.partition(&expected.kept)?;
                 partition.regressor.select_columns(expected.chosen(columns))
             }
-            Family::IdmRedPayload => side.platform()?.select_columns(&expected.payload),
-            Family::IdmRedPayloadActuators => {
+            Function::IdmRedPayload => side.platform()?.select_columns(&expected.payload),
+            Function::IdmRedPayloadActuators => {
                 let partition = side.partition(&expected.kept)?;
                 partition.regressor.select_columns(&expected.payload)
             }
-            Family::ProjectActuators => {
+            Function::ProjectActuators => {
                 let partition = side.partition(&expected.kept)?;
                 let projected = torques.select_rows(&partition.projected);
                 vector(&(torques.select_rows(&expected.kept) - partition.projection * projected))
             }
-            Family::InverseDynamics => vector(&least_norm()?),
-            Family::InverseDynamicsPreloaded => {
+            Function::InverseDynamics => vector(&least_norm()?),
+            Function::InverseDynamicsPreloaded => {
                 let preload = DVector::from_column_slice(&self.sample.preload);
                 vector(&(least_norm()? + expected.null_space(dynamics) * preload))
             }
-            Family::MassMatrix => dynamics.mass_matrix_and_bias(chi)?.0,
-            Family::Bias => vector(&dynamics.mass_matrix_and_bias(chi)?.1),
-            Family::ProjectTorques => vector(&dynamics.project_torques(&torques)),
-            Family::NullSpace => expected.null_space(dynamics),
+            Function::MassMatrix => dynamics.mass_matrix_and_bias(chi)?.0,
+            Function::Bias => vector(&dynamics.mass_matrix_and_bias(chi)?.1),
+            Function::ProjectTorques => vector(&dynamics.project_torques(&torques)),
+            Function::NullSpace => expected.null_space(dynamics),
             other => return Err(format!("the reference has no {other:?}").into()),
         })
     }
@@ -257,24 +258,24 @@ impl Truth<'_> {
 /// The functions that know of no parameter; none for the others.
 fn kinematic(
     dynamics: &Dynamics<'_>,
-    family: Family,
+    function: Function,
     sample: &Sample,
 ) -> Result<Option<DMatrix<f64>>, Failure> {
     let (mechanism, state, jacobians) = (dynamics.mechanism, dynamics.state, &dynamics.jacobians);
-    Ok(Some(match family {
-        Family::PoseInClosedForm => DMatrix::from_column_slice(state.pose.len(), 1, &state.pose),
-        Family::Joints => vector(&state.q),
-        Family::ActuatorPositions => vector(&state.q.select_rows(&mechanism.actuated())),
-        Family::InverseJacobian => jacobians.inverse.clone(),
-        Family::Jacobian => pseudo_inverse(&jacobians.inverse),
-        Family::ClosurePlatformJacobian => jacobians.a_p.clone(),
-        Family::ClosureActuatorJacobian => jacobians.b_p.clone(),
-        Family::LegsJacobian => jacobians.legs.clone(),
-        Family::LegsPlatformJacobian => jacobians.platform.clone(),
-        Family::JointVelocities => vector(&state.qd),
-        Family::JointAccelerations => vector(&state.qdd),
-        Family::TwistFromActuators => vector(&sample.fitted.twist),
-        Family::AccelerationFromActuators => {
+    Ok(Some(match function {
+        Function::PoseInClosedForm => DMatrix::from_column_slice(state.pose.len(), 1, &state.pose),
+        Function::Joints => vector(&state.q),
+        Function::ActuatorPositions => vector(&state.q.select_rows(&mechanism.actuated())),
+        Function::InverseJacobian => jacobians.inverse.clone(),
+        Function::Jacobian => pseudo_inverse(&jacobians.inverse),
+        Function::ClosurePlatformJacobian => jacobians.a_p.clone(),
+        Function::ClosureActuatorJacobian => jacobians.b_p.clone(),
+        Function::LegsJacobian => jacobians.legs.clone(),
+        Function::LegsPlatformJacobian => jacobians.platform.clone(),
+        Function::JointVelocities => vector(&state.qd),
+        Function::JointAccelerations => vector(&state.qdd),
+        Function::TwistFromActuators => vector(&sample.fitted.twist),
+        Function::AccelerationFromActuators => {
             let measured = DVector::from_column_slice(&sample.actuator_accelerations);
             vector(&fitted_acceleration(
                 mechanism,
@@ -283,7 +284,7 @@ fn kinematic(
                 &measured,
             )?)
         }
-        Family::ProjectPlatform => {
+        Function::ProjectPlatform => {
             let torques = DVector::from_column_slice(&sample.torques);
             vector(&dynamics.project_on_platform(&torques))
         }

@@ -4,8 +4,9 @@ use super::backend::evaluate;
 use super::{Failure, Sample};
 use crate::reference::linear::normalized_singular_values;
 use nalgebra::DMatrix;
+use overact::{Columns, Function};
 use overact_codegen::RobotModel;
-use overact_codegen::derivation::{Columns, Family, MotionInput};
+use overact_codegen::derivation::MotionInput;
 use std::fmt;
 
 /// Singular values below this fraction of the largest one count as zero.
@@ -66,8 +67,8 @@ impl fmt::Display for Rank {
 ///
 /// If the model has no value at a sample.
 pub fn regressor(model: &RobotModel, samples: &[Sample]) -> Result<DMatrix<f64>, Failure> {
-    let family = Family::IdmRedPlatform(Columns::Standard);
-    let function = model.function(family, MotionInput::Joints);
+    let function = Function::IdmRedPlatform(Columns::Standard);
+    let function = model.function(function, MotionInput::Joints);
     let program = &function.ok_or("no regressor from joints")?.program;
     let (rows, columns) = (model.mechanism.dof(), model.selection.standard.len());
     let mut all = DMatrix::zeros(rows * samples.len(), columns);

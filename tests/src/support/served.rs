@@ -5,32 +5,7 @@ use super::{Backend, Failure, Sample};
 use nalgebra::DMatrix;
 use overact::partition::Partition;
 use overact::{Error, Function, Input, Model};
-use overact_codegen::derivation::{Columns, Family};
-
-/// The functions of [`overact::Model`] and what they are called in the generator.
-pub const FUNCTIONS: [(Function, Family); 15] = [
-    (Function::Joints, Family::Joints),
-    (Function::ActuatorPositions, Family::ActuatorPositions),
-    (Function::InverseJacobian, Family::InverseJacobian),
-    (Function::JointVelocities, Family::JointVelocities),
-    (Function::JointAccelerations, Family::JointAccelerations),
-    (Function::TwistFromActuators, Family::TwistFromActuators),
-    (
-        Function::AccelerationFromActuators,
-        Family::AccelerationFromActuators,
-    ),
-    (
-        Function::IdmRedPlatform,
-        Family::IdmRedPlatform(Columns::Standard),
-    ),
-    (Function::IdmRedPayload, Family::IdmRedPayload),
-    (Function::ProjectPlatform, Family::ProjectPlatform),
-    (Function::InverseDynamics, Family::InverseDynamics),
-    (Function::MassMatrix, Family::MassMatrix),
-    (Function::Bias, Family::Bias),
-    (Function::ProjectTorques, Family::ProjectTorques),
-    (Function::NullSpace, Family::NullSpace),
-];
+use overact_codegen::derivation::{MotionInput, function_name};
 
 /// A robot behind [`overact::Model`].
 #[derive(Clone, Copy)]
@@ -45,7 +20,7 @@ impl Served<'_> {
     pub fn evaluate(&self, function: Function, sample: &Sample) -> Result<DMatrix<f64>, Failure> {
         let (rows, columns) = function.shape(&self.0.info().sizes);
         let inputs = function.inputs().iter();
-        let inputs = inputs.map(|input| sample.input(argument(*input)));
+        let inputs = inputs.map(|input| sample.input(input.name()));
         let inputs = inputs.collect::<Result<Vec<_>, Failure>>()?;
         let mut output = vec![0.0; rows * columns];
         self.0.evaluate(function, &inputs, &mut output)?;
@@ -59,24 +34,17 @@ impl Backend for Served<'_> {
     }
 
     fn call(&self, function: &str, sample: &Sample) -> Result<DMatrix<f64>, Failure> {
-        let named = |(known, _): &&(Function, Family)| known.name() == function;
-        let found = FUNCTIONS.iter().find(named);
-        let (function, _) = found.ok_or_else(|| format!("no function `{function}`"))?;
-        self.evaluate(*function, sample)
-    }
-}
-
-const fn argument(input: Input) -> &'static str {
-    match input {
-        Input::Pose => "pose",
-        Input::Joints => "joints",
-        Input::Twist => "twist",
-        Input::Acceleration => "acceleration",
-        Input::Actuators => "actuators",
-        Input::ActuatorVelocities => "actuator_velocities",
-        Input::ActuatorAccelerations => "actuator_accelerations",
-        Input::Torques => "torques",
-        Input::Parameters => "parameters",
+        // A model serves the functions from the pose, and those that only joints have from joints.
+        let is_called = |known: &&Function| {
+            let from = match known.inputs().contains(&Input::Joints) {
+                true => MotionInput::Joints,
+                false => MotionInput::Pose,
+            };
+            function_name(**known, from, false) == function
+        };
+        let found = Function::ALL.iter().find(is_called);
+        let found = found.ok_or_else(|| format!("no function `{function}`"))?;
+        self.evaluate(*found, sample)
     }
 }
 

@@ -3,7 +3,7 @@
 //! The reference is exact to rounding times the condition numbers of its states, at most 60; 1e-10
 //! is that with some room.
 
-use overact_codegen::derivation::Family;
+use overact::Function;
 use overact_codegen::{Request, model_with};
 use overact_compiled::partitions;
 use overact_tests::redundant_backend;
@@ -25,15 +25,15 @@ redundant_backend!(Kept124, "compiled 124", partitions::kept_124::DualV);
 redundant_backend!(Kept134, "compiled 134", partitions::kept_134::DualV);
 redundant_backend!(Kept234, "compiled 234", partitions::kept_234::DualV);
 
-/// Whether a family depends on the partition of the actuators.
-fn is_partitioned(family: Family) -> bool {
+/// Whether a function depends on the partition of the actuators.
+fn is_partitioned(function: Function) -> bool {
     matches!(
-        family,
-        Family::IdmRedActuators(_)
-            | Family::IdmRedPayloadActuators
-            | Family::ProjectActuators
-            | Family::InverseDynamicsPreloaded
-            | Family::NullSpace
+        function,
+        Function::IdmRedActuators(_)
+            | Function::IdmRedPayloadActuators
+            | Function::ProjectActuators
+            | Function::InverseDynamicsPreloaded
+            | Function::NullSpace
     )
 }
 
@@ -43,7 +43,7 @@ fn agree(
     kept: &[usize],
     backend: Option<&dyn Backend>,
     partitions: bool,
-    is_chosen: impl Fn(Family) -> bool,
+    is_chosen: impl Fn(Function) -> bool,
 ) -> Result<(), Failure> {
     let mut robot = dualv()?.mechanism.clone();
     robot.kept_actuators = kept.to_vec();
@@ -60,13 +60,16 @@ fn agree(
     let mut backends: Vec<&dyn Backend> = vec![&evaluated];
     backends.extend(backend);
     let mut failures = Vec::new();
-    for function in model.functions.iter().filter(|f| is_chosen(f.family)) {
+    for function in model.functions.iter().filter(|f| is_chosen(f.computes)) {
         let mut found = vec![Agreement::new(); backends.len()];
         for sample in &all {
-            let wanted = expected.output(function.family, function.from, sample)?;
+            let wanted = expected.output(function.computes, function.from, sample)?;
             for (backend, agreement) in backends.iter().zip(&mut found) {
                 let mut output = backend.call(&function.name, sample)?;
-                if matches!(function.family, Family::Joints | Family::ActuatorPositions) {
+                if matches!(
+                    function.computes,
+                    Function::Joints | Function::ActuatorPositions
+                ) {
                     output.zip_apply(&wanted, |q, wanted| *q = unwound(*q, wanted));
                 }
                 agreement.compare(&output, &wanted);
@@ -84,8 +87,8 @@ fn agree(
     Ok(())
 }
 
-fn case_1(is_chosen: impl Fn(Family) -> bool) -> Result<(), Failure> {
-    let chosen = |family| is_chosen(family) && !is_partitioned(family);
+fn case_1(is_chosen: impl Fn(Function) -> bool) -> Result<(), Failure> {
+    let chosen = |function| is_chosen(function) && !is_partitioned(function);
     agree(
         &robots::dualv(),
         &[0, 1, 2],
@@ -97,49 +100,54 @@ fn case_1(is_chosen: impl Fn(Family) -> bool) -> Result<(), Failure> {
 
 #[test]
 fn kinematics_and_jacobians_agree() -> Result<(), Failure> {
-    case_1(|family| {
+    case_1(|function| {
         matches!(
-            family,
-            Family::Joints
-                | Family::ActuatorPositions
-                | Family::InverseJacobian
-                | Family::Jacobian
-                | Family::ClosurePlatformJacobian
-                | Family::ClosureActuatorJacobian
-                | Family::LegsJacobian
-                | Family::LegsPlatformJacobian
+            function,
+            Function::Joints
+                | Function::ActuatorPositions
+                | Function::InverseJacobian
+                | Function::Jacobian
+                | Function::ClosurePlatformJacobian
+                | Function::ClosureActuatorJacobian
+                | Function::LegsJacobian
+                | Function::LegsPlatformJacobian
         )
     })
 }
 
 #[test]
 fn rates_agree() -> Result<(), Failure> {
-    case_1(|family| {
+    case_1(|function| {
         matches!(
-            family,
-            Family::JointVelocities
-                | Family::JointAccelerations
-                | Family::TwistFromActuators
-                | Family::AccelerationFromActuators
+            function,
+            Function::JointVelocities
+                | Function::JointAccelerations
+                | Function::TwistFromActuators
+                | Function::AccelerationFromActuators
         )
     })
 }
 
 #[test]
 fn case_1_regressors_agree() -> Result<(), Failure> {
-    case_1(|family| matches!(family, Family::IdmRedPlatform(_) | Family::IdmRedPayload))
+    case_1(|function| {
+        matches!(
+            function,
+            Function::IdmRedPlatform(_) | Function::IdmRedPayload
+        )
+    })
 }
 
 #[test]
 fn dynamics_agree() -> Result<(), Failure> {
-    case_1(|family| {
+    case_1(|function| {
         matches!(
-            family,
-            Family::ProjectPlatform
-                | Family::InverseDynamics
-                | Family::MassMatrix
-                | Family::Bias
-                | Family::ProjectTorques
+            function,
+            Function::ProjectPlatform
+                | Function::InverseDynamics
+                | Function::MassMatrix
+                | Function::Bias
+                | Function::ProjectTorques
         )
     })
 }
@@ -179,7 +187,7 @@ fn all_functions_are_compared() -> Result<(), Failure> {
         for backend in [&Evaluated(model) as &dyn Backend, &Generated, &Kept123] {
             backend.call(&function.name, &all[0])?;
         }
-        expected.output(function.family, function.from, &all[0])?;
+        expected.output(function.computes, function.from, &all[0])?;
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Programs evaluated over blocks of samples, and what they say where they have no value.
 
-use overact_codegen::derivation::{Columns, Family, MotionInput};
+use overact::{Columns, Function};
+use overact_codegen::derivation::MotionInput;
 use overact_codegen::evaluation::{BLOCK, Rows};
 use overact_codegen::internals::{random_states, sample};
 use overact_codegen::lowering::{Condition, Program};
@@ -77,9 +78,9 @@ fn the_first_sample_out_of_reach_is_named() -> Result<(), Failure> {
     for far in [BLOCK + 3, 2 * BLOCK] {
         all[far].state.pose[0] = 3.0;
     }
-    let family = Family::IdmRedPlatform(Columns::Standard);
+    let function = Function::IdmRedPlatform(Columns::Standard);
     let function = dualv()?
-        .function(family, MotionInput::Pose)
+        .function(function, MotionInput::Pose)
         .ok_or("no function")?;
     let program = &function.program;
     let mut poses = Vec::new();
@@ -108,9 +109,9 @@ fn the_first_sample_out_of_reach_is_named() -> Result<(), Failure> {
 #[test]
 fn what_follows_a_state_out_of_reach_counts_for_nothing() -> Result<(), Failure> {
     let model = dualv()?;
-    let family = Family::IdmRedPlatform(Columns::Standard);
+    let function = Function::IdmRedPlatform(Columns::Standard);
     let function = model
-        .function(family, MotionInput::Pose)
+        .function(function, MotionInput::Pose)
         .ok_or("no function")?;
     let [rows, columns] = function.program.output.shape[..] else {
         return Err("the regressor is a matrix".into());
@@ -144,7 +145,10 @@ fn compiled_functions_name_what_is_wrong() {
         assert!(found.is_err(), "{pose:?} gives {found:?}");
     }
     let far = DualV::pose_from_actuators(&[0.0, f64::NAN, 0.0, 0.0], &DualV::HOME_POSE);
-    assert!(matches!(far, Err(Error::NotFinite)), "{far:?}");
+    assert!(
+        matches!(far, Err(Error::NotFinite { input: "actuators" })),
+        "{far:?}"
+    );
     // A leg that is stretched: joint 2 at zero.
     let mut joints = DualV::HOME_JOINTS;
     joints[1] = 0.0;

@@ -2,7 +2,7 @@
 //!
 //! The command line writes what `emission::file` returns; that it does so is tested beside it.
 
-use overact::{Function, Model, redundant_robot};
+use overact::{Columns, Function, Model, redundant_robot};
 use overact_codegen::{Effort, Request, compile_with, emission};
 use overact_compiled::partitions;
 use overact_tests::support::sample::samples;
@@ -148,7 +148,7 @@ fn trait_and_functions_give_the_same_numbers() -> Result<(), Failure> {
         Function::JointAccelerations,
         Function::TwistFromActuators,
         Function::AccelerationFromActuators,
-        Function::IdmRedPlatform,
+        Function::IdmRedPlatform(Columns::Standard),
         Function::IdmRedPayload,
         Function::ProjectPlatform,
         Function::InverseDynamics,
@@ -163,7 +163,7 @@ fn trait_and_functions_give_the_same_numbers() -> Result<(), Failure> {
             let inputs = function
                 .inputs()
                 .iter()
-                .map(|input| sample.input(argument(*input)));
+                .map(|input| sample.input(input.name()));
             let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
             let mut output = vec![0.0; rows * columns];
             DualV.evaluate(function, &inputs, &mut output)?;
@@ -172,21 +172,6 @@ fn trait_and_functions_give_the_same_numbers() -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-const fn argument(input: overact::Input) -> &'static str {
-    use overact::Input;
-    match input {
-        Input::Pose => "pose",
-        Input::Joints => "joints",
-        Input::Twist => "twist",
-        Input::Acceleration => "acceleration",
-        Input::Actuators => "actuators",
-        Input::ActuatorVelocities => "actuator_velocities",
-        Input::ActuatorAccelerations => "actuator_accelerations",
-        Input::Torques => "torques",
-        Input::Parameters => "parameters",
-    }
 }
 
 /// The small modules; that all are fresh is what `cargo xtask freshness` is for.

@@ -5,11 +5,11 @@
 //! 1e-9 of each entry is the rounding of states whose legs and inverse Jacobian have condition numbers
 //! of up to 60, with room for squared ones: pseudo-inverses come from normal equations.
 
+use overact::Function;
 use overact::Model;
-use overact_codegen::derivation::Family;
 use overact_tests::support::library::described;
 use overact_tests::support::sample::samples;
-use overact_tests::support::served::{FUNCTIONS, partitions};
+use overact_tests::support::served::partitions;
 use overact_tests::support::{Comparison, Evaluated, Failure, Served};
 use overact_tier::by_tier;
 
@@ -30,14 +30,14 @@ fn compare(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let evaluated = Evaluated(model);
     for function in &model.functions {
         // The closure error is what Newton's method drives to zero, not a quantity of its own.
-        if function.family != Family::ClosureError {
+        if function.computes != Function::ClosureError {
             comparison.function(function, &evaluated, &all, &truths)?;
         }
     }
     let served = Served(compiled);
-    for (name, family) in FUNCTIONS {
-        if let Some(function) = model.plain(family) {
-            assert_eq!(function.name, name.name());
+    let is_compared = |f: &Function| *f != Function::ClosureError;
+    for function in Function::ALL.into_iter().filter(is_compared) {
+        if let Some(function) = model.served(function) {
             comparison.function(function, &served, &all, &truths)?;
         }
     }

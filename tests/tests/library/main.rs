@@ -1,9 +1,11 @@
 //! Every robot of `robots/`, compiled and evaluated: against the numeric reference, against the energy,
-//! against the recursive Newton-Euler algorithm, at singularities, and the ranks of its regressor.
+//! against the recursive Newton-Euler algorithm, at singularities, the ranks of its regressor, and backend
+//! against backend for every kind of input.
 //!
 //! One binary, so that each robot is derived once for all of these.
 
 mod agreement;
+mod contract;
 mod newton_euler;
 mod power;
 mod ranks;

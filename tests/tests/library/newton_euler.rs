@@ -5,9 +5,9 @@
 //! checked: the columns of the independent parameters times the regrouped values are the same torques.
 
 use nalgebra::{DMatrix, DVector};
+use overact::{Columns, Function};
 use overact::{Model, redundant_robot};
 use overact_codegen::RobotModel;
-use overact_codegen::derivation::{Columns, Family};
 use overact_tests::reference::newton_euler::{regressor, tree_torques};
 use overact_tests::reference::{Mechanism, State};
 use overact_tests::support::conversion::reference;
@@ -101,7 +101,7 @@ fn found(
     backend: &dyn Backend,
     sample: &Sample,
 ) -> Result<[Option<DMatrix<f64>>; 6], Failure> {
-    let base = model.plain(Family::IdmRedPlatform(Columns::Base));
+    let base = model.plain(Function::IdmRedPlatform(Columns::Base));
     let base = base.ok_or("no base regressor")?;
     let base = match backend.label() {
         "evaluation" => Some(backend.call(&base.name, sample)?),

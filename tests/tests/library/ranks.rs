@@ -9,8 +9,9 @@
 //! least.
 
 use nalgebra::DMatrix;
+use overact::{Columns, Function};
 use overact_codegen::Effort;
-use overact_codegen::derivation::{Columns, Family, MotionInput};
+use overact_codegen::derivation::MotionInput;
 use overact_codegen::mechanism::{JointKind, Mechanism, StandardParameter};
 use overact_codegen::{Request, model_with};
 use overact_codegen::{description, mechanism};
@@ -89,8 +90,8 @@ fn check(stem: &str, expected: [usize; 3]) -> Result<(), Failure> {
 /// Rank of the reference's regressor, of the generated one, and number of base parameters.
 fn ranks(stem: &str, lists: Lists) -> Result<[Rank; 3], Failure> {
     let mechanism = with_lists(stem, lists)?;
-    let wanted = |_: &Mechanism, family: Family, from: MotionInput| {
-        family == Family::IdmRedPlatform(Columns::Standard) && from == MotionInput::Joints
+    let wanted = |_: &Mechanism, function: Function, from: MotionInput| {
+        function == Function::IdmRedPlatform(Columns::Standard) && from == MotionInput::Joints
     };
     let request = Request {
         effort: Some(Effort::None),

@@ -8,6 +8,7 @@
 
 use nalgebra::DMatrix;
 use overact::Error;
+use overact_codegen::derivation::function_name;
 use overact_codegen::evaluation::Rows;
 use overact_codegen::lowering::Condition;
 use overact_codegen::{Effort, Request, RobotModel, Source, compile_with};
@@ -74,8 +75,8 @@ impl<'a> Robot<'a> {
 
     fn described(source: &Source, compiled: &'a dyn Backend) -> Result<Self, Failure> {
         let request = Request {
-            wanted: &|_, family, from| {
-                FUNCTIONS.contains(&family.function_name(from, false).as_str())
+            wanted: &|_, function, from| {
+                FUNCTIONS.contains(&function_name(function, from, false).as_str())
             },
             ..Request::with_effort(Effort::None)
         };
@@ -332,7 +333,7 @@ fn check_partition(
 /// The condition number of a partition by the runtime.
 fn by_runtime(robot: &Robot<'_>, sample: &Sample, kept: &[usize]) -> Result<f64, Error> {
     let jacobian = robot.compiled.call("inverse_jacobian", sample);
-    let jacobian = jacobian.map_err(|_| Error::NotFinite)?;
+    let jacobian = jacobian.map_err(|_| Error::Overflow)?;
     let (_, condition) = project(&jacobian, kept, &DMatrix::zeros(kept.len(), 1))?;
     println!("condition of {kept:?}: {condition:e}");
     Ok(condition)

@@ -5,13 +5,14 @@ use crate::{
     failure::{Failure, Problem},
     states::States,
 };
+use overact::Columns;
 use overact_codegen::{
     CompiledFunction, RobotModel,
-    derivation::{Columns, Family, MotionInput},
+    derivation::{MotionInput, function_name, inventory},
     diagnostic::did_you_mean,
 };
 
-/// The function that the arguments name: by its family with what it is evaluated from, or by the full
+/// The function that the arguments name: by the function with what it is evaluated from, or by the full
 /// name of the Rust function.
 ///
 /// # Errors
@@ -22,17 +23,17 @@ pub(super) fn function<'m>(
     states: &States,
 ) -> Result<&'m CompiledFunction, Failure> {
     let name = arguments.function.as_str();
-    let family: Vec<&CompiledFunction> = model
+    let named: Vec<&CompiledFunction> = model
         .functions
         .iter()
-        .filter(|f| f.family.name() == name)
+        .filter(|f| f.computes.name() == name)
         .collect();
-    if family.is_empty() {
+    if named.is_empty() {
         return by_full_name(model, name);
     }
     let columns = arguments.columns.map_or(Columns::Standard, Choice::columns);
-    let is_meant = |f: &&CompiledFunction| f.family.columns().is_none_or(|c| c == columns);
-    let offered: Vec<&CompiledFunction> = family.into_iter().filter(is_meant).collect();
+    let is_meant = |f: &&CompiledFunction| f.computes.columns().is_none_or(|c| c == columns);
+    let offered: Vec<&CompiledFunction> = named.into_iter().filter(is_meant).collect();
     if offered.is_empty() {
         let message = format!("`{name}` is not offered with {} columns", columns.name());
         return Err(Problem::new(message).into());
@@ -79,12 +80,12 @@ fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m CompiledFun
         return Ok(function);
     }
     // The model has the wanted functions only; all that there are may be meant.
-    let all = Family::all(&model.mechanism, model.selection.joints);
-    let mut names: Vec<&str> = all.iter().map(|(family, _)| family.name()).collect();
+    let all = inventory(&model.mechanism, model.selection.joints);
+    let mut names: Vec<&str> = all.iter().map(|(function, _)| function.name()).collect();
     names.dedup();
     let full = all
         .iter()
-        .map(|(family, from)| family.function_name(*from, model.is_tree()));
+        .map(|&(function, from)| function_name(function, from, model.is_tree()));
     let full: Vec<String> = full.collect();
     let known = names.iter().copied().chain(full.iter().map(String::as_str));
     let help = did_you_mean(name, known);

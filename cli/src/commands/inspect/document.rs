@@ -1,9 +1,10 @@
 //! What `inspect` tells: its fields are the keys of the JSON document.
 
 use super::conditioning::Conditioning;
+use overact::Columns;
 use overact_codegen::{
     BaseParameter, RobotModel,
-    derivation::{Columns, MotionInput},
+    derivation::MotionInput,
     lowering::{Array, Cost},
 };
 use overact_robot::{CompiledFile, InterpretedRobot};
@@ -233,9 +234,9 @@ impl Function {
         }
         let cost = program.cost();
         Self {
-            name: function.family.name(),
+            name: function.computes.name(),
             function: function.name.clone(),
-            columns: function.family.columns().map(Columns::name),
+            columns: function.computes.columns().map(Columns::name),
             from: function.from.name(),
             inputs,
             outputs: vec![argument(&program.output)],

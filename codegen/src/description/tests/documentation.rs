@@ -4,10 +4,10 @@
 
 use super::super::dimension::UNITS;
 use super::super::function::FUNCTIONS;
-use super::super::parameter::StandardParameter;
 use super::listed;
 use crate::compile::compile;
 use crate::diagnostic::Source;
+use overact_core::StandardParameter;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

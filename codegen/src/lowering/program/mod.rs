@@ -155,9 +155,6 @@ pub enum Condition {
     },
 }
 
-/// A value below this fraction of its magnitude at home counts as zero.
-pub const SINGULAR: f64 = 1e-9;
-
 /// A condition on a value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guard {

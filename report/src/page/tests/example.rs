@@ -313,6 +313,7 @@ pub(super) fn units() -> Units {
             actuators: 1,
             joints: 1,
             parameters: 0,
+            base_parameters: 0,
             payload_parameters: 0,
         },
         legs: &[],

@@ -28,7 +28,7 @@ pub enum Error {
         condition: f64,
     },
     /// Other actuators than those of the description are kept in case 2, and they do not determine the
-    /// platform's motion; see [`crate::partition`].
+    /// platform's motion.
     SingularPartition {
         /// The kept actuators.
         kept: Actuators,
@@ -47,8 +47,26 @@ pub enum Error {
         /// Largest remaining difference of an actuator's position, m or rad.
         residual: f64,
     },
-    /// An input is not a finite number.
-    NotFinite,
+    /// A number of an input is NaN or infinite.
+    NotFinite {
+        /// The input's name.
+        input: &'static str,
+    },
+    /// The quaternion of a pose has no direction, so that it is no rotation.
+    ZeroQuaternion {
+        /// The input's name.
+        input: &'static str,
+    },
+    /// Results are too large for a number, although all inputs are finite. Models don't look for this;
+    /// those who use them may.
+    Overflow,
+    /// A function was given another number of inputs than it takes.
+    Inputs {
+        /// Inputs that the function takes.
+        expected: usize,
+        /// Inputs that were given.
+        found: usize,
+    },
     /// A slice has the wrong number of elements.
     Length {
         /// Elements that the function needs.
@@ -92,7 +110,19 @@ impl fmt::Display for Error {
                 f,
                 "the forward kinematics did not converge (an actuator is off by {residual:.1e})"
             ),
-            Self::NotFinite => write!(f, "an input is not a finite number"),
+            Self::NotFinite { input } => {
+                write!(f, "`{input}` has a number that is not finite")
+            }
+            Self::ZeroQuaternion { input } => {
+                write!(
+                    f,
+                    "the quaternion of `{input}` is zero, which is no rotation"
+                )
+            }
+            Self::Overflow => write!(f, "a result is too large for a number"),
+            Self::Inputs { expected, found } => {
+                write!(f, "the function takes {expected} inputs, found {found}")
+            }
             Self::Length { expected, found } => {
                 write!(f, "expected {expected} numbers, found {found}")
             }

@@ -1,0 +1,77 @@
+//! Which functions a robot has, what each is evaluated from, and what it is then called.
+
+use super::forward_kinematics::closed_form;
+use super::motion_input::MotionInput;
+use super::selection::JointsBy;
+use crate::cas::Arena;
+use crate::mechanism::Mechanism;
+use overact_core::{Columns, Condition, Function};
+
+/// All functions of a robot with what they are evaluated from.
+#[must_use]
+pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Function, MotionInput)> {
+    let tree = mechanism.platform.is_none();
+    let payload = mechanism
+        .platform
+        .as_ref()
+        .is_some_and(|p| p.payload.is_some());
+    let closed = closed_form(&Arena::new(), mechanism).is_some();
+    let has = |function: &Function| match function.condition() {
+        Condition::Platform => !tree,
+        Condition::Redundancy => mechanism.actuated().len() > mechanism.dof(),
+        Condition::Payload => payload,
+        Condition::ClosedForm => closed,
+        Condition::NumericJoints => joints == JointsBy::Newton,
+        _ => true,
+    };
+    let with = |function| {
+        sources(function, tree)
+            .iter()
+            .map(move |&from| (function, from))
+    };
+    Function::ALL
+        .into_iter()
+        .filter(has)
+        .flat_map(with)
+        .collect()
+}
+
+/// What a function is evaluated from: those that run at every sample of a log from everything that a log
+/// may hold, matrices of the closure from joints.
+const fn sources(function: Function, tree: bool) -> &'static [MotionInput] {
+    match function {
+        Function::PoseInClosedForm => &[MotionInput::Actuators],
+        _ if tree => &[MotionInput::Joints],
+        Function::InverseJacobian => &[MotionInput::Pose, MotionInput::Joints],
+        Function::LegsJacobian
+        | Function::LegsPlatformJacobian
+        | Function::ClosurePlatformJacobian
+        | Function::ClosureActuatorJacobian
+        | Function::ClosureError => &[MotionInput::Joints],
+        Function::IdmRedPlatform(_)
+        | Function::IdmRedActuators(_)
+        | Function::IdmRedPayload
+        | Function::InverseDynamics => &[
+            MotionInput::Pose,
+            MotionInput::Joints,
+            MotionInput::Actuators,
+        ],
+        _ => &[MotionInput::Pose],
+    }
+}
+
+/// The name of the Rust function, unique in the robot.
+#[must_use]
+pub fn function_name(function: Function, from: MotionInput, tree: bool) -> String {
+    let name = function.name();
+    let base = match function.columns() {
+        Some(Columns::Base) => "_base",
+        _ => "",
+    };
+    let from = match from {
+        MotionInput::Joints if !tree => "_from_joints",
+        MotionInput::Actuators if function != Function::PoseInClosedForm => "_from_actuators",
+        _ => "",
+    };
+    format!("{name}{base}{from}")
+}

@@ -1,0 +1,397 @@
+//! The table of a robot's functions: names, meaning, equations, inputs, shapes.
+
+use crate::size::{Extent, Input, Sizes};
+
+/// Which columns an identification model has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Columns {
+    /// All standard parameters whose column is not identically zero.
+    Standard,
+    /// The base parameters: independent columns only.
+    Base,
+}
+
+impl Columns {
+    /// `standard` or `base`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Standard => "standard",
+            Self::Base => "base",
+        }
+    }
+
+    const fn extent(self) -> Extent {
+        match self {
+            Self::Standard => Extent::Parameters,
+            Self::Base => Extent::BaseParameters,
+        }
+    }
+}
+
+/// What a robot needs to have a function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Condition {
+    /// Nothing: every robot has it.
+    Any,
+    /// A platform; without one there is no closure.
+    Platform,
+    /// More actuators than degrees of freedom.
+    Redundancy,
+    /// A payload on the platform.
+    Payload,
+    /// Forward kinematics in closed form.
+    ClosedForm,
+    /// Joints that Newton's method finds, for want of a closed form.
+    NumericJoints,
+}
+
+/// A function of a robot; [`Function::summary`] says what each computes.
+///
+/// The enum is open to be matched whole: whoever derives or evaluates functions is told by the compiler
+/// when one is added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "`Function::summary` says what each is")]
+pub enum Function {
+    PoseInClosedForm,
+    Joints,
+    ActuatorPositions,
+    InverseJacobian,
+    Jacobian,
+    LegsJacobian,
+    LegsPlatformJacobian,
+    ClosurePlatformJacobian,
+    ClosureActuatorJacobian,
+    ClosureError,
+    JointVelocities,
+    JointAccelerations,
+    TwistFromActuators,
+    AccelerationFromActuators,
+    IdmRedPlatform(Columns),
+    IdmRedActuators(Columns),
+    IdmRedPayload,
+    IdmRedPayloadActuators,
+    ProjectPlatform,
+    ProjectActuators,
+    InverseDynamics,
+    MassMatrix,
+    Bias,
+    InverseDynamicsPreloaded,
+    ProjectTorques,
+    NullSpace,
+}
+
+/// A line of the table.
+struct Entry {
+    name: &'static str,
+    summary: &'static str,
+    inputs: &'static [Input],
+    rows: Extent,
+    /// None for a vector.
+    columns: Option<Extent>,
+    condition: Condition,
+}
+
+impl Function {
+    /// All functions of all robots.
+    pub const ALL: [Self; 28] = [
+        Self::PoseInClosedForm,
+        Self::Joints,
+        Self::ActuatorPositions,
+        Self::InverseJacobian,
+        Self::Jacobian,
+        Self::LegsJacobian,
+        Self::LegsPlatformJacobian,
+        Self::ClosurePlatformJacobian,
+        Self::ClosureActuatorJacobian,
+        Self::ClosureError,
+        Self::JointVelocities,
+        Self::JointAccelerations,
+        Self::TwistFromActuators,
+        Self::AccelerationFromActuators,
+        Self::IdmRedPlatform(Columns::Standard),
+        Self::IdmRedActuators(Columns::Standard),
+        Self::IdmRedPlatform(Columns::Base),
+        Self::IdmRedActuators(Columns::Base),
+        Self::IdmRedPayload,
+        Self::IdmRedPayloadActuators,
+        Self::ProjectPlatform,
+        Self::ProjectActuators,
+        Self::InverseDynamics,
+        Self::MassMatrix,
+        Self::Bias,
+        Self::InverseDynamicsPreloaded,
+        Self::ProjectTorques,
+        Self::NullSpace,
+    ];
+
+    const fn entry(self) -> Entry {
+        use Input::{
+            Acceleration, ActuatorAccelerations, ActuatorVelocities, Actuators, Joints, Parameters,
+            Pose, Preload, Torques, Twist,
+        };
+        match self {
+            Self::PoseInClosedForm => Entry {
+                name: "pose_in_closed_form",
+                summary: "The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.",
+                inputs: &[Actuators],
+                rows: Extent::Pose,
+                columns: None,
+                condition: Condition::ClosedForm,
+            },
+            Self::Joints => Entry {
+                name: "joints",
+                summary: "Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.",
+                inputs: &[Pose],
+                rows: Extent::Joints,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::ActuatorPositions => Entry {
+                name: "actuator_positions",
+                summary: "Positions q of the actuated joints (m, rad), in the working mode of the home configuration.",
+                inputs: &[Pose],
+                rows: Extent::Actuators,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::InverseJacobian => Entry {
+                name: "inverse_jacobian",
+                summary: "J_p^inv: actuator velocities = J_p^inv v, eq. (20).",
+                inputs: &[Pose],
+                rows: Extent::Actuators,
+                columns: Some(Extent::Dof),
+                condition: Condition::Any,
+            },
+            Self::Jacobian => Entry {
+                name: "jacobian",
+                summary: "The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).",
+                inputs: &[Pose],
+                rows: Extent::Dof,
+                columns: Some(Extent::Actuators),
+                condition: Condition::Platform,
+            },
+            Self::LegsJacobian => Entry {
+                name: "legs_jacobian",
+                summary: "J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.",
+                inputs: &[Pose, Joints],
+                rows: Extent::Joints,
+                columns: Some(Extent::Joints),
+                condition: Condition::Platform,
+            },
+            Self::LegsPlatformJacobian => Entry {
+                name: "legs_platform_jacobian",
+                summary: "J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.",
+                inputs: &[Pose, Joints],
+                rows: Extent::Joints,
+                columns: Some(Extent::Dof),
+                condition: Condition::Platform,
+            },
+            Self::ClosurePlatformJacobian => Entry {
+                name: "closure_platform_jacobian",
+                summary: "A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.",
+                inputs: &[Pose, Joints],
+                rows: Extent::Actuators,
+                columns: Some(Extent::Dof),
+                condition: Condition::Platform,
+            },
+            Self::ClosureActuatorJacobian => Entry {
+                name: "closure_actuator_jacobian",
+                summary: "B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.",
+                inputs: &[Pose, Joints],
+                rows: Extent::Actuators,
+                columns: Some(Extent::Actuators),
+                condition: Condition::Platform,
+            },
+            Self::ClosureError => Entry {
+                name: "closure_error",
+                summary: "By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).",
+                inputs: &[Pose, Joints],
+                rows: Extent::Joints,
+                columns: None,
+                condition: Condition::NumericJoints,
+            },
+            Self::JointVelocities => Entry {
+                name: "joint_velocities",
+                summary: "Velocities of all joints (m/s, rad/s), eq. (9).",
+                inputs: &[Pose, Twist],
+                rows: Extent::Joints,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::JointAccelerations => Entry {
+                name: "joint_accelerations",
+                summary: "Accelerations of all joints (m/s², rad/s²), eq. (10).",
+                inputs: &[Pose, Twist, Acceleration],
+                rows: Extent::Joints,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::TwistFromActuators => Entry {
+                name: "twist_from_actuators",
+                summary: "The twist v that fits the actuator velocities in the sense of least squares, eq. (21).",
+                inputs: &[Pose, ActuatorVelocities],
+                rows: Extent::Dof,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::AccelerationFromActuators => Entry {
+                name: "acceleration_from_actuators",
+                summary: "The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.",
+                inputs: &[Pose, Twist, ActuatorAccelerations],
+                rows: Extent::Dof,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::IdmRedPlatform(columns) => Entry {
+                name: "idm_red_platform",
+                summary: "IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).",
+                inputs: &[Pose, Twist, Acceleration],
+                rows: Extent::Dof,
+                columns: Some(columns.extent()),
+                condition: Condition::Any,
+            },
+            Self::IdmRedActuators(columns) => Entry {
+                name: "idm_red_actuators",
+                summary: "IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).",
+                inputs: &[Pose, Twist, Acceleration],
+                rows: Extent::Dof,
+                columns: Some(columns.extent()),
+                condition: Condition::Platform,
+            },
+            Self::IdmRedPayload => Entry {
+                name: "idm_red_payload",
+                summary: "The payload's columns of case 1, eq. (38).",
+                inputs: &[Pose, Twist, Acceleration],
+                rows: Extent::Dof,
+                columns: Some(Extent::PayloadParameters),
+                condition: Condition::Payload,
+            },
+            Self::IdmRedPayloadActuators => Entry {
+                name: "idm_red_payload_actuators",
+                summary: "The payload's columns of case 2, eq. (38).",
+                inputs: &[Pose, Twist, Acceleration],
+                rows: Extent::Dof,
+                columns: Some(Extent::PayloadParameters),
+                condition: Condition::Payload,
+            },
+            Self::ProjectPlatform => Entry {
+                name: "project_platform",
+                summary: "Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).",
+                inputs: &[Pose, Torques],
+                rows: Extent::Dof,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::ProjectActuators => Entry {
+                name: "project_actuators",
+                summary: "Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).",
+                inputs: &[Pose, Torques],
+                rows: Extent::Dof,
+                columns: None,
+                condition: Condition::Platform,
+            },
+            Self::InverseDynamics => Entry {
+                name: "inverse_dynamics",
+                summary: "Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).",
+                inputs: &[Pose, Twist, Acceleration, Parameters],
+                rows: Extent::Actuators,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::MassMatrix => Entry {
+                name: "mass_matrix",
+                summary: "Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.",
+                inputs: &[Pose, Parameters],
+                rows: Extent::Dof,
+                columns: Some(Extent::Dof),
+                condition: Condition::Any,
+            },
+            Self::Bias => Entry {
+                name: "bias",
+                summary: "Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.",
+                inputs: &[Pose, Twist, Parameters],
+                rows: Extent::Dof,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::InverseDynamicsPreloaded => Entry {
+                name: "inverse_dynamics_preloaded",
+                summary: "Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.",
+                inputs: &[Pose, Twist, Acceleration, Parameters, Preload],
+                rows: Extent::Actuators,
+                columns: None,
+                condition: Condition::Redundancy,
+            },
+            Self::ProjectTorques => Entry {
+                name: "project_torques",
+                summary: "τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.",
+                inputs: &[Pose, Torques],
+                rows: Extent::Actuators,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::NullSpace => Entry {
+                name: "null_space",
+                summary: "N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.",
+                inputs: &[Pose],
+                rows: Extent::Actuators,
+                columns: Some(Extent::Redundancy),
+                condition: Condition::Redundancy,
+            },
+        }
+    }
+
+    /// The name without what the function is evaluated from.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.entry().name
+    }
+
+    /// One sentence with the equation of Briot, Krut, Gautier 2015.
+    #[must_use]
+    pub const fn summary(self) -> &'static str {
+        self.entry().summary
+    }
+
+    /// The inputs in the order in which the function takes them. Those of a robot without a platform are
+    /// called by [`Input::name_without_platform`].
+    #[must_use]
+    pub const fn inputs(self) -> &'static [Input] {
+        self.entry().inputs
+    }
+
+    /// Rows and columns of the output, which is row-major; a vector has one column.
+    #[must_use]
+    pub const fn shape(self, sizes: &Sizes) -> (usize, usize) {
+        let entry = self.entry();
+        let columns = match entry.columns {
+            Some(columns) => sizes.extent(columns),
+            None => 1,
+        };
+        (sizes.extent(entry.rows), columns)
+    }
+
+    /// Whether the output is a vector and not a matrix.
+    #[must_use]
+    pub const fn is_vector(self) -> bool {
+        self.entry().columns.is_none()
+    }
+
+    /// What a robot needs to have the function.
+    #[must_use]
+    pub const fn condition(self) -> Condition {
+        self.entry().condition
+    }
+
+    /// Standard or base columns, where the function has columns of parameters.
+    #[must_use]
+    pub const fn columns(self) -> Option<Columns> {
+        match self.entry().columns {
+            Some(Extent::Parameters | Extent::PayloadParameters) => Some(Columns::Standard),
+            Some(Extent::BaseParameters) => Some(Columns::Base),
+            _ => None,
+        }
+    }
+}

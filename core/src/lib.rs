@@ -1,0 +1,22 @@
+//! What the generator, the interpreter, the generated code and those who call it agree on.
+//!
+//! [`function`] is the one table of a robot's functions: what each is called and means, what it takes
+//! and which shape its output has. [`parameter`] are the fourteen standard parameters, [`error`] is what
+//! can go wrong at a state, [`singular`] from where on a configuration counts as singular, and
+//! [`trigonometry`] the polynomials by which all backends compute sines and cosines.
+//!
+//! The crate is `no_std`, has no dependencies and allocates nothing.
+#![no_std]
+
+pub mod error;
+pub mod function;
+pub mod parameter;
+pub mod singular;
+pub mod size;
+pub mod trigonometry;
+
+pub use error::{Actuators, Error, SampleError};
+pub use function::{Columns, Condition, Function};
+pub use parameter::StandardParameter;
+pub use singular::SINGULAR;
+pub use size::{Extent, Input, Sizes};

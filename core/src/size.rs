@@ -1,0 +1,137 @@
+//! The sizes of a robot, and the quantities and extents that are counted by them.
+
+/// The sizes of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sizes {
+    /// Numbers in a pose (r for all motions but those with a quaternion).
+    pub pose: usize,
+    /// r, independent platform coordinates.
+    pub dof: usize,
+    /// n, actuators.
+    pub actuators: usize,
+    /// n_t, joints of all legs.
+    pub joints: usize,
+    /// n_st, standard parameters whose column is not identically zero, without the payload's.
+    pub parameters: usize,
+    /// Base parameters: independent columns.
+    pub base_parameters: usize,
+    /// n_l, the payload's parameters whose column is not identically zero.
+    pub payload_parameters: usize,
+}
+
+impl Sizes {
+    /// Number of elements of an input.
+    #[must_use]
+    pub const fn of(&self, input: Input) -> usize {
+        match input {
+            Input::Pose => self.pose,
+            Input::Joints => self.joints,
+            Input::Twist | Input::Acceleration => self.dof,
+            Input::Actuators
+            | Input::ActuatorVelocities
+            | Input::ActuatorAccelerations
+            | Input::Torques => self.actuators,
+            Input::Parameters => self.parameters + self.payload_parameters,
+            Input::Preload => self.redundancy(),
+        }
+    }
+
+    /// Number of rows or columns that an extent stands for.
+    #[must_use]
+    pub const fn extent(&self, extent: Extent) -> usize {
+        match extent {
+            Extent::Pose => self.pose,
+            Extent::Dof => self.dof,
+            Extent::Actuators => self.actuators,
+            Extent::Joints => self.joints,
+            Extent::Redundancy => self.redundancy(),
+            Extent::Parameters => self.parameters,
+            Extent::BaseParameters => self.base_parameters,
+            Extent::PayloadParameters => self.payload_parameters,
+        }
+    }
+
+    /// n - r, the number of independent internal torques.
+    #[must_use]
+    pub const fn redundancy(&self) -> usize {
+        self.actuators.saturating_sub(self.dof)
+    }
+}
+
+/// A quantity that enters a function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Input {
+    /// Independent platform coordinates x (m, rad); the joint positions of a robot without a loop.
+    Pose,
+    /// Joint positions q_t of all legs (m, rad).
+    Joints,
+    /// Independent coordinates v of the platform twist, eq. (14) (m/s, rad/s).
+    Twist,
+    /// Time derivative of the twist coordinates (m/s², rad/s²).
+    Acceleration,
+    /// Positions q of the actuated joints (m, rad).
+    Actuators,
+    /// Velocities of the actuated joints (m/s, rad/s).
+    ActuatorVelocities,
+    /// Accelerations of the actuated joints (m/s², rad/s²).
+    ActuatorAccelerations,
+    /// Actuator forces and torques τ (N, N m).
+    Torques,
+    /// Values of the standard parameters followed by the payload's, in column order.
+    Parameters,
+    /// Coordinates of the internal torque on the basis of the null space (N, N m).
+    Preload,
+}
+
+impl Input {
+    /// The name of the argument in generated code.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pose => "pose",
+            Self::Joints => "joints",
+            Self::Twist => "twist",
+            Self::Acceleration => "acceleration",
+            Self::Actuators => "actuators",
+            Self::ActuatorVelocities => "actuator_velocities",
+            Self::ActuatorAccelerations => "actuator_accelerations",
+            Self::Torques => "torques",
+            Self::Parameters => "parameters",
+            Self::Preload => "preload",
+        }
+    }
+
+    /// The input as a robot without a loop calls it, whose pose are its joint positions.
+    #[must_use]
+    pub const fn name_without_platform(self) -> &'static str {
+        match self {
+            Self::Pose => "joints",
+            Self::Twist => "joint_velocities",
+            Self::Acceleration => "joint_accelerations",
+            other => other.name(),
+        }
+    }
+}
+
+/// The number of rows or columns of an output, in terms of the robot's sizes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Extent {
+    /// Numbers in a pose.
+    Pose,
+    /// r, independent platform coordinates.
+    Dof,
+    /// n, actuators.
+    Actuators,
+    /// n_t, joints of all legs.
+    Joints,
+    /// n - r, independent internal torques.
+    Redundancy,
+    /// n_st, standard parameters.
+    Parameters,
+    /// Base parameters.
+    BaseParameters,
+    /// n_l, the payload's parameters.
+    PayloadParameters,
+}

@@ -1,0 +1,41 @@
+//! The numbers by which sines and cosines of many angles are computed at once.
+//!
+//! An angle x is reduced to r in [-π/4, π/4] by a multiple n of π/2 that is subtracted in three parts
+//! (Cody and Waite): the first two have 33 bits, so that their products with n are exact. Sine and cosine
+//! of r are the minimax polynomials of fdlibm. The two lowest bits of n exchange them and turn their signs.
+//!
+//! The compiled backend computes with vector types and the interpreted one with loops over blocks; both
+//! take their numbers from here.
+
+/// Largest angle (rad) that is reduced in this way; beyond it the library's own functions answer.
+pub const LARGEST: f64 = 1e5;
+
+/// Adding and subtracting 1.5 × 2⁵² rounds to an integer, which then stands in the lowest bits.
+pub const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// π/2 in three parts: 33 bits, 33 bits, the rest.
+pub const HALF_PI: [f64; 3] = [
+    f64::from_bits(0x3FF9_21FB_5440_0000),
+    f64::from_bits(0x3DD0_B461_1A60_0000),
+    f64::from_bits(0x3BA3_198A_2E03_7073),
+];
+
+/// (sin x - x) / x³ in powers of x², the highest first.
+pub const SINE: [f64; 6] = [
+    1.589_690_995_211_55e-10,
+    -2.505_076_025_340_686_3e-8,
+    2.755_731_370_707_006_8e-6,
+    -1.984_126_982_985_795e-4,
+    8.333_333_333_322_49e-3,
+    -1.666_666_666_666_663_2e-1,
+];
+
+/// (cos x - 1 + x²/2) / x⁴ in powers of x², the highest first.
+pub const COSINE: [f64; 6] = [
+    -1.135_964_755_778_819_5e-11,
+    2.087_572_321_298_175e-9,
+    -2.755_731_435_139_066_3e-7,
+    2.480_158_728_947_673e-5,
+    -1.388_888_888_887_411e-3,
+    4.166_666_666_666_66e-2,
+];
