@@ -19,7 +19,9 @@ pub fn finite(inputs: &[Named<'_>]) -> Result<(), Error> {
     let mut bits = 0;
     for (_, values) in inputs {
         for value in *values {
-            bits |= (value - value).to_bits();
+            #[expect(clippy::eq_op, reason = "zero for finite numbers only")]
+            let zero = value - value;
+            bits |= zero.to_bits();
         }
     }
     if bits == 0 {
