@@ -9839,11 +9839,14 @@ impl DualV {
                     },
                     |pose, positions, jacobian| {
                         let pose = ::overact::block::array(pose)?;
-                        positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                        jacobian
-                            .copy_from_slice(
-                                Self::inverse_jacobian(pose)?.as_flattened(),
-                            );
+                        ::overact::block::write(
+                            &Self::actuator_positions(pose)?,
+                            positions,
+                        );
+                        ::overact::block::write(
+                            &Self::inverse_jacobian(pose)?,
+                            jacobian,
+                        );
                         ::core::result::Result::Ok(())
                     },
                     ::overact::forward::displace,

@@ -5,6 +5,10 @@
 use crate::math::sqrt;
 use crate::{Error, SINGULAR};
 
+/// How far from 1 the square of a quaternion's length may be for its inverse root to be linear: the error
+/// is 3/8 of the square of this.
+const NEAR: f64 = 1e-8;
+
 /// An input with the name that errors call it by.
 pub type Named<'a> = (&'static str, &'a [f64]);
 
@@ -25,19 +29,24 @@ pub fn finite(inputs: &[Named<'_>]) -> Result<(), Error> {
         }
     }
     if bits == 0 {
-        Ok(())
-    } else {
-        Err(not_finite(inputs))
+        return Ok(());
     }
+    // The inputs are handed out one by one: a reference to all of them would keep a table of them on the
+    // stack, which is then filled at every call.
+    let mut input = "";
+    for (name, values) in inputs.iter().rev() {
+        if has_other(values) {
+            input = name;
+        }
+    }
+    Err(Error::NotFinite { input })
 }
 
-/// The error of the first input that is not finite, out of the way of what is usual.
+/// Whether an input has a number that is not finite, out of the way of what is usual.
 #[cold]
 #[inline(never)]
-fn not_finite(inputs: &[Named<'_>]) -> Error {
-    let is_bad = |(_, values): &&Named<'_>| values.iter().any(|value| !value.is_finite());
-    let input = inputs.iter().find(is_bad).map_or("", |(name, _)| name);
-    Error::NotFinite { input }
+fn has_other(values: &[f64]) -> bool {
+    values.iter().any(|value| !value.is_finite())
 }
 
 /// A pose that ends with a quaternion (w, x, y, z), with the quaternion scaled to length 1.
@@ -65,18 +74,20 @@ pub fn normalise(pose: &mut [f64], input: &'static str) -> Result<(), Error> {
     };
     let [w, x, y, z] = *quaternion;
     let square = w * w + x * x + y * y + z * z;
-    if !(1e-200..1e200).contains(&square) {
-        return normalise_extreme(quaternion, input);
+    // Mostly the length is 1 but for rounding; 1/√s is (3 - s)/2 then, to the last digit.
+    if (square - 1.0).abs() > NEAR {
+        return normalise_others(quaternion, input);
     }
-    let scale = 1.0 / sqrt(square);
+    let scale = 1.5 - 0.5 * square;
     *quaternion = quaternion.map(|q| q * scale);
     Ok(())
 }
 
-/// Quaternions whose squares are too small or too large for a number.
+/// Quaternions of any length; the largest number is scaled to 1 first, so that squares are neither too
+/// small nor too large for a number.
 #[cold]
 #[inline(never)]
-fn normalise_extreme(quaternion: &mut [f64; 4], input: &'static str) -> Result<(), Error> {
+fn normalise_others(quaternion: &mut [f64; 4], input: &'static str) -> Result<(), Error> {
     let largest = quaternion.iter().fold(0.0_f64, |m, q| m.max(q.abs()));
     if largest == 0.0 {
         return Err(Error::ZeroQuaternion { input });

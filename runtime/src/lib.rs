@@ -4,8 +4,14 @@
 //! `#[redundant_robot("robot.toml")]`.
 //!
 //! The crate is `no_std` and allocates nothing. With the feature `std` (default) square roots and
-//! trigonometry come from the standard library, without it from `libm`.
+//! trigonometry come from the standard library, with the feature `libm` and without `std` from the crate of
+//! that name.
 #![cfg_attr(not(feature = "std"), no_std)]
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!(
+    "overact needs square roots and trigonometry: enable the feature `std`, or `libm` where there is no standard library"
+);
 
 pub mod block;
 pub mod forward;

@@ -1,5 +1,5 @@
 //! The few transcendental functions that generated code calls: those of the standard library with
-//! the feature `std`, those of `libm` without. The angles of a whole function have their sines and
+//! the feature `std`, those of `libm` with the feature of that name alone. The angles of a whole function have their sines and
 //! cosines from [`sin_cos_all`].
 
 pub use crate::trigonometry::sin_cos_all;
@@ -12,7 +12,7 @@ pub fn sin_cos(angle: f64) -> (f64, f64) {
     {
         angle.sin_cos()
     }
-    #[cfg(not(feature = "std"))]
+    #[cfg(all(feature = "libm", not(feature = "std")))]
     {
         libm::sincos(angle)
     }
@@ -26,7 +26,7 @@ pub fn sqrt(square: f64) -> f64 {
     {
         square.sqrt()
     }
-    #[cfg(not(feature = "std"))]
+    #[cfg(all(feature = "libm", not(feature = "std")))]
     {
         libm::sqrt(square)
     }
@@ -40,7 +40,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     {
         y.atan2(x)
     }
-    #[cfg(not(feature = "std"))]
+    #[cfg(all(feature = "libm", not(feature = "std")))]
     {
         libm::atan2(y, x)
     }

@@ -1,0 +1,107 @@
+//! No generated module has a way to a panic, in the object code of an optimised build.
+//!
+//! All robots are compiled without the standard library into one shared object, whose panic handler calls a
+//! function that nothing defines. The linker drops the handler where nothing reaches it; where something
+//! does it refuses to link, and names the function. Only the full tier does this: optimising all modules
+//! takes minutes of processor time.
+
+use overact_codegen::{Effort, Request, compile_with, emission};
+use overact_tests::support::library::stems;
+use overact_tests::support::{Failure, description, repository};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// What the panic handler calls.
+const MARK: &str = "a_way_to_a_panic_is_left";
+
+#[test]
+fn optimised_modules_have_no_way_to_a_panic() -> Result<(), Failure> {
+    if !overact_tier::is_full() {
+        return Ok(());
+    }
+    let robots = stems()?;
+    let modules = robots.iter().map(|stem| Ok((stem.clone(), module(stem)?)));
+    let modules = modules.collect::<Result<Vec<_>, Failure>>()?;
+    let said = link("robots", &modules)?;
+    assert!(said.is_none(), "{}", said.unwrap_or_default());
+    Ok(())
+}
+
+/// The other test would pass as well if nothing were linked.
+#[test]
+fn a_way_to_a_panic_is_found() -> Result<(), Failure> {
+    if !overact_tier::is_full() {
+        return Ok(());
+    }
+    let (stem, text) = ("emps".to_owned(), module("emps")?);
+    let checked = "::overact::guard::finite(&[(\"joints\", joints)])?;";
+    let panics = format!("{checked} assert!(joints[0] < 3.0);");
+    let said = link("panics", &[(stem, text.replacen(checked, &panics, 1))])?;
+    assert!(said.is_some_and(|said| said.contains(MARK)));
+    Ok(())
+}
+
+/// A robot's generated module.
+fn module(stem: &str) -> Result<String, Failure> {
+    let source = description(stem)?;
+    let request = Request::with_effort(Effort::None);
+    let compiled = compile_with(&source, &request).map_err(|e| e.render_plain(&source))?;
+    Ok(emission::file(&compiled.model, &source.name))
+}
+
+/// Builds a shared object of modules; what the linker says if it refuses.
+fn link(name: &str, modules: &[(String, String)]) -> Result<Option<String>, Failure> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::create_dir_all(folder.join("src"))?;
+    fs::write(folder.join("Cargo.toml"), manifest(name))?;
+    fs::write(folder.join("src/lib.rs"), library(modules)?)?;
+    for (stem, text) in modules {
+        fs::write(folder.join(format!("src/{stem}.rs")), text)?;
+    }
+    let linked = ["-Clink-arg=-Wl,--no-undefined", "-Clink-arg=-lc"];
+    let built = Command::new(env!("CARGO"))
+        .current_dir(&folder)
+        .env("CARGO_TARGET_DIR", folder.join("target"))
+        .args(["rustc", "--release", "--offline", "--"])
+        .args(linked)
+        .output()?;
+    let said = String::from_utf8_lossy(&built.stderr).into_owned();
+    Ok((!built.status.success()).then_some(said))
+}
+
+fn manifest(name: &str) -> String {
+    let runtime = repository("runtime");
+    format!(
+        "[package]\nname = \"{name}\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n\
+         [lib]\ncrate-type = [\"cdylib\"]\n\n\
+         [dependencies]\noveract = {{ path = '{}', default-features = false, features = [\"libm\"] }}\n\n\
+         [profile.release]\npanic = \"abort\"\nlto = \"fat\"\n\n[workspace]\n",
+        runtime.display()
+    )
+}
+
+/// A library that hands out all robots as models, so that all of their functions are kept.
+fn library(modules: &[(String, String)]) -> Result<String, Failure> {
+    let mut text = String::from("#![no_std]\n");
+    let mut robots = String::new();
+    for (stem, module) in modules {
+        let (_, rest) = module.split_once("pub struct ").ok_or("no type")?;
+        let (name, _) = rest.split_once(';').ok_or("no unit struct")?;
+        writeln!(text, "mod {stem};")?;
+        write!(robots, "&{stem}::{name}, ")?;
+    }
+    let count = modules.len();
+    write!(
+        text,
+        "unsafe extern \"C\" {{ fn {MARK}() -> !; }}\n\
+         #[panic_handler]\n\
+         fn panic(_: &core::panic::PanicInfo<'_>) -> ! {{ unsafe {{ {MARK}() }} }}\n\
+         static ROBOTS: [&dyn overact::Model; {count}] = [{robots}];\n\
+         #[unsafe(no_mangle)]\n\
+         pub extern \"C\" fn robots() -> *const core::ffi::c_void {{\n    \
+             (&raw const ROBOTS).cast()\n}}\n"
+    )?;
+    Ok(text)
+}
