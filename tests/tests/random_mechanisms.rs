@@ -38,6 +38,12 @@ const RATE: f64 = 2.0;
 /// Largest error of the power: that of seven-point differences of the energy.
 const DIFFERENCES: f64 = 1e-7;
 
+/// What is said of a drawn mechanism whose legs do not hold the platform to its motion.
+const NOT_HELD: &str = "the legs do not hold the platform to this motion";
+/// What is added to the seed of such a mechanism, and the seed from which on none is drawn anew.
+const REDRAWN: u64 = 8_000_000;
+const MOST_REDRAWN: u64 = 30 * REDRAWN;
+
 /// A number from the environment.
 fn setting(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
@@ -116,8 +122,17 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     if alone {
         println!("{}", source.text);
     }
-    let model = model_of(&source, sketch.seed)
-        .map_err(|errors| format!("refused:\n{}", errors.render_plain(&source)))?;
+    let model = match model_of(&source, sketch.seed) {
+        Ok(model) => model,
+        Err(errors) => {
+            let text = errors.render_plain(&source);
+            // Legs that leave the platform more than its motion are no robot: another one is drawn.
+            if text.contains(NOT_HELD) && sketch.seed < MOST_REDRAWN {
+                return agree(&Sketch::draw(sketch.seed + REDRAWN));
+            }
+            return Err(format!("refused:\n{text}").into());
+        }
+    };
     // The reference has the numbers as they were drawn, not as the generator reads them.
     let mut plain = sketch.mechanism();
     plain.workspace = workspace(&model);

@@ -32,13 +32,54 @@ pub(crate) fn schedule(
         }
     }
     let guards = schedule.guards()?;
-    Ok(Program {
+    Ok(without_idle_steps(Program {
         inputs: inputs.to_vec(),
         output: output.clone(),
         entries,
         steps: schedule.steps,
         guards,
-    })
+    }))
+}
+
+/// The program without the steps that no entry and no guard needs: what is computed together with a node
+/// that is needed, as the cosine beside a sine, need not be needed itself.
+fn without_idle_steps(mut program: Program) -> Program {
+    let mut needed = vec![false; program.steps.len()];
+    let entries = program.entries.iter().map(|entry| entry.operand);
+    let guards = program.guards.iter().map(|guard| guard.operand);
+    let mut stack: Vec<Operand> = entries.chain(guards).collect();
+    while let Some(operand) = stack.pop() {
+        if let Operand::Step(at) = operand
+            && !std::mem::replace(&mut needed[at], true)
+        {
+            stack.extend(program.steps[at].operation.operands());
+        }
+    }
+    if needed.iter().all(|&needed| needed) {
+        return program;
+    }
+    let mut places = Vec::with_capacity(needed.len());
+    let mut count = 0;
+    for &needed in &needed {
+        places.push(count);
+        count += usize::from(needed);
+    }
+    let moved = |operand: Operand| match operand {
+        Operand::Step(at) => Operand::Step(places[at]),
+        other => other,
+    };
+    let mut is_needed = needed.iter();
+    program.steps.retain(|_| is_needed.next() == Some(&true));
+    for step in &mut program.steps {
+        step.operation = step.operation.with_operands(moved);
+    }
+    for entry in &mut program.entries {
+        entry.operand = moved(entry.operand);
+    }
+    for guard in &mut program.guards {
+        guard.operand = moved(guard.operand);
+    }
+    program
 }
 
 fn broken(broken: String) -> InternalError {
