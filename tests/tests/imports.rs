@@ -31,7 +31,6 @@ const HOUSES: [House; 6] = [
             "model",
             "request",
             "checked",
-            "checked",
             "compile",
             "emission",
             "internals",
