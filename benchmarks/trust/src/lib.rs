@@ -5,7 +5,7 @@
 //! terms of the description's trajectories are random, within the reach of the original motion. Its
 //! records are disturbed by noise of the description's size or a multiple of it ([`Noise`]) and
 //! identified from; for each model and stage it is counted how many intervals contain the true value
-//! ([`measure`]). The parameters of a draw share its data, so a draw is one observation: the interval
+//! ([`mod@measure`]). The parameters of a draw share its data, so a draw is one observation: the interval
 //! of a coverage comes from the spread between draws ([`tally`]). [`table`] writes it down.
 //!
 //! `cargo run --release -p overact-trust -- --draws 30 robots/dualv.toml` prints the table.

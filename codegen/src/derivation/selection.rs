@@ -19,8 +19,8 @@ pub struct Selection {
     /// Dependent columns that are had more cheaply from others than from their definition.
     pub combined: Vec<Combination>,
     /// How the joints follow from the pose. By Newton's method, programs from a pose or from
-    /// actuators have the joints as an input, which [`Function::ClosureError`](super::Function::ClosureError) and
-    /// [`Function::LegsJacobian`](super::Function::LegsJacobian) serve to find.
+    /// actuators have the joints as an input, which [`Function::ClosureError`](overact_core::Function::ClosureError) and
+    /// [`Function::LegsJacobian`](overact_core::Function::LegsJacobian) serve to find.
     pub joints: JointsBy,
 }
 
