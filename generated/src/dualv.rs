@@ -14,7 +14,7 @@
 /// | `c_phi` | cos φ | of the platform's angle |
 /// | `s_phi` | sin φ | of the platform's angle |
 /// | `c12_leg1` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
-/// | `s12_leg1` | sin q | as the cosine |
+/// | `s12_leg1` | sin q | sine of a joint angle, named as its cosine is |
 /// | `p_x_leg3` | p | from the platform's origin to the leg's end, base axes, m |
 /// | `d_x_leg1` | D | from the leg's first joint to its end, in the leg's plane, m |
 /// | `rho_squared_leg1` | ρ² | D · D, m² |
@@ -25,7 +25,7 @@
 /// | `det_leg1` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
 /// | `k1_leg1` | k_i | common factor of one of the leg's wrenches |
 /// | `rate_1_leg2` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
-/// | `rate_1_squared_leg1` | u_i² | its square |
+/// | `rate_1_squared_leg1` | u_i² | square of a joint rate |
 /// | `rate_dot_1_leg2` | u̇_i | derivative of that rate, eq. (10) |
 /// | `bias_rate_dot_1_leg2` | u̇_i at v̇ = 0 | what is left of the derivative without the platform's acceleration, eq. (10) |
 /// | `g1_vx_leg1` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
@@ -46,7 +46,7 @@
 /// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_1_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
-/// | `bias_a2_y_leg1` | a_j - g at v̇ = 0 | acceleration of the origin of body j, likewise |
+/// | `bias_a2_y_leg1` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
 /// | `s_1_1` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
 /// | `schur_2_3` | S' | S after elimination of the columns before |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |

@@ -12,7 +12,7 @@
 /// | `vx` | v | platform's velocity that fits the actuators' best, eq. (21) |
 /// | `dvx` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
 /// | `c12_left` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
-/// | `s2_left` | sin q | as the cosine |
+/// | `s2_left` | sin q | sine of a joint angle, named as its cosine is |
 /// | `d_x_left` | D | from the leg's first joint to its end, in the leg's plane, m |
 /// | `rho_squared_left` | ρ² | D · D, m² |
 /// | `h_squared_left` | h² | l₁²/ρ² - a², the square of h |
@@ -23,7 +23,7 @@
 /// | `k_left` | k | common factor, but for signs, of the leg's wrenches: the reciprocal of its determinant and a constant |
 /// | `k1_left` | k_i | common factor of one of the leg's wrenches |
 /// | `rate_1_left` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
-/// | `rate_1_squared_left` | u_i² | its square |
+/// | `rate_1_squared_left` | u_i² | square of a joint rate |
 /// | `rate_dot_1_left` | u̇_i | derivative of that rate, eq. (10) |
 /// | `bias_rate_dot_1_right` | u̇_i at v̇ = 0 | what is left of the derivative without the platform's acceleration, eq. (10) |
 /// | `g1_vx_left` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
@@ -38,7 +38,7 @@
 /// | `moment1_z_left` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_left` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_left` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
-/// | `bias_a1_x_left` | a_j - g at v̇ = 0 | acceleration of the origin of body j, likewise |
+/// | `bias_a1_x_left` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
 /// | `s_1_1` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
 /// | `inv_pivot_1` | 1/d_k | its reciprocal |

@@ -10,12 +10,12 @@
 /// | name | symbol | meaning |
 /// |---|---|---|
 /// | `c23_arm` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
-/// | `s23_arm` | sin q | as the cosine |
-/// | `rate_1_squared_arm` | u_i² | its square |
+/// | `s23_arm` | sin q | sine of a joint angle, named as its cosine is |
+/// | `rate_1_squared_arm` | u_i² | square of a joint rate |
 /// | `w4_y_arm` | ω_j | angular velocity of body j in its own axes |
 /// | `wd4_y_arm` | ω̇_j | angular acceleration of body j in its own axes |
 /// | `a2_x_arm` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
-/// | `u2_xx_arm` | U_j | [ω̇]× + [ω]×[ω]× of body j |
+/// | `u2_xx_arm` | U_j | S(ω̇_j) + S(ω_j) S(ω_j), where S(a) b = a × b |
 /// | `v3_by_1_z_arm` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `w5_by_2_x_arm` | ∂Ω_j/∂u_i | partial angular velocity of body j |
 /// | `force3_x_arm` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
@@ -23,8 +23,8 @@
 /// | `tau_1_arm` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_arm` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `bias_wd2_x_arm` | ω̇_j at v̇ = 0 | angular acceleration of body j without the independent accelerations |
-/// | `bias_a2_x_arm` | a_j - g at v̇ = 0 | acceleration of the origin of body j, likewise |
-/// | `bias_u2_xy_arm` | U_j at v̇ = 0 | [ω̇]× + [ω]×[ω]× of body j, likewise |
+/// | `bias_a2_x_arm` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
+/// | `bias_u2_xy_arm` | U_j at v̇ = 0 | S(ω̇_j) + S(ω_j) S(ω_j) without the independent accelerations |
 ///
 /// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
 /// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;

@@ -12,7 +12,7 @@
 /// | `vx` | v | platform's velocity that fits the actuators' best, eq. (21) |
 /// | `dvx` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
 /// | `c12_leg1` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
-/// | `s12_leg1` | sin q | as the cosine |
+/// | `s12_leg1` | sin q | sine of a joint angle, named as its cosine is |
 /// | `d_x_leg1` | D | from the leg's first joint to its end, in the leg's plane, m |
 /// | `rho_squared_leg1` | ρ² | D · D, m² |
 /// | `h_squared_leg1` | h² | l₁²/ρ² - a², the square of h |
@@ -23,7 +23,7 @@
 /// | `k_leg1` | k | common factor, but for signs, of the leg's wrenches: the reciprocal of its determinant and a constant |
 /// | `fk1_x_leg3` | f_i/k | that force without the factor k, in the leg's axes |
 /// | `rate_2_leg1` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
-/// | `rate_1_squared_leg1` | u_i² | its square |
+/// | `rate_1_squared_leg1` | u_i² | square of a joint rate |
 /// | `rate_dot_1_leg1` | u̇_i | derivative of that rate, eq. (10) |
 /// | `bias_rate_dot_1_leg1` | u̇_i at v̇ = 0 | what is left of the derivative without the platform's acceleration, eq. (10) |
 /// | `g1_vx_leg2` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
@@ -38,7 +38,7 @@
 /// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
-/// | `bias_a2_x_leg1` | a_j - g at v̇ = 0 | acceleration of the origin of body j, likewise |
+/// | `bias_a2_x_leg1` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
 /// | `s_1_2` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
 /// | `inv_pivot_1` | 1/d_k | its reciprocal |

@@ -42,7 +42,7 @@ const KINDS: &[Kind] = &[
         "cos q",
         "of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it",
     ),
-    kind("s#", "sin q", "as the cosine"),
+    kind("s#", "sin q", "sine of a joint angle, named as its cosine is"),
     kind("q#", "q", "position of a joint, m or rad, eq. (7)"),
     kind(
         "p_@",
@@ -102,7 +102,7 @@ const KINDS: &[Kind] = &[
         "u_i",
         "rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9)",
     ),
-    kind("rate_#_squared", "u_i²", "its square"),
+    kind("rate_#_squared", "u_i²", "square of a joint rate"),
     kind("rate_dot_#", "u̇_i", "derivative of that rate, eq. (10)"),
     kind(
         "bias_rate_dot_#",
@@ -180,7 +180,11 @@ const KINDS: &[Kind] = &[
         "a_j - g",
         "acceleration of the origin of body j less gravity, in its own axes",
     ),
-    kind("u#_@@", "U_j", "[ω̇]× + [ω]×[ω]× of body j"),
+    kind(
+        "u#_@@",
+        "U_j",
+        "S(ω̇_j) + S(ω_j) S(ω_j), where S(a) b = a × b",
+    ),
     kind(
         "v#_by_#_@",
         "∂V_j/∂u_i",
@@ -234,12 +238,12 @@ const KINDS: &[Kind] = &[
     kind(
         "bias_a#_@",
         "a_j - g at v̇ = 0",
-        "acceleration of the origin of body j, likewise",
+        "acceleration of the origin of body j without the independent accelerations",
     ),
     kind(
         "bias_u#_@@",
         "U_j at v̇ = 0",
-        "[ω̇]× + [ω]×[ω]× of body j, likewise",
+        "S(ω̇_j) + S(ω_j) S(ω_j) without the independent accelerations",
     ),
     kind("s_$_$", "S", "(J_p^inv)ᵀ J_p^inv, eq. (22)"),
     kind(
