@@ -2,7 +2,7 @@
 
 use crate::{Failure, Subject};
 use nalgebra::DMatrix;
-use overact::{Function, Model};
+use overact::Function;
 use overact_identification::Log;
 use overact_simulation::{Experiment, Record, Term, Trajectory, simulate};
 use rand::RngExt;

@@ -42,7 +42,11 @@ const KINDS: &[Kind] = &[
         "cos q",
         "of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it",
     ),
-    kind("s#", "sin q", "sine of a joint angle, named as its cosine is"),
+    kind(
+        "s#",
+        "sin q",
+        "sine of a joint angle, named as its cosine is",
+    ),
     kind("q#", "q", "position of a joint, m or rad, eq. (7)"),
     kind(
         "p_@",

@@ -31,3 +31,33 @@ robot!(stanford: Stanford);
 robot!(two_motor_axis: TwoMotorAxis);
 
 pub mod partitions;
+
+use overact::Model;
+
+/// The robot whose description is `robots/<stem>.toml`.
+#[must_use]
+pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
+    Some(match stem {
+        "delta" => &Delta,
+        "delta_4" => &Delta4,
+        "dualv" => &DualV,
+        "emps" => &Emps,
+        "five_bar" => &FiveBar,
+        "hexapod" => &Hexapod,
+        "kuka_lwr" => &KukaLwr,
+        "octopod" => &Octopod,
+        "orthoglide" => &Orthoglide,
+        "planar_3prr" => &Planar3Prr,
+        "planar_3rrr" => &Planar3Rrr,
+        "planar_4prr" => &Planar4Prr,
+        "rx90" => &Rx90,
+        "schoenflies_4" => &Schoenflies4,
+        "scotch_yoke" => &ScotchYoke,
+        "spherical_3rrr" => &Spherical3Rrr,
+        "spherical_4rrr" => &Spherical4Rrr,
+        "stanford" => &Stanford,
+        "three_leg_point" => &ThreeLegPoint,
+        "two_motor_axis" => &TwoMotorAxis,
+        _ => return None,
+    })
+}
