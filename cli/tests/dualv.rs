@@ -84,7 +84,7 @@ fn logs_give_the_nine_parameters_of_table_2_and_the_papers_tables() {
         }
     }
     for verdict in list(&document["verdicts"]) {
-        assert_eq!(verdict["trusted"], true, "{verdict}");
+        assert_eq!(verdict["grade"], "use", "{verdict}");
     }
     // Table 3 has the torques of eq. (26), too, which differ from those of least norm.
     for one in list(&document["cross_validation"]) {
@@ -162,7 +162,7 @@ fn a_crossed_singularity_of_the_kept_actuators_is_told() {
         let found = verdicts.find(|verdict| verdict["subject"] == subject);
         found.unwrap_or_else(|| panic!("no verdict on {subject}"))
     };
-    assert_eq!(verdict("case 2")["trusted"], false);
+    assert_eq!(verdict("case 2")["grade"], "no");
     let reasons = verdict("case 2")["reasons"].to_string();
     assert!(
         reasons.contains("crosses a singularity of the kept actuators"),

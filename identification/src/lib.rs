@@ -10,7 +10,7 @@
 //! | folder | what |
 //! |---|---|
 //! | `error`, `significant`, `blocks` | problems with a place and a way out; numbers in sentences; a model evaluated in blocks |
-//! | `finding`, `series` | what is suspicious, with its thresholds; series that are plotted |
+//! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series that are plotted |
 //! | [`data`] | a run is read from CSV or MATLAB and checked; a mapping names its columns and units |
 //! | [`filters`] | zero-phase filtering, decimation, differences |
 //! | `settings` | what an identification is told beside the data |
@@ -19,8 +19,9 @@
 //! | `regression` | columns of the model, and the decimated system (39)-(41) of case 1, case 2 or all joints, as R factors |
 //! | `estimation` | base parameters (42)-(43), least squares with standard deviations (44)-(48), elimination |
 //! | `validation` | prediction against measurement, on any run |
-//! | `assessment` | data that contradict the loops or the model, and the fault that would explain them |
-//! | `identify` | the procedure, its result and the verdicts on it |
+//! | `result` | what is told of estimates and runs |
+//! | `assessment` | checks of data, model, fit and extrapolation, and the verdict that follows from them alone |
+//! | `identify` | the procedure and its result |
 
 mod assessment;
 mod blocks;
@@ -28,31 +29,35 @@ pub mod data;
 mod error;
 mod estimation;
 pub mod filters;
-mod finding;
 mod identify;
 mod kinematics;
 mod monitor;
 mod regression;
+mod result;
 mod series;
 mod settings;
 mod significant;
+mod thresholds;
 mod validation;
 
-pub use data::{Gain, Log, Mapping};
+pub use assessment::{
+    check::{About, Check, CheckKind, Grade},
+    evidence::{Axis, Curve, Evidence},
+    verdict::{StageVerdict, Verdict},
+};
+pub use data::{Dataset, Gain, Log, Mapping};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
     essential::{Drift, Essential, Removal, essential},
     estimate::{Estimation, LineError, estimate},
 };
-pub use finding::{Finding, FindingKind, Thresholds};
 pub use identify::{
-    BaseParameter, CrossValidation, Dataset, Estimate, Identification, Outcome, ParameterEstimate,
-    Prepared, Progress, RankedProjection, Regrouping, RunSummary, Stage, Study,
-    estimate_projection,
+    BaseParameter, Identification, Outcome, Prepared, Progress, RankedProjection, Regrouping,
+    Study, estimate_projection,
     figures::{Figures, PredictionFigures, ResidualFigures},
     identify, prepare, study,
-    verdict::{TrackingError, Verdict},
+    tracking::TrackingError,
 };
 pub use kinematics::{Motion, Motions, motion};
 pub use regression::{
@@ -61,7 +66,9 @@ pub use regression::{
     projection::{ModelKind, Projection},
     system::{Part, PartitionCondition, Stretch, System},
 };
+pub use result::{CrossValidation, Estimate, ParameterEstimate, RunSummary, Stage};
 pub use series::{ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series};
 pub use settings::{Normalisation, Settings};
 pub use significant::significant;
+pub use thresholds::Thresholds;
 pub use validation::{TorqueComparison, Validation};

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use overact_identification::{
     BaseParameter, CrossValidation, Estimate, Identification, LineError, ModelKind, Regrouping,
-    significant,
+    Verdict, significant,
 };
 
 /// Largest denominator of a fraction that a coefficient is printed as.
@@ -13,7 +13,7 @@ const LARGEST_DENOMINATOR: u32 = 10_000;
 /// A coefficient is printed as a decimal or a fraction that it equals to this relative tolerance.
 const SNAP: f64 = 1e-11;
 
-/// The whole report: runs, base parameters, estimates, cross-validation, warnings.
+/// The whole report: runs, base parameters, estimates, cross-validation, warnings, verdicts.
 #[must_use]
 pub fn report(identification: &Identification) -> String {
     let mut text = format!("Identification of {}\n", identification.robot);
@@ -34,7 +34,29 @@ pub fn report(identification: &Identification) -> String {
         text.push('\n');
         text.push_str(&cross_validation(&identification.cross_validation));
     }
-    text.push_str(&warnings(&identification.warnings));
+    text.push_str(&warnings(identification));
+    text.push_str(&verdicts(&identification.verdicts));
+    text
+}
+
+/// What may be done with the estimates.
+fn verdicts(verdicts: &[Verdict]) -> String {
+    let mut text = String::new();
+    for verdict in verdicts {
+        let _ = writeln!(
+            text,
+            "\n{}, {} parameters: {}",
+            verdict.subject,
+            verdict.stage.name(),
+            verdict.grade.words()
+        );
+        if !verdict.listed.is_empty() {
+            let _ = writeln!(text, "  {}", verdict.listed.join(", "));
+        }
+        for reason in &verdict.reasons {
+            let _ = writeln!(text, "- {reason}");
+        }
+    }
     text
 }
 
@@ -280,10 +302,15 @@ pub fn cross_validation(all: &[CrossValidation]) -> String {
     format!("Cross-validation\n{}", table(&header, rows.collect()))
 }
 
-/// The warnings, one a line.
-fn warnings(warnings: &[String]) -> String {
+/// The warnings that no verdict tells, one a line.
+fn warnings(identification: &Identification) -> String {
+    let told = |warning: &&String| {
+        let mut reasons = identification.verdicts.iter().flat_map(|one| &one.reasons);
+        reasons.any(|reason| reason == *warning)
+    };
+    let rest = identification.warnings.iter().filter(|one| !told(one));
     let mut text = String::new();
-    for (index, warning) in warnings.iter().enumerate() {
+    for (index, warning) in rest.enumerate() {
         if index == 0 {
             text.push('\n');
         }

@@ -165,6 +165,10 @@ fn without_essential(result: &mut Identification) {
     let is_kept = |stage: Stage| stage == Stage::Base;
     result.estimates.retain(|one| is_kept(one.stage));
     result.cross_validation.retain(|one| is_kept(one.stage));
+    for verdict in &mut result.verdicts {
+        verdict.stages.retain(|one| is_kept(one.stage));
+        verdict.stage = Stage::Base;
+    }
     let figures = &mut result.figures;
     figures.predictions.retain(|one| is_kept(one.stage));
     figures.residuals.retain(|one| is_kept(one.stage));

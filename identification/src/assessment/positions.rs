@@ -5,12 +5,8 @@ use std::f64::consts::PI;
 
 use overact::{Function, Model, math::wrap_angle};
 
-use crate::{
-    data::Log,
-    error::Error,
-    finding::{Finding, FindingKind, Thresholds},
-    kinematics::approach,
-};
+use super::check::{About, Check, CheckKind, Grade};
+use crate::{data::Log, error::Error, kinematics::approach, thresholds::Thresholds};
 
 /// Rows of a run that are looked at, and their distance in time (s).
 const ROWS: usize = 200;
@@ -62,19 +58,19 @@ impl Fault {
     }
 
     /// What is told of it in a run; `so` says what speaks for it.
-    pub(crate) fn finding(self, model: &dyn Model, run: &str, so: &str) -> Finding {
+    pub(crate) fn check(self, model: &dyn Model, run: &str, so: &str) -> Check {
         let info = model.info();
         let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();
         let (kind, actuator, message) = match self {
             Self::Degrees => (
-                FindingKind::Degrees,
+                CheckKind::Degrees,
                 None,
                 String::from(
                     "the positions look like degrees: give `position_scale = \"1 deg\"` in the table [data]",
                 ),
             ),
             Self::Swapped(i, j) => (
-                FindingKind::SwappedColumns,
+                CheckKind::SwappedColumns,
                 Some(name(i)),
                 format!(
                     "the positions of `{}` and `{}` look swapped: check the columns of the log",
@@ -83,7 +79,7 @@ impl Fault {
                 ),
             ),
             Self::Reversed(i) => (
-                FindingKind::WrongSign,
+                CheckKind::WrongSign,
                 Some(name(i)),
                 format!(
                     "the position of `{}` looks reversed: check its sign (a negative `position_scale` in the table [data] turns it round)",
@@ -91,11 +87,12 @@ impl Fault {
                 ),
             ),
         };
-        Finding {
-            kind,
-            run: Some(run.to_owned()),
-            actuator: actuator.map(str::to_owned),
-            message: format!("{message}; {so}"),
+        let check = Check::new(kind, About::Model, format!("{message}; {so}"))
+            .in_run(run)
+            .allowing(Grade::DoNotUse);
+        match actuator {
+            Some(actuator) => check.of_actuator(actuator),
+            None => check,
         }
     }
 }
@@ -104,7 +101,7 @@ impl Fault {
 ///
 /// # Errors
 /// A file that can't be read any more.
-pub(crate) fn explanation(model: &dyn Model, log: &Log) -> Result<Option<Finding>, Error> {
+pub(crate) fn explanation(model: &dyn Model, log: &Log) -> Result<Option<Check>, Error> {
     let rows = rows(log)?;
     let tolerance = Thresholds::default().closure_residual;
     let miss = miss(model, &rows);
@@ -128,7 +125,10 @@ pub(crate) fn explanation(model: &dyn Model, log: &Log) -> Result<Option<Finding
             |miss| format!("instead of missing by {miss:.3} m or rad"),
         );
         let so = format!("then the loops close to {left:.1e} m or rad {before}");
-        fault.finding(model, log.name(), &so)
+        fault
+            .check(model, log.name(), &so)
+            .measured(left, "m or rad")
+            .against(tolerance, "the limit of the closure")
     }))
 }
 

@@ -9,14 +9,16 @@
 use nalgebra::{DMatrix, DVector};
 use overact::{Function, Model};
 
-use super::positions;
+use super::{
+    check::{About, Check, CheckKind, Grade},
+    positions,
+};
 use crate::{
     blocks::{BLOCK, slice},
     data::Log,
     error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
     filters::Decimator,
-    finding::{Finding, FindingKind},
     kinematics::Motions,
     regression::{columns::ColumnSet, factor::Factor},
     settings::Settings,
@@ -52,7 +54,7 @@ pub(crate) fn explanation(
     model: &dyn Model,
     runs: &[Log],
     settings: &Settings,
-) -> Result<Option<Finding>, Error> {
+) -> Result<Option<Check>, Error> {
     let info = model.info();
     let n = info.sizes.actuators;
     let columns = Columns::new(model, settings)?;
@@ -78,7 +80,8 @@ pub(crate) fn explanation(
         )
     };
     if let Some((fault, after)) = best.filter(explains) {
-        return Ok(Some(finding(model, runs, fault, &so(after))));
+        let told = told(model, runs, fault, &so(after));
+        return Ok(Some(measured(told, before, after)));
     }
     // What happened to positions happened in all runs.
     let positions = positions::Fault::all(model)
@@ -99,19 +102,30 @@ pub(crate) fn explanation(
     let explains = |(_, after): &(positions::Fault, f64)| {
         *after < EXPLAINED * before && before - after > WORTHWHILE
     };
-    Ok(best.filter(explains).map(|(fault, after)| Finding {
-        run: None,
-        ..fault.finding(model, "", &so(after))
+    Ok(best.filter(explains).map(|(fault, after)| {
+        let told = Check {
+            run: None,
+            ..fault.check(model, "", &so(after))
+        };
+        measured(told, before, after)
     }))
 }
 
+/// A check with the part of the inputs that is left unexplained without the fault.
+fn measured(check: Check, before: f64, after: f64) -> Check {
+    let origin = "half of what is left unexplained with the fault";
+    check
+        .measured(100.0 * after, "%")
+        .against(100.0 * EXPLAINED * before, origin)
+}
+
 /// What is told of a fault; `so` says what speaks for it.
-fn finding(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Finding {
+fn told(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check {
     let info = model.info();
     let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();
     let (kind, run, actuator, message) = match fault {
         Fault::Gain(i, gain) if gain < 0.0 => (
-            FindingKind::WrongSign,
+            CheckKind::WrongSign,
             None,
             Some(i),
             format!(
@@ -120,7 +134,7 @@ fn finding(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Finding {
             ),
         ),
         Fault::Gain(i, gain) => (
-            FindingKind::WrongGain,
+            CheckKind::WrongGain,
             None,
             Some(i),
             format!(
@@ -129,7 +143,7 @@ fn finding(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Finding {
             ),
         ),
         Fault::Swapped(i, j) => (
-            FindingKind::SwappedColumns,
+            CheckKind::SwappedColumns,
             None,
             Some(i),
             format!(
@@ -146,7 +160,7 @@ fn finding(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Finding {
                 ("with", "without")
             };
             (
-                FindingKind::PayloadLabel,
+                CheckKind::PayloadLabel,
                 Some(log.name().to_owned()),
                 None,
                 format!(
@@ -155,11 +169,10 @@ fn finding(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Finding {
             )
         }
     };
-    Finding {
-        kind,
+    Check {
         run,
         actuator: actuator.map(|index| name(index).to_owned()),
-        message: format!("{message}; {so}"),
+        ..Check::new(kind, About::Model, format!("{message}; {so}")).allowing(Grade::DoNotUse)
     }
 }
 

@@ -6,6 +6,7 @@
 //! CSV file stays on the disk and is read block by block whenever its run is gone through.
 
 mod csv_file;
+mod dataset;
 mod log;
 mod mapping;
 mod mat_file;
@@ -16,6 +17,7 @@ use std::{
 };
 
 pub use csv_file::read_csv;
+pub use dataset::Dataset;
 pub use log::{Log, Reader, Samples};
 pub use mapping::{Gain, Mapping};
 pub use mat_file::read_mat;

@@ -2,18 +2,13 @@
 
 use overact::Model;
 
-use super::{
-    prepare::Prepared,
-    progress::Progress,
-    result::{CrossValidation, Estimate},
-    stage::Stage,
-};
+use super::{prepare::Prepared, progress::Progress};
 use crate::{
-    assessment,
+    assessment::{self, Watched},
     data::Log,
     error::Error,
-    finding::Finding,
     regression::observation::Observer,
+    result::{CrossValidation, Estimate, Stage},
     series::RunFigures,
     settings::Settings,
     validation::{Candidate, Validation, validate},
@@ -26,7 +21,7 @@ pub(super) struct HeldOut {
     /// The number of the projection of each.
     pub(super) owners: Vec<usize>,
     pub(super) motions: Vec<RunFigures>,
-    pub(super) findings: Vec<Finding>,
+    pub(super) watched: Vec<Watched>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -65,16 +60,14 @@ pub(super) fn cross_validate(
     for log in runs {
         let run = log.name();
         let report = |done, samples| progress(Progress::Validation { run, done, samples });
-        let judged = validate(&observer, log, &candidates, &report).and_then(|validated| {
-            let (monitor, closure) = (validated.monitor.clone(), validated.closure_residual);
-            let found = assessment::of_run(model, log, monitor, closure)?;
-            Ok((validated, found))
-        });
-        match judged {
-            Ok((validated, found)) => {
+        match validate(&observer, log, &candidates, &report) {
+            Ok(validated) => {
                 all.push((log.payload(), validated.validations));
                 held_out.motions.push(validated.motion);
-                held_out.findings.extend(found);
+                held_out.watched.push(Watched {
+                    monitor: validated.monitor,
+                    closure_residual: validated.closure_residual,
+                });
             }
             Err(error) => problems.extend(assessment::explained(model, log, error).problems),
         }

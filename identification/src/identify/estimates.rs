@@ -4,12 +4,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::{
-    prepare::Prepared,
-    progress::Progress,
-    result::{Estimate, ParameterEstimate},
-    stage::Stage,
-};
+use super::{prepare::Prepared, progress::Progress};
 use crate::{
     error::{Error, Problem},
     estimation::{
@@ -25,6 +20,7 @@ use crate::{
         projection::Projection,
         system::System,
     },
+    result::{Estimate, ParameterEstimate, Stage},
     settings::Settings,
 };
 

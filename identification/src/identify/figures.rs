@@ -11,9 +11,9 @@
 
 use serde::Serialize;
 
-use super::stage::Stage;
 use crate::{
     regression::projection::ModelKind,
+    result::Stage,
     series::{LineResidual, RunFigures, Series},
 };
 

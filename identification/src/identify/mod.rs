@@ -6,29 +6,21 @@
 //! pass over the data for all projections, then the estimates.
 
 mod cross_validation;
-mod dataset;
 mod estimates;
 pub(crate) mod figures;
-mod judgement;
+mod identification;
 mod plots;
 mod prepare;
 mod progress;
-mod result;
-mod stage;
 mod study;
-pub(crate) mod verdict;
+pub(crate) mod tracking;
 
 use overact::Model;
 
-pub use dataset::Dataset;
 pub use estimates::{Outcome, estimate_projection};
+pub use identification::{BaseParameter, Identification, Regrouping};
 pub use prepare::{Prepared, prepare};
 pub use progress::Progress;
-pub use result::{
-    BaseParameter, CrossValidation, Estimate, Identification, ParameterEstimate, Regrouping,
-    RunSummary,
-};
-pub use stage::Stage;
 pub use study::{RankedProjection, Study, study};
 
 use cross_validation::cross_validate;
@@ -36,10 +28,15 @@ use estimates::estimate_all;
 use prepare::{check_runs, prepared_warnings};
 
 use crate::{
+    assessment::{
+        self, Context, Watched, assumptions::assumptions, check::Check, verdict::verdicts,
+    },
+    data::Dataset,
     error::Error,
-    finding::{Finding, Thresholds},
-    regression::projection::Projection,
+    regression::projection::{ModelKind, Projection},
+    result::Estimate,
     settings::Settings,
+    thresholds::Thresholds,
 };
 
 /// Identifies a robot from the runs of a data set and cross-validates the estimates.
@@ -70,13 +67,24 @@ pub fn identify(
     )?;
     warnings.extend(held_out.warnings);
     let cross_validation = held_out.validations;
-    let mut findings: Vec<Finding> = prepared.findings.clone();
-    findings.extend(held_out.findings);
-    findings.extend(judgement::findings(
-        model, dataset, &prepared, &estimates, settings,
-    )?);
-    warnings.extend(findings.iter().map(judgement::located));
-    let thresholds = Thresholds::default();
+    let identified = prepared.seen.iter().map(|seen| Watched {
+        monitor: seen.monitor.clone(),
+        closure_residual: seen.closure_residual,
+    });
+    let watched: Vec<Watched> = identified.chain(held_out.watched).collect();
+    let checks = assessment::checks(&Context {
+        model,
+        dataset,
+        settings,
+        columns: &prepared.columns,
+        base: &prepared.base,
+        systems: &prepared.systems,
+        watched: &watched,
+        estimates: &estimates,
+        cross_validation: &cross_validation,
+    })?;
+    let failed = checks.iter().filter(|check| !check.passed);
+    warnings.extend(failed.map(Check::located));
     let figures = plots::figures(
         model,
         &prepared,
@@ -85,22 +93,22 @@ pub fn identify(
         held_out.motions,
         settings,
     )?;
+    let models: Vec<ModelKind> = projections.iter().map(Projection::model).collect();
+    let estimates: Vec<Estimate> = estimates.into_iter().map(|(_, one)| one).collect();
     Ok(Identification {
         robot: info.name.to_owned(),
         base_parameters: BaseParameter::all(&prepared.columns, &prepared.base, dataset.true_values),
         without_effect: prepared.without_effect(),
         runs: prepared.runs,
         warnings,
-        verdicts: judgement::verdicts(&estimates, &cross_validation, &findings, &thresholds),
-        findings,
-        thresholds,
+        assumptions: assumptions(model, &prepared.columns, &models),
+        verdicts: verdicts(&estimates, &checks),
+        checks,
+        thresholds: Thresholds::default(),
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,
-        estimates: estimates
-            .into_iter()
-            .map(|(_, estimate)| estimate)
-            .collect(),
+        estimates,
         cross_validation,
     })
 }

@@ -5,13 +5,13 @@ use overact::{Function, Model};
 use super::{
     figures::{Figures, PredictionFigures, ResidualFigures},
     prepare::Prepared,
-    result::{CrossValidation, Estimate},
 };
 use crate::{
     error::Error,
     estimation::correlation::line_residual,
     kinematics::distribution::{least_norm, product},
     regression::{projection::Projection, system::System},
+    result::{CrossValidation, Estimate},
     series::{LineResidual, ResidualSeries, RunFigures, Series},
     settings::Settings,
     validation::platform_input,

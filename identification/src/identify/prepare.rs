@@ -3,13 +3,12 @@
 use nalgebra::DMatrix;
 use overact::Model;
 
-use super::{progress::Progress, result::RunSummary};
+use super::progress::Progress;
 use crate::{
     assessment,
     data::Log,
     error::{Error, Problem},
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
-    finding::Finding,
     kinematics,
     regression::{
         columns::ColumnSet,
@@ -17,6 +16,7 @@ use crate::{
         projection::Projection,
         system::{Observed, System},
     },
+    result::RunSummary,
     settings::{Settings, check_partition},
 };
 
@@ -41,8 +41,6 @@ pub struct Prepared {
     pub runs: Vec<RunSummary>,
     /// What is told of the runs beside their equations.
     pub(super) seen: Vec<Seen>,
-    /// What is suspicious in them.
-    pub(super) findings: Vec<Finding>,
     /// For each run and projection, the equations of each line at the points of the plots.
     pub(super) points: Vec<Vec<Vec<DMatrix<f64>>>>,
 }
@@ -100,14 +98,12 @@ pub fn prepare(
         |projection: &Projection| Ok(System::new(projection.clone(), &info, base.columns.len()));
     let mut systems: Vec<Result<System, Error>> = projections.iter().map(new).collect();
     let (mut seen, mut points, mut problems) = (Vec::new(), Vec::new(), Vec::new());
-    let mut findings = Vec::new();
     for (number, log) in runs.iter().enumerate() {
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
         let budget = LARGEST_STRETCHES / runs.len();
-        match observed(&observer, (number, log), budget, &report) {
-            Ok((equations, told, found)) => {
-                findings.extend(found);
+        match observer.run(number, log, budget, &report) {
+            Ok((equations, told)) => {
                 seen.push(told);
                 points.push(add(&mut systems, equations));
             }
@@ -124,26 +120,12 @@ pub fn prepare(
         payload,
         systems,
         seen,
-        findings,
         points,
     })
 }
 
 /// What a run holds for the system of each projection, or why it has nothing for it.
 type Equations = Vec<Result<Observed, Error>>;
-
-/// Goes through a run: its equations, what is told of it, and what is suspicious in it.
-fn observed(
-    observer: &Observer<'_>,
-    (number, log): (usize, &Log),
-    budget: usize,
-    progress: &dyn Fn(usize, usize),
-) -> Result<(Equations, Seen, Vec<Finding>), Error> {
-    let (equations, seen) = observer.run(number, log, budget, progress)?;
-    let monitor = seen.monitor.clone();
-    let found = assessment::of_run(observer.model, log, monitor, seen.closure_residual)?;
-    Ok((equations, seen, found))
-}
 
 /// Adds what a run holds to the systems, and gives back the equations at the points of the plots.
 fn add(systems: &mut [Result<System, Error>], observed: Equations) -> Vec<Vec<DMatrix<f64>>> {

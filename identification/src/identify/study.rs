@@ -11,23 +11,22 @@ use serde::Serialize;
 
 use super::{
     cross_validation::cross_validate,
-    dataset::Dataset,
     estimates::{Outcome, estimate_all},
     prepare::{Prepared, prepare},
     progress::Progress,
-    result::{CrossValidation, Estimate, ParameterEstimate},
-    stage::Stage,
 };
 use crate::{
+    data::Dataset,
     error::Error,
     estimation::essential::HeldOut,
-    finding::Thresholds,
     regression::{
         projection::{ModelKind, Projection},
         system::PartitionCondition,
     },
+    result::{CrossValidation, Estimate, ParameterEstimate, Stage},
     settings::Settings,
     significant,
+    thresholds::Thresholds,
 };
 
 /// How well case 1 and every choice of case 2 do.

@@ -4,11 +4,14 @@
 //! - `watch`: stuck encoders, lost samples, a robot that stands still;
 //! - `peaks`: torques that are flat at their extremes;
 //! - `clipping`: what is told of them;
+//! - `suspicion`: what is suspicious;
 //! - `statistics`: what is kept of numbers that pass.
 
 mod clipping;
 mod peaks;
 mod statistics;
+mod suspicion;
 mod watch;
 
+pub(crate) use suspicion::{Suspicion, Trouble};
 pub(crate) use watch::Monitor;

@@ -5,8 +5,8 @@
 //! bands within another T/2 on either side, being a parabola. One that is cut off falls with the slope
 //! with which it came.
 
-use super::clipping::clipping;
-use crate::{finding::Finding, significant};
+use super::{clipping::clipping, suspicion::Suspicion};
+use crate::significant;
 
 /// Width of the band by the range.
 const BAND: f64 = 0.01;
@@ -21,12 +21,12 @@ const FEWEST: usize = 8;
 const PART: f64 = 0.02;
 
 /// Looks at torques at a moderate rate, rows of one value per actuator.
-pub(crate) fn findings(run: &str, names: &[&str], torques: &[f64]) -> Vec<Finding> {
+pub(crate) fn suspicions(names: &[&str], torques: &[f64]) -> Vec<Suspicion> {
     let n = names.len().max(1);
     let column = |actuator: usize| -> Vec<f64> {
         torques.iter().skip(actuator).step_by(n).copied().collect()
     };
-    let finding = |(actuator, name): (usize, &&str)| {
+    let suspicion = |(actuator, name): (usize, &&str)| {
         let own = column(actuator);
         let mirrored: Vec<f64> = own.iter().map(|torque| -torque).collect();
         let (high, low) = (flat_part(&own), flat_part(&mirrored));
@@ -39,9 +39,9 @@ pub(crate) fn findings(run: &str, names: &[&str], torques: &[f64]) -> Vec<Findin
         let levels: Vec<String> = levels
             .map(|(_, level)| format!("about {}", significant(*level, 3)))
             .collect();
-        Some(clipping(run, name, high + low, &levels))
+        Some(clipping(name, high + low, PART, &levels))
     };
-    names.iter().enumerate().filter_map(finding).collect()
+    names.iter().enumerate().filter_map(suspicion).collect()
 }
 
 /// The part of a signal in flat peaks at its maximum.

@@ -5,12 +5,9 @@ use super::{
     clipping::clipping,
     peaks,
     statistics::{Extreme, Histogram, Means},
+    suspicion::{Suspicion, Trouble},
 };
-use crate::{
-    data::Samples,
-    finding::{Finding, FindingKind},
-    significant,
-};
+use crate::{data::Samples, significant};
 
 /// Equal values in a row that count as a rest of a signal (s).
 const REST_SECONDS: f64 = 0.1;
@@ -141,56 +138,63 @@ impl Monitor {
 
     /// What is suspicious in a run of actuators with these names. Where the loops couple all actuators
     /// (`coupled`), one that rests while others move is stuck; without loops it may be held.
-    pub(crate) fn findings(mut self, run: &str, names: &[&str], coupled: bool) -> Vec<Finding> {
+    pub(crate) fn suspicions(mut self, names: &[&str], coupled: bool) -> Vec<Suspicion> {
         self.finish();
-        let mut findings = self.clipped(run, names);
-        for finding in peaks::findings(run, names, &self.means.rows) {
-            if findings
+        let mut suspicions = self.clipped(names);
+        for suspicion in peaks::suspicions(names, &self.means.rows) {
+            if suspicions
                 .iter()
-                .all(|other| other.actuator != finding.actuator)
+                .all(|other| other.actuator != suspicion.actuator)
             {
-                findings.push(finding);
+                suspicions.push(suspicion);
             }
         }
-        if self.stands_still() {
-            findings.push(Finding {
-                kind: FindingKind::Standstill,
-                run: Some(run.to_owned()),
+        if self.travel() <= STILL_STEPS {
+            suspicions.push(Suspicion {
+                trouble: Trouble::Standstill,
                 actuator: None,
+                statistic: self.travel(),
+                unit: "steps",
+                threshold: STILL_STEPS,
                 message: String::from(
                     "the robot stands still: the positions change by no more than their noise, so the run tells nothing about inertia; leave it out",
                 ),
             });
-            return findings;
+            return suspicions;
         }
-        let stuck: Vec<Option<String>> = (0..names.len())
+        let stuck: Vec<Option<(f64, String)>> = (0..names.len())
             .map(|actuator| self.stuck(actuator, coupled))
             .collect();
-        for (name, message) in names.iter().zip(&stuck) {
-            findings.extend(message.iter().map(|message| Finding {
-                kind: FindingKind::StuckEncoder,
-                run: Some(run.to_owned()),
+        for (name, stuck) in names.iter().zip(&stuck) {
+            suspicions.extend(stuck.iter().map(|(seconds, message)| Suspicion {
+                trouble: Trouble::Stuck,
                 actuator: Some((*name).to_owned()),
+                statistic: *seconds,
+                unit: "s",
+                threshold: REST_SECONDS,
                 message: message.clone(),
             }));
         }
         if stuck.iter().all(Option::is_none) {
-            findings.extend(self.lost(run, names));
+            suspicions.extend(self.lost(names));
         }
-        findings
+        suspicions
     }
 
-    /// Whether no position moves beyond its noise.
-    fn stands_still(&self) -> bool {
+    /// The largest range of a position by its usual step between samples, which is noise where the
+    /// robot stands still.
+    fn travel(&self) -> f64 {
         let steps = self.samples.saturating_sub(1).max(1) as f64;
-        self.positions.iter().all(|one| {
+        let travel = |one: &Position| {
             let step = (one.steps / steps).sqrt();
-            one.high - one.low <= STILL_STEPS * step
-        })
+            let range = one.high - one.low;
+            if range > 0.0 { range / step } else { 0.0 }
+        };
+        self.positions.iter().map(travel).fold(0.0, f64::max)
     }
 
-    /// What is told of an encoder that is stuck.
-    fn stuck(&self, actuator: usize, coupled: bool) -> Option<String> {
+    /// For how long an encoder is stuck (s), and what is told of it.
+    fn stuck(&self, actuator: usize, coupled: bool) -> Option<(f64, String)> {
         let own = &self.positions[actuator];
         let long = |rest: &&Rest| rest.samples as f64 >= REST_SECONDS * self.frequency;
         let rest = own.rest.as_ref().filter(long)?;
@@ -204,22 +208,25 @@ impl Monitor {
         // A joint needs time to stop; a signal does not.
         let stops_dead = rest.speed_before > 4.0 * CLEAR_MOTION * own.speed && own.speed > 0.0;
         ((coupled && others_move) || stops_dead).then(|| {
-            format!(
+            let seconds = rest.samples as f64 / self.frequency;
+            let message = format!(
                 "the position does not change from t = {:.3} s on for {:.3} s, {}; the encoder or its reading is stuck: repair it, or leave the run out",
                 rest.first as f64 / self.frequency,
-                rest.samples as f64 / self.frequency,
+                seconds,
                 if others_move {
                     "while other actuators move"
                 } else {
                     "from one sample to the next in full motion"
                 }
-            )
+            );
+            (seconds, message)
         })
     }
 
     /// Steps that are too large, in any actuator.
-    fn lost(&self, run: &str, names: &[&str]) -> Option<Finding> {
+    fn lost(&self, names: &[&str]) -> Option<Suspicion> {
         let mut samples: Vec<usize> = Vec::new();
+        let mut largest = 0.0_f64;
         let mut actuators: Vec<&str> = Vec::new();
         for (one, name) in self.positions.iter().zip(names) {
             let Some(resolution) = one.smallest else {
@@ -230,6 +237,9 @@ impl Monitor {
                 .max(LOST_RATIO * resolution)
                 .max(LOST_RATIO * one.changes.quantile(0.99));
             let jumps = one.jumps.iter().filter(|(size, _)| *size > least);
+            largest = jumps
+                .clone()
+                .fold(largest, |most, (size, _)| most.max(size / least));
             let before = samples.len();
             samples.extend(jumps.map(|(_, sample)| *sample));
             if samples.len() > before {
@@ -237,9 +247,11 @@ impl Monitor {
             }
         }
         let first = *samples.iter().min()?;
-        Some(Finding {
-            kind: FindingKind::DroppedSamples,
-            run: Some(run.to_owned()),
+        Some(Suspicion {
+            trouble: Trouble::Dropped,
+            statistic: largest,
+            unit: "times the largest usual change of a step",
+            threshold: 1.0,
             actuator: match actuators[..] {
                 [one] if names.len() > 1 => Some(one.to_owned()),
                 _ => None,
@@ -252,14 +264,14 @@ impl Monitor {
     }
 
     /// Torques that lie at an extreme too often.
-    fn clipped(&self, run: &str, names: &[&str]) -> Vec<Finding> {
+    fn clipped(&self, names: &[&str]) -> Vec<Suspicion> {
         let clipped = |extreme: &Extreme| {
             let enough = FEWEST_CLIPPED.max((CLIPPED_PART * self.samples as f64) as usize);
             extreme.count >= enough && extreme.count > CLIPPED_RATIO * extreme.next_count
                 // A torque that never changes is no peak.
                 && extreme.count < self.samples
         };
-        let mut findings = Vec::new();
+        let mut suspicions = Vec::new();
         for ([low, high], name) in self.torques.iter().zip(names) {
             let ends = [(low, -1.0), (high, 1.0)];
             let found: Vec<(usize, f64)> = ends
@@ -275,14 +287,14 @@ impl Monitor {
                 .iter()
                 .map(|(_, value)| significant(*value, 5))
                 .collect();
-            findings.push(clipping(
-                run,
+            suspicions.push(clipping(
                 name,
                 samples as f64 / self.samples as f64,
+                CLIPPED_PART,
                 &levels,
             ));
         }
-        findings
+        suspicions
     }
 }
 

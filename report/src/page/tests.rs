@@ -132,7 +132,7 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
     assert_eq!(sections.len(), 12, "{sections:?}");
     let verdict = text(element(&document, "verdict"));
     assert!(
-        verdict.contains("A part of this result can be trusted: case 1. What can’t be: case 2."),
+        verdict.contains("Case 1: use it. Case 2: do not use it."),
         "{verdict}"
     );
     assert!(verdict.contains("the error 2.4 % is < 50 %"));
@@ -189,7 +189,8 @@ fn an_identification_without_anything_still_has_a_page() {
         estimates: Vec::new(),
         cross_validation: Vec::new(),
         warnings: Vec::new(),
-        findings: Vec::new(),
+        checks: Vec::new(),
+        assumptions: Vec::new(),
         verdicts: Vec::new(),
         thresholds: Thresholds::default(),
         tracking: Vec::new(),

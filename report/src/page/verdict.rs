@@ -8,7 +8,7 @@ use super::{
 };
 
 use crate::escape::escape;
-use overact_identification::{Identification, significant};
+use overact_identification::{Check, Grade, Identification, Verdict, significant};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
@@ -30,22 +30,12 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
 /// The verdict in one sentence or two.
 fn summary(identification: &Identification) -> String {
     let verdicts = &identification.verdicts;
-    let names = |trusted: bool| -> Vec<&str> {
-        let all = verdicts.iter().filter(|one| one.trusted == trusted);
-        all.map(|one| one.subject.as_str()).collect()
-    };
-    let (good, bad) = (names(true), names(false));
-    let mut text = match (good.is_empty(), bad.is_empty()) {
-        (true, true) => {
-            String::from("Nothing was judged: the numbers below have to speak for themselves.")
-        }
-        (false, true) => format!("This result can be trusted: {}.", good.join(", ")),
-        (true, false) => format!("This result can’t be trusted: {}.", bad.join(", ")),
-        (false, false) => format!(
-            "A part of this result can be trusted: {}. What can’t be: {}.",
-            good.join(", "),
-            bad.join(", ")
-        ),
+    let sentence = |one: &Verdict| format!("{}: {}.", capital(&one.subject), one.grade.words());
+    let sentences: Vec<String> = verdicts.iter().map(sentence).collect();
+    let mut text = if sentences.is_empty() {
+        String::from("Nothing was judged: the numbers below have to speak for themselves.")
+    } else {
+        sentences.join(" ")
     };
     match identification.warnings.len() {
         0 => text.push_str(" There are no warnings."),
@@ -64,11 +54,12 @@ fn cards(identification: &Identification) -> String {
     }
     let mut html = String::from("<div class=\"cards\">\n");
     for verdict in &identification.verdicts {
-        let (class, sign, word) = if verdict.trusted {
-            ("good", "✓", "can be trusted")
-        } else {
-            ("bad", "✗", "can’t be trusted")
+        let (class, sign) = match verdict.grade {
+            Grade::Use => ("good", "✓"),
+            Grade::UseListed => ("bad", "!"),
+            Grade::DoNotUse => ("bad", "✗"),
         };
+        let word = verdict.grade.words();
         let reasons: String = verdict
             .reasons
             .iter()
@@ -76,7 +67,7 @@ fn cards(identification: &Identification) -> String {
             .collect();
         let _ = writeln!(
             html,
-            "<div class=\"card {class}\"><h3><span aria-hidden=\"true\">{sign}</span> {} {word}</h3><ul>{reasons}</ul></div>",
+            "<div class=\"card {class}\"><h3><span aria-hidden=\"true\">{sign}</span> {}: {word}</h3><ul>{reasons}</ul></div>",
             escape(&capital(&verdict.subject))
         );
     }
@@ -94,23 +85,28 @@ fn capital(text: &str) -> String {
 
 /// What is suspicious in the data, and every other warning.
 fn findings(identification: &Identification) -> String {
-    if identification.warnings.is_empty() && identification.findings.is_empty() {
+    let found: Vec<&Check> = identification
+        .checks
+        .iter()
+        .filter(|check| !check.passed)
+        .collect();
+    if identification.warnings.is_empty() && found.is_empty() {
         return String::new();
     }
     let mut html = String::from("<h3 id=\"warnings\">Warnings</h3>\n<ul class=\"warnings\">\n");
-    for finding in &identification.findings {
-        let place = finding.run.iter().chain(&finding.actuator).cloned();
+    for check in &found {
+        let place = check.run.iter().chain(&check.actuator).cloned();
         let place: Vec<String> = place.collect();
         let _ = write!(html, "<li>");
         if !place.is_empty() {
             let _ = write!(html, "<b>{}:</b> ", escape(&place.join(", ")));
         }
-        let _ = writeln!(html, "{}</li>", escape(&finding.message));
+        let _ = writeln!(html, "{}</li>", escape(&check.words));
     }
-    let rest = identification.warnings.iter().filter(|warning| {
-        let mut findings = identification.findings.iter();
-        !findings.any(|finding| warning.contains(&finding.message))
-    });
+    let rest = identification
+        .warnings
+        .iter()
+        .filter(|warning| !found.iter().any(|check| warning.contains(&check.words)));
     for warning in rest {
         let _ = writeln!(html, "<li>{}</li>", escape(warning));
     }

@@ -27,9 +27,9 @@ use super::{
 };
 use crate::{
     error::Error,
-    finding::Thresholds,
     regression::{factor::Factor, system::System},
     settings::Settings,
+    thresholds::Thresholds,
 };
 
 pub(crate) use held_out::HeldOut;

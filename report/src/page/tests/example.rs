@@ -6,8 +6,8 @@ use crate::{
 };
 use overact::{Info, Sizes};
 use overact_identification::{
-    BaseParameter, ConditionSeries, CrossValidation, Drift, Estimate, Figures, Finding,
-    FindingKind, Identification, LineError, LineResidual, ModelKind, Normalisation,
+    About, BaseParameter, Check, CheckKind, ConditionSeries, CrossValidation, Drift, Estimate,
+    Figures, Grade, Identification, LineError, LineResidual, ModelKind, Normalisation,
     ParameterEstimate, PartitionCondition, PredictionFigures, Regrouping, Removal, ResidualFigures,
     ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage, Thresholds, TorqueComparison,
     TrackingError, Verdict,
@@ -240,23 +240,16 @@ pub(super) fn identification() -> Identification {
             cross_validation(ModelKind::Actuators),
         ],
         warnings: vec![format!("beware of {HOSTILE}"), String::from("clipped")],
-        findings: vec![Finding {
-            kind: FindingKind::ClippedTorque,
-            run: Some(HOSTILE.to_owned()),
-            actuator: Some(String::from("leg1")),
-            message: String::from("clipped"),
-        }],
+        checks: vec![
+            Check::new(CheckKind::ClippedTorque, About::Data, "clipped")
+                .in_run(HOSTILE)
+                .of_actuator("leg1")
+                .allowing(Grade::DoNotUse),
+        ],
+        assumptions: vec![String::from("the gains are right")],
         verdicts: vec![
-            Verdict {
-                subject: String::from("case 1"),
-                trusted: true,
-                reasons: vec![String::from("the error 2.4 % is < 50 %")],
-            },
-            Verdict {
-                subject: String::from("case 2"),
-                trusted: false,
-                reasons: vec![HOSTILE.to_owned()],
-            },
+            verdict(ModelKind::Platform, Grade::Use, "the error 2.4 % is < 50 %"),
+            verdict(ModelKind::Actuators, Grade::DoNotUse, HOSTILE),
         ],
         thresholds: Thresholds::default(),
         tracking: ["pd", "computed torque, case 1"]
@@ -271,6 +264,19 @@ pub(super) fn identification() -> Identification {
             .collect(),
         settings: settings(),
         figures: figures(),
+    }
+}
+
+fn verdict(model: ModelKind, grade: Grade, reason: &str) -> Verdict {
+    Verdict {
+        subject: model.case().to_owned(),
+        model,
+        stage: Stage::Base,
+        grade,
+        trusted: grade == Grade::Use,
+        listed: Vec::new(),
+        reasons: vec![reason.to_owned()],
+        stages: Vec::new(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::data::Log;
+use super::Log;
 
 /// The data of an identification.
 #[derive(Debug, Clone, Copy)]

@@ -1,17 +1,6 @@
-//! What is to be thought of a result, in words, and what others found out about it.
+//! Table 4: how well controllers track runs with the identified parameters.
 
 use serde::Serialize;
-
-/// How far one may trust something.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Verdict {
-    /// What is judged: `case 1`, `case 2`, `joint model`, `data`.
-    pub subject: String,
-    /// Whether it can be trusted.
-    pub trusted: bool,
-    /// Why, in sentences.
-    pub reasons: Vec<String>,
-}
 
 /// Tracking errors of one controller on one run, as in Table 4: filled by whoever simulates or measures
 /// controlled runs; the identification leaves the list empty.

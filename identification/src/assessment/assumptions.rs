@@ -1,0 +1,45 @@
+//! What every result rests on, since no data can show it.
+
+use overact::{Model, StandardParameter};
+
+use crate::regression::{columns::ColumnSet, projection::ModelKind};
+
+/// What no data of these runs can show to be wrong: faults whose effect on the data is that of other
+/// parameters.
+pub(crate) fn assumptions(
+    model: &dyn Model,
+    columns: &ColumnSet,
+    models: &[ModelKind],
+) -> Vec<String> {
+    let mut all = vec![
+        String::from(
+            "the gains of the drives are right as a whole: if all torques are wrong by one factor, so are all parameters, and nothing in the data tells",
+        ),
+        String::from(
+            "the clock is right: if all times are wrong by one factor, masses and inertias are wrong by its square and viscous friction by the factor, and only gravity tells",
+        ),
+        String::from(
+            "the lengths of the description are right as a whole: angles alone fix no scale",
+        ),
+        String::from(
+            "the robot is rigid and stays as it was: temperature, wear and what was mounted are those of the runs",
+        ),
+    ];
+    let has = |symbol: StandardParameter| {
+        columns
+            .as_slice()
+            .iter()
+            .any(|column| column.symbol == symbol)
+    };
+    if has(StandardParameter::Fv) || has(StandardParameter::Fs) {
+        all.push(String::from(
+            "friction is viscous and Coulomb friction as in the model, at speeds that the runs do not reach, too",
+        ));
+    }
+    if models.contains(&ModelKind::Platform) && model.info().sizes.actuators > 1 {
+        all.push(String::from(
+            "torques that work against each other without moving the platform (a preload) are no part of the model",
+        ));
+    }
+    all
+}

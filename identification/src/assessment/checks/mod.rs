@@ -1,0 +1,96 @@
+//! All checks. Each has a file of its own and is a function of a read-only [`Context`]; the table
+//! [`CHECKS`] lists them.
+
+mod closure;
+mod held_out;
+mod negative_parameters;
+mod partition;
+pub(super) mod raw_numbers;
+mod relative_error;
+mod torque_faults;
+
+use overact::Model;
+
+use super::check::Check;
+use crate::{
+    data::{Dataset, Log},
+    error::Error,
+    estimation::base::BaseParameters,
+    monitor::Monitor,
+    regression::{columns::ColumnSet, projection::ModelKind, system::System},
+    result::{CrossValidation, Estimate, Stage},
+    settings::Settings,
+};
+
+/// What checks look at.
+pub(crate) struct Context<'a> {
+    pub(crate) model: &'a dyn Model,
+    pub(crate) dataset: &'a Dataset<'a>,
+    pub(crate) settings: &'a Settings,
+    /// The columns of the model and the base parameters among them.
+    pub(crate) columns: &'a ColumnSet,
+    pub(crate) base: &'a BaseParameters,
+    /// For each projection its system in the base parameters, or why it has none.
+    pub(crate) systems: &'a [Result<System, Error>],
+    /// What has been watched of the runs identified from, then of those that were held out.
+    pub(crate) watched: &'a [Watched],
+    /// All estimates, each with the number of its projection.
+    pub(crate) estimates: &'a [(usize, Estimate)],
+    /// Every estimate on every run that was held out.
+    pub(crate) cross_validation: &'a [CrossValidation],
+}
+
+/// What has been watched of a run while it was gone through.
+#[derive(Debug, Clone)]
+pub(crate) struct Watched {
+    /// Its raw numbers.
+    pub(crate) monitor: Monitor,
+    /// Largest miss of the loops' closure (m, rad).
+    pub(crate) closure_residual: f64,
+}
+
+impl<'a> Context<'a> {
+    /// The runs identified from and those that were held out, with what has been watched of them.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = (&'a Log, &'a Watched)> {
+        let all = self.dataset.runs.iter().chain(self.dataset.validation);
+        all.zip(self.watched)
+    }
+
+    /// The system of a model, where it has one.
+    pub(crate) fn system(&self, model: ModelKind) -> Option<&'a System> {
+        let mut systems = self.systems.iter().filter_map(|one| one.as_ref().ok());
+        systems.find(|system| system.projection.model() == model)
+    }
+
+    /// The estimates of a stage.
+    pub(crate) fn estimates_of(&self, stage: Stage) -> impl Iterator<Item = &'a Estimate> {
+        let all = self.estimates.iter().map(|(_, one)| one);
+        all.filter(move |one| one.stage == stage)
+    }
+}
+
+/// A check.
+type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
+
+/// All checks, in the order in which they are told.
+const CHECKS: [Function; 7] = [
+    raw_numbers::check,
+    closure::check,
+    torque_faults::check,
+    negative_parameters::check,
+    relative_error::check,
+    partition::check,
+    held_out::check,
+];
+
+/// What all checks say.
+///
+/// # Errors
+/// A log that can't be read any more.
+pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let mut all = Vec::new();
+    for check in CHECKS {
+        all.extend(check(context)?);
+    }
+    Ok(all)
+}

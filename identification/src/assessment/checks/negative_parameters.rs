@@ -1,0 +1,95 @@
+//! Whether parameters that can't be negative are estimated so.
+
+use overact::StandardParameter;
+
+use super::Context;
+use crate::{
+    assessment::check::{About, Check, CheckKind, Grade},
+    error::Error,
+    result::{Estimate, ParameterEstimate, Stage},
+    significant,
+};
+
+/// Deviations by which such an estimate is clearly below zero.
+const CLEARLY_NEGATIVE: f64 = 5.0;
+
+/// Looks at the base parameters of all models.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let of_model = |estimate: &Estimate| {
+        let positive = estimate
+            .parameters
+            .iter()
+            .filter(|one| is_positive(context, one.column));
+        let below = |one: &ParameterEstimate| -one.value / one.correlated_standard_deviation;
+        let worst = positive
+            .clone()
+            .map(below)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let negative: Vec<&ParameterEstimate> = positive
+            .filter(|one| below(one) > CLEARLY_NEGATIVE)
+            .collect();
+        let (words, grade) = if negative.is_empty() {
+            let words = "no mass, inertia or friction is clearly below zero";
+            (String::from(words), Grade::Use)
+        } else {
+            (told(&negative), Grade::DoNotUse)
+        };
+        Check::new(CheckKind::NegativeParameter, About::Model, words)
+            .of_model(estimate.model)
+            .measured(worst, "standard deviations below zero")
+            .against(CLEARLY_NEGATIVE, "chance is below 3e-7 for each parameter")
+            .allowing(grade)
+            .spoiling(negative.iter().map(|one| one.name.clone()).collect())
+    };
+    Ok(context.estimates_of(Stage::Base).map(of_model).collect())
+}
+
+/// What is told of negative parameters.
+fn told(negative: &[&ParameterEstimate]) -> String {
+    let values: Vec<String> = negative
+        .iter()
+        .map(|one| {
+            format!(
+                "`{}` = {} {}",
+                one.name,
+                significant(one.value, 3),
+                one.unit
+            )
+        })
+        .collect();
+    let (is, it) = if negative.len() == 1 {
+        ("is", "it")
+    } else {
+        ("are", "them")
+    };
+    format!(
+        "{} can't be negative, but {is} estimated so: check the signs of positions and torques, and whether the runs excite {it}",
+        values.join(", "),
+    )
+}
+
+/// Whether a base parameter is a sum of things that can't be negative.
+fn is_positive(context: &Context<'_>, place: usize) -> bool {
+    let columns = context.columns.as_slice();
+    let positive = |column: usize| {
+        columns.get(column).is_some_and(|column| {
+            matches!(
+                column.symbol,
+                StandardParameter::M
+                    | StandardParameter::Ia
+                    | StandardParameter::Fv
+                    | StandardParameter::Fs
+                    | StandardParameter::Xx
+                    | StandardParameter::Yy
+                    | StandardParameter::Zz
+            )
+        })
+    };
+    let base = context.base;
+    base.columns.get(place).is_some_and(|&kept| positive(kept))
+        && base.regroupings.get(place).is_some_and(|terms| {
+            terms
+                .iter()
+                .all(|&(column, coefficient)| positive(column) && coefficient > 0.0)
+        })
+}

@@ -1,0 +1,35 @@
+//! What may have led to an error of a run: hints that its raw numbers give.
+
+use overact::Model;
+
+use super::{checks::raw_numbers, positions};
+use crate::{data::Log, error::Error, monitor::Monitor};
+
+/// An error of a run together with what is suspicious in its numbers: each is a way out.
+pub(crate) fn explained(model: &dyn Model, log: &Log, error: Error) -> Error {
+    let mut hints: Vec<String> = Vec::new();
+    hints.extend(
+        positions::explanation(model, log)
+            .ok()
+            .flatten()
+            .map(|one| one.words),
+    );
+    let suspicious =
+        watched(log).map(|monitor| raw_numbers::suspicious(model, log.name(), monitor));
+    hints.extend(suspicious.into_iter().flatten().map(|one| one.words));
+    let mut problems = error.problems;
+    if let (Some(problem), false) = (problems.first_mut(), hints.is_empty()) {
+        problem.help = Some(hints.join("; "));
+    }
+    Error { problems }
+}
+
+/// The raw numbers of a whole run; none of a file that can't be read.
+fn watched(log: &Log) -> Option<Monitor> {
+    let mut monitor = Monitor::new(log.actuators(), log.sampling_frequency());
+    let mut reader = log.reader().ok()?;
+    while let Ok(Some(block)) = reader.next() {
+        monitor.take(&block);
+    }
+    Some(monitor)
+}

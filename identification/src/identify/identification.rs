@@ -1,0 +1,138 @@
+//! The result of an identification, as it is printed and as it is serialised: the names of the
+//! fields are the keys of the document.
+//!
+//! A report finds here: parameters with both standard deviations ([`ParameterEstimate`](crate::ParameterEstimate)), the path of
+//! the elimination and its stop ([`Estimate::removals`], [`Estimate::stop`]), conditioning
+//! ([`Estimate::partition`]), Table 3 ([`CrossValidation`], [`TorqueComparison`](crate::TorqueComparison)), Table 4
+//! ([`Identification::tracking`], filled by others), checks and the verdicts that follow from them, and in
+//! [`Identification::figures`] all that is plotted, in reduced resolution (see
+//! [`Figures`](super::figures::Figures); it is left out of the document, and serialises by itself).
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::{
+    assessment::{
+        check::{Check, Grade},
+        verdict::Verdict,
+    },
+    estimation::base::BaseParameters,
+    regression::columns::ColumnSet,
+    result::{CrossValidation, Estimate, RunSummary},
+    settings::Settings,
+    thresholds::Thresholds,
+};
+
+use super::{figures::Figures, tracking::TrackingError};
+
+/// Everything that an identification found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Identification {
+    /// Name of the robot.
+    pub robot: String,
+    /// The runs identified from.
+    pub runs: Vec<RunSummary>,
+    /// The base parameters and what is regrouped into them.
+    pub base_parameters: Vec<BaseParameter>,
+    /// Standard parameters that have no effect on the model.
+    pub without_effect: Vec<String>,
+    /// The estimates: for each model base, recommended and essential.
+    pub estimates: Vec<Estimate>,
+    /// Every estimate on every run that was not identified from.
+    pub cross_validation: Vec<CrossValidation>,
+    /// What the user should know before trusting the numbers.
+    pub warnings: Vec<String>,
+    /// What was checked; the words of those that found something stand among the warnings, too.
+    pub checks: Vec<Check>,
+    /// What the result rests on, since no data can show it.
+    pub assumptions: Vec<String>,
+    /// What may be done with the estimates, and why: one for each case.
+    pub verdicts: Vec<Verdict>,
+    /// The thresholds of the second opinion and of the conditioning.
+    pub thresholds: Thresholds,
+    /// Table 4, where controlled runs were compared.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tracking: Vec<TrackingError>,
+    /// The settings used.
+    pub settings: Settings,
+    /// What is plotted.
+    #[serde(skip)]
+    pub figures: Figures,
+}
+
+impl Identification {
+    /// What may be done with the result as a whole: the grade of the first case, which takes in all
+    /// actuators.
+    #[must_use]
+    pub fn grade(&self) -> Grade {
+        self.verdicts
+            .first()
+            .map_or(Grade::DoNotUse, |verdict| verdict.grade)
+    }
+}
+
+/// A base parameter: a kept standard parameter and what is regrouped into it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BaseParameter {
+    /// Its name, with the suffix `R` where others are regrouped into it.
+    pub name: String,
+    /// Name of the kept parameter.
+    pub parameter: String,
+    /// SI unit.
+    pub unit: String,
+    /// What is added to the kept parameter.
+    pub regrouping: Vec<Regrouping>,
+    /// Its true value, where that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub true_value: Option<f64>,
+}
+
+/// One term of a base parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Regrouping {
+    /// Name of the parameter that is regrouped.
+    pub parameter: String,
+    /// Its coefficient.
+    pub coefficient: f64,
+}
+
+impl BaseParameter {
+    /// All base parameters by name.
+    #[must_use]
+    pub fn all(
+        columns: &ColumnSet,
+        base: &BaseParameters,
+        true_values: Option<&BTreeMap<String, f64>>,
+    ) -> Vec<Self> {
+        let name = |index: usize| {
+            columns
+                .as_slice()
+                .get(index)
+                .map_or_else(String::new, |column| column.name.clone())
+        };
+        let none = BTreeMap::new();
+        let values = base.regrouped(columns, true_values.unwrap_or(&none));
+        base.columns
+            .iter()
+            .zip(&base.regroupings)
+            .zip(base.names.iter().zip(values))
+            .map(|((&kept, regrouping), (own_name, true_value))| Self {
+                name: own_name.clone(),
+                parameter: name(kept),
+                unit: columns
+                    .as_slice()
+                    .get(kept)
+                    .map_or_else(String::new, |column| column.unit.to_owned()),
+                regrouping: regrouping
+                    .iter()
+                    .map(|&(deleted, coefficient)| Regrouping {
+                        parameter: name(deleted),
+                        coefficient,
+                    })
+                    .collect(),
+                true_value,
+            })
+            .collect()
+    }
+}

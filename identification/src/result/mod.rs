@@ -1,0 +1,12 @@
+//! What is told of estimates and runs, as it is printed and as it is serialised: the names of the
+//! fields are keys of the document.
+
+mod cross_validation;
+mod estimate;
+mod run;
+mod stage;
+
+pub use cross_validation::CrossValidation;
+pub use estimate::{Estimate, ParameterEstimate};
+pub use run::RunSummary;
+pub use stage::Stage;
