@@ -18,6 +18,7 @@
 //! | `kinematics` | forward kinematics, platform motion, conditioning and distribution of actuators |
 //! | `regression` | columns of the model, and the decimated system (39)-(41) of case 1, case 2 or all joints, as R factors |
 //! | `estimation` | base parameters (42)-(43), least squares with standard deviations (44)-(48), elimination |
+//! | `calibration` | encoder offsets and lengths from the closure of redundant loops |
 //! | `validation` | prediction against measurement, on any run |
 //! | `result` | what is told of estimates and runs |
 //! | `assessment` | checks of data, model, fit and extrapolation, and the verdict that follows from them alone |
@@ -25,6 +26,7 @@
 
 mod assessment;
 mod blocks;
+mod calibration;
 pub mod data;
 mod error;
 mod estimation;
@@ -44,6 +46,10 @@ pub use assessment::{
     check::{About, Check, CheckKind, Grade},
     evidence::{Axis, Curve, Evidence},
     verdict::{StageVerdict, Verdict},
+};
+pub use calibration::{
+    CalibratedParameter, Calibration, CalibrationScope, ChangedGeometry, DescribedGeometry,
+    Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
 pub use data::{Dataset, Gain, Log, Mapping};
 pub use error::{Error, Problem};

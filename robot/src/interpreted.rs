@@ -140,6 +140,12 @@ impl InterpretedRobot {
         &self.model
     }
 
+    /// The name of a leg, with the life that errors need.
+    pub(crate) fn leg_name(&self, index: usize) -> &'static str {
+        let leg = self.model.mechanism.legs.get(index);
+        leg.map_or("", |leg| self.names.leg(&leg.name))
+    }
+
     fn serve(&self, function: Function) -> Option<Served> {
         let wanted = self.model.served(function)?;
         let all = &self.model.functions;

@@ -29,6 +29,7 @@
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
 
+mod calibration;
 mod check;
 mod compiled_file;
 mod error;

@@ -69,7 +69,12 @@ impl Leg {
     /// at the end's origin.
     #[must_use]
     pub fn end_jacobian(&self, q: &[f64]) -> DMatrix<f64> {
-        let frames = self.frames(q);
+        self.end_jacobian_at(&self.frames(q))
+    }
+
+    /// [`Self::end_jacobian`] where the frames of all joints are known.
+    #[must_use]
+    pub fn end_jacobian_at(&self, frames: &[Isometry3<f64>]) -> DMatrix<f64> {
         let independent: Vec<usize> = self.independent().collect();
         let mut jacobian = DMatrix::zeros(6, independent.len());
         let Some(last) = frames.last() else {

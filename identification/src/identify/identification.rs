@@ -17,6 +17,7 @@ use crate::{
         check::{Check, Grade},
         verdict::Verdict,
     },
+    calibration::Calibration,
     estimation::base::BaseParameters,
     regression::columns::ColumnSet,
     result::{CrossValidation, Estimate, RunSummary},
@@ -51,6 +52,10 @@ pub struct Identification {
     pub verdicts: Vec<Verdict>,
     /// The thresholds of the second opinion and of the conditioning.
     pub thresholds: Thresholds,
+    /// Encoder offsets and lengths with which everything was estimated, where they were calibrated from
+    /// the runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Calibration>,
     /// Table 4, where controlled runs were compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tracking: Vec<TrackingError>,

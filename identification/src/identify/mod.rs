@@ -105,6 +105,7 @@ pub fn identify(
         verdicts: verdicts(&estimates, &checks),
         checks,
         thresholds: Thresholds::default(),
+        calibration: None,
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,

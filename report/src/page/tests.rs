@@ -193,6 +193,7 @@ fn an_identification_without_anything_still_has_a_page() {
         assumptions: Vec::new(),
         verdicts: Vec::new(),
         thresholds: Thresholds::default(),
+        calibration: None,
         tracking: Vec::new(),
         settings: settings(),
         figures: Figures::default(),

@@ -1,0 +1,225 @@
+//! The equations of all samples, each freed of its pose.
+//!
+//! Sample t has n equations e_t = J_x δx_t + J_p δp, everything divided by the noise of the sensors:
+//! e_t is what the sensors show beyond what pose and parameters ask for, J_x the columns of its r
+//! coordinates, J_p those of the parameters. With J_x = Q R, the projection I - Q Qᵀ takes the pose out:
+//! n - r equations for the parameters are left of each sample, however many samples there are.
+
+use nalgebra::{DMatrix, DVector};
+use overact::Model;
+use rayon::prelude::*;
+
+use super::{
+    geometry::{Geometry, Reached},
+    samples::{Samples, difference},
+};
+
+/// The robot, its runs and what may be changed in it.
+#[derive(Clone, Copy)]
+pub(super) struct Problem<'a> {
+    pub(super) model: &'a dyn Model,
+    pub(super) geometry: &'a dyn Geometry,
+    pub(super) samples: &'a Samples,
+}
+
+/// What a calibration looks for: the parameters, and the pose of each sample.
+#[derive(Debug, Clone)]
+pub(super) struct State {
+    /// What is added to the parameters: n encoder offsets, then the geometry's.
+    pub(super) changes: Vec<f64>,
+    /// Pose of each sample.
+    pub(super) poses: Vec<f64>,
+    /// What the geometry remembers of each sample.
+    pub(super) memory: Vec<f64>,
+}
+
+/// The equations of a sample.
+#[derive(Debug, Clone)]
+pub(super) struct Eliminated {
+    /// (I - Q Qᵀ) e.
+    pub(super) residual: DVector<f64>,
+    /// (I - Q Qᵀ) J_p, n x m.
+    pub(super) columns: DMatrix<f64>,
+    /// e and J_p as they are.
+    whole: (DVector<f64>, DMatrix<f64>),
+    /// Q and R of J_x.
+    pose: (DMatrix<f64>, DMatrix<f64>),
+}
+
+impl Problem<'_> {
+    /// m, number of parameters.
+    pub(super) fn parameters(&self) -> usize {
+        self.samples.sensors + self.geometry.parameters().len()
+    }
+
+    /// The described robot at the poses that the samples were found at.
+    pub(super) fn start(&self) -> Result<State, overact::Error> {
+        let (size, kept) = (self.model.info().sizes.pose, self.geometry.memory());
+        let mut memory = vec![0.0; self.samples.count() * kept];
+        if kept > 0 {
+            let places = self.samples.poses.chunks_exact(size);
+            for (pose, memory) in places.zip(memory.chunks_exact_mut(kept)) {
+                self.geometry.remember(pose, memory)?;
+            }
+        }
+        Ok(State {
+            changes: vec![0.0; self.parameters()],
+            poses: self.samples.poses.clone(),
+            memory,
+        })
+    }
+
+    /// The equations of all samples in a state, whose memory follows its poses.
+    pub(super) fn eliminated(&self, state: &mut State) -> Result<Vec<Eliminated>, overact::Error> {
+        let (size, n) = (self.model.info().sizes.pose, self.samples.sensors);
+        let kept = self.geometry.memory();
+        let changes = &state.changes;
+        let geometry = self.geometry.changed(&changes[n..]);
+        let mut nothing: Vec<[f64; 0]> = vec![[]; self.samples.count()];
+        let memories: Vec<&mut [f64]> = match kept {
+            0 => nothing.iter_mut().map(|one| one.as_mut_slice()).collect(),
+            _ => state.memory.chunks_exact_mut(kept).collect(),
+        };
+        memories
+            .into_par_iter()
+            .zip(state.poses.par_chunks_exact(size))
+            .zip(self.samples.positions.par_chunks_exact(n))
+            .map_init(Reached::default, |reached, ((memory, pose), measured)| {
+                geometry.evaluate(pose, memory, reached)?;
+                self.sample(measured, changes, reached)
+            })
+            .collect()
+    }
+
+    /// The equations of a sample.
+    fn sample(
+        &self,
+        measured: &[f64],
+        changes: &[f64],
+        reached: &Reached,
+    ) -> Result<Eliminated, overact::Error> {
+        let info = self.model.info();
+        let (n, m) = (self.samples.sensors, self.parameters());
+        let weight = |sensor: usize| 1.0 / self.samples.noise[sensor];
+        let residual = DVector::from_fn(n, |i, _| {
+            let shown = reached.positions[i] + changes[i];
+            weight(i) * difference(measured[i], shown, info.actuator_is_revolute[i])
+        });
+        let columns = DMatrix::from_fn(n, m, |i, j| match j.checked_sub(n) {
+            Some(parameter) => weight(i) * reached.by_parameter[(i, parameter)],
+            None if i == j => weight(i),
+            None => 0.0,
+        });
+        let mut by_pose = reached.by_pose.clone();
+        for (i, mut row) in by_pose.row_iter_mut().enumerate() {
+            row *= weight(i);
+        }
+        let triangle = orthonormalised(&mut by_pose)?;
+        let q = by_pose;
+        Ok(Eliminated {
+            residual: &residual - &q * q.tr_mul(&residual),
+            columns: &columns - &q * q.tr_mul(&columns),
+            whole: (residual, columns),
+            pose: (q, triangle),
+        })
+    }
+
+    /// The state after a step of the parameters, every pose following it.
+    pub(super) fn moved(
+        &self,
+        state: &State,
+        equations: &[Eliminated],
+        step: &DVector<f64>,
+    ) -> State {
+        let mut next = state.clone();
+        for (change, step) in next.changes.iter_mut().zip(step.iter()) {
+            *change += step;
+        }
+        let size = self.model.info().sizes.pose;
+        let poses = next.poses.chunks_exact_mut(size);
+        for (pose, sample) in poses.zip(equations) {
+            let (residual, columns) = &sample.whole;
+            let (q, triangle) = &sample.pose;
+            let right = q.tr_mul(&(residual - columns * step));
+            // R is regular, or there would be no equations.
+            if let Some(step) = triangle.solve_upper_triangular(&right) {
+                self.model.displace(pose, step.as_slice());
+            }
+        }
+        next
+    }
+}
+
+/// Makes columns orthonormal by the modified Gram-Schmidt process, twice for columns that are nearly
+/// dependent, and gives R.
+fn orthonormalised(columns: &mut DMatrix<f64>) -> Result<DMatrix<f64>, overact::Error> {
+    let r = columns.ncols();
+    let mut triangle = DMatrix::zeros(r, r);
+    for k in 0..r {
+        let mut own = columns.column(k).clone_owned();
+        let size = own.norm();
+        for _ in 0..2 {
+            for before in 0..k {
+                let along = columns.column(before).dot(&own);
+                own.axpy(-along, &columns.column(before), 1.0);
+                triangle[(before, k)] += along;
+            }
+        }
+        let left = own.norm();
+        // Written so that a column that is not finite is refused, too.
+        let regular = left > SINGULAR * size;
+        if !regular {
+            return Err(overact::Error::SingularPlatform {
+                actuators: "actuators",
+                condition: size / left,
+            });
+        }
+        triangle[(k, k)] = left;
+        columns.set_column(k, &(own / left));
+    }
+    Ok(triangle)
+}
+
+/// Part of a column of J_x outside of the others below which the pose is not determined.
+const SINGULAR: f64 = 1e-10;
+
+/// The normal equations of all parameters, N δp = g, and the sum of squares of the residual.
+#[derive(Debug, Clone)]
+pub(super) struct Normal {
+    pub(super) matrix: DMatrix<f64>,
+    pub(super) right: DVector<f64>,
+    pub(super) square: f64,
+}
+
+impl Normal {
+    /// Those of the equations of all samples.
+    pub(super) fn new(equations: &[Eliminated], parameters: usize) -> Self {
+        let zero = || Self {
+            matrix: DMatrix::zeros(parameters, parameters),
+            right: DVector::zeros(parameters),
+            square: 0.0,
+        };
+        // Chunks of fixed length in their order: the same sums on every machine.
+        let parts: Vec<Self> = equations
+            .par_chunks(CHUNK)
+            .map(|samples| {
+                let mut sum = zero();
+                for one in samples {
+                    sum.matrix.gemm_tr(1.0, &one.columns, &one.columns, 1.0);
+                    sum.right.gemv_tr(1.0, &one.columns, &one.residual, 1.0);
+                    sum.square += one.residual.norm_squared();
+                }
+                sum
+            })
+            .collect();
+        parts.into_iter().fold(zero(), |mut sum, part| {
+            sum.matrix += part.matrix;
+            sum.right += part.right;
+            sum.square += part.square;
+            sum
+        })
+    }
+}
+
+/// Samples that are summed at once.
+const CHUNK: usize = 128;

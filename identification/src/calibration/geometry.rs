@@ -1,0 +1,140 @@
+//! What calibration asks of a robot: the positions of its actuators for a pose and for a geometry that
+//! may differ from the described one.
+
+use nalgebra::DMatrix;
+use overact::{Function, Model};
+use serde::Serialize;
+
+/// A length that calibration may change.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeometryParameter {
+    /// Its name, for instance `d_2_leg1`.
+    pub name: String,
+    /// What it is.
+    pub kind: ParameterKind,
+    /// Its value in the description, m.
+    pub described: f64,
+}
+
+/// What a calibrated parameter is. Where the data leave a choice of what to hold as described, what
+/// comes later in this list is held first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum ParameterKind {
+    /// What an encoder shows too much (rad, m).
+    EncoderOffset,
+    /// A length of a leg's chain: b, d or r of a joint's step (m).
+    Length,
+    /// A coordinate of the point where a leg is attached to the platform, in the platform frame (m).
+    PlatformPoint,
+    /// A coordinate of the point where a leg stands, in the base frame (m).
+    BasePoint,
+}
+
+/// What a geometry says of a place.
+#[derive(Debug, Clone, Default)]
+pub struct Reached {
+    /// Positions of the n actuators (rad, m).
+    pub positions: Vec<f64>,
+    /// J_p^inv, n x r: their derivatives along the twist coordinates.
+    pub by_pose: DMatrix<f64>,
+    /// Their derivatives by the parameters, n x parameters.
+    pub by_parameter: DMatrix<f64>,
+}
+
+/// A robot whose geometry can be changed.
+pub trait Geometry: Sync {
+    /// The lengths that can be changed.
+    fn parameters(&self) -> &[GeometryParameter];
+
+    /// How many numbers it remembers of a sample.
+    fn memory(&self) -> usize;
+
+    /// What it remembers of a sample at a pose of the described geometry.
+    ///
+    /// # Errors
+    /// A pose that the described robot does not reach.
+    fn remember(&self, pose: &[f64], memory: &mut [f64]) -> Result<(), overact::Error>;
+
+    /// The robot with so much (m) added to the described value of each parameter.
+    fn changed(&self, changes: &[f64]) -> Box<dyn ChangedGeometry + '_>;
+}
+
+/// A robot whose geometry is changed.
+pub trait ChangedGeometry: Sync {
+    /// Evaluates the positions of the actuators at a pose, and their derivatives. What is remembered of
+    /// the sample says which of several configurations is meant, and follows the pose.
+    ///
+    /// # Errors
+    /// A pose that the changed robot does not reach.
+    fn evaluate(
+        &self,
+        pose: &[f64],
+        memory: &mut [f64],
+        reached: &mut Reached,
+    ) -> Result<(), overact::Error>;
+}
+
+/// The described geometry as it is: encoder offsets are all that can be calibrated.
+#[derive(Clone, Copy)]
+pub struct DescribedGeometry<'a>(&'a dyn Model);
+
+impl std::fmt::Debug for DescribedGeometry<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("DescribedGeometry")
+            .field(&self.0.info().name)
+            .finish()
+    }
+}
+
+impl<'a> DescribedGeometry<'a> {
+    /// That of a model, compiled or interpreted.
+    #[must_use]
+    pub fn new(model: &'a dyn Model) -> Self {
+        Self(model)
+    }
+}
+
+impl Geometry for DescribedGeometry<'_> {
+    fn parameters(&self) -> &[GeometryParameter] {
+        &[]
+    }
+
+    fn memory(&self) -> usize {
+        0
+    }
+
+    fn remember(&self, _: &[f64], _: &mut [f64]) -> Result<(), overact::Error> {
+        Ok(())
+    }
+
+    fn changed(&self, _: &[f64]) -> Box<dyn ChangedGeometry + '_> {
+        Box::new(*self)
+    }
+}
+
+impl ChangedGeometry for DescribedGeometry<'_> {
+    fn evaluate(
+        &self,
+        pose: &[f64],
+        _: &mut [f64],
+        reached: &mut Reached,
+    ) -> Result<(), overact::Error> {
+        let sizes = self.0.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let mut jacobian = vec![0.0; n * r];
+        reached.positions.resize(n, 0.0);
+        let positions = &mut reached.positions;
+        self.0
+            .evaluate(Function::ActuatorPositions, &[pose], positions)
+            .and_then(|()| {
+                self.0
+                    .evaluate(Function::InverseJacobian, &[pose], &mut jacobian)
+            })
+            .map_err(|error| error.error)?;
+        reached.by_pose = DMatrix::from_row_slice(n, r, &jacobian);
+        reached.by_parameter = DMatrix::zeros(n, 0);
+        Ok(())
+    }
+}

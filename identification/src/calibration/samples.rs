@@ -1,0 +1,201 @@
+//! The samples of the runs that a calibration is made from, and the noise of their sensors.
+//!
+//! Positions are taken as they were measured, without a filter. Two thousand samples that are spread
+//! over all runs tell as much as a calibration can use: their noise is small, and what the parameters
+//! gain by more of them is less than what any real robot's geometry leaves unexplained.
+//!
+//! The noise of a sensor is told from the fourth differences of successive samples: a motion that is
+//! smooth from sample to sample leaves nothing in them, white noise of deviation σ has σ √70.
+
+use overact::{Model, math::wrap_angle};
+
+use crate::{
+    data::Log,
+    error::{Error, Problem},
+    kinematics::approach,
+};
+
+/// Samples of all runs together.
+const SAMPLES: usize = 2000;
+
+/// Time between two samples on the way of which poses are followed, s: one in which a robot moves little.
+const FOLLOWED: f64 = 0.005;
+
+/// Factors of the fourth differences, and the root of the sum of their squares.
+const DIFFERENCES: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
+const DIFFERENCES_NORM: f64 = 8.366_600_265_340_756;
+
+/// The mean magnitude of a normal variable, in deviations: √(2/π). A few jumps do not spoil it, and unlike a
+/// median it does not step with the resolution of an encoder.
+const NORMAL_MAGNITUDE: f64 = 0.797_884_560_802_865;
+
+/// The noise of a sensor counts as at least this part of the largest one: that of an encoder which
+/// stands still is not known to be zero.
+const LEAST_NOISE: f64 = 1e-3;
+
+/// Rows of differences that are kept of a run; the noise of a sensor does not change.
+const DIFFERENCED: usize = 20_000;
+
+/// Samples of runs.
+#[derive(Debug, Clone)]
+pub(super) struct Samples {
+    /// n, sensors.
+    pub(super) sensors: usize,
+    /// Positions, samples x n (rad, m).
+    pub(super) positions: Vec<f64>,
+    /// Poses that fit them best in the described geometry, samples x numbers of a pose.
+    pub(super) poses: Vec<f64>,
+    /// Number of samples of each run, in the order of the runs.
+    pub(super) of_runs: Vec<usize>,
+    /// Standard deviation of the noise of each sensor (rad, m).
+    pub(super) noise: Vec<f64>,
+}
+
+impl Samples {
+    /// Number of samples.
+    pub(super) fn count(&self) -> usize {
+        self.of_runs.iter().sum()
+    }
+
+    /// Takes samples of runs.
+    ///
+    /// # Errors
+    /// Runs that can't be read, that do not fit the robot or that leave its workspace.
+    pub(super) fn new(model: &dyn Model, runs: &[Log]) -> Result<Self, Error> {
+        let info = model.info();
+        let n = info.sizes.actuators;
+        let mut samples = Self {
+            sensors: n,
+            positions: Vec::new(),
+            poses: Vec::new(),
+            of_runs: Vec::new(),
+            noise: Vec::new(),
+        };
+        let mut differences = vec![Vec::new(); n];
+        let total: usize = runs.iter().map(Log::samples).sum();
+        let stride = (total / SAMPLES).max(1);
+        for log in runs {
+            samples.take(model, log, stride, &mut differences)?;
+        }
+        samples.noise = noise(differences, info.actuator_is_revolute);
+        Ok(samples)
+    }
+
+    /// Takes one sample in `stride` of a run.
+    fn take(
+        &mut self,
+        model: &dyn Model,
+        log: &Log,
+        stride: usize,
+        differences: &mut [Vec<f64>],
+    ) -> Result<(), Error> {
+        let n = self.sensors;
+        let mut way = Way::new(model, log, stride);
+        let mut reader = log.reader()?;
+        let mut number = 0;
+        while let Some(block) = reader.next()? {
+            for (sensor, all) in differences.iter_mut().enumerate() {
+                let left = DIFFERENCED.saturating_sub(all.len());
+                all.extend(differenced(&block.positions, n, sensor).take(left));
+            }
+            for row in block.positions.chunks_exact(n) {
+                if let Some(pose) = way.pose(number, row)? {
+                    self.positions.extend_from_slice(row);
+                    self.poses.extend_from_slice(pose);
+                }
+                number += 1;
+            }
+        }
+        self.of_runs.push(number.div_ceil(stride));
+        Ok(())
+    }
+}
+
+/// The poses along a run.
+struct Way<'a> {
+    model: &'a dyn Model,
+    log: &'a Log,
+    /// One sample in so many is taken.
+    stride: usize,
+    /// One in so many is followed.
+    followed: usize,
+    pose: Vec<f64>,
+}
+
+impl<'a> Way<'a> {
+    fn new(model: &'a dyn Model, log: &'a Log, stride: usize) -> Self {
+        let followed = (FOLLOWED * log.sampling_frequency()) as usize;
+        Self {
+            pose: model.info().home_pose.to_vec(),
+            followed: followed.max(1),
+            model,
+            log,
+            stride,
+        }
+    }
+
+    /// Follows the next sample; its pose where it is to be taken.
+    fn pose(&mut self, number: usize, row: &[f64]) -> Result<Option<&[f64]>, Error> {
+        if number == 0 {
+            approach(self.model, row, &mut self.pose);
+        }
+        let taken = number.is_multiple_of(self.stride);
+        if !taken && !number.is_multiple_of(self.followed) {
+            return Ok(None);
+        }
+        let found = self.model.pose_from_actuators(row, &mut self.pose);
+        found.map_err(|error| {
+            let time = number as f64 / self.log.sampling_frequency();
+            Problem::new(format!(
+                "sample {number} (t = {time:.4} s) is outside the workspace: {error}"
+            ))
+            .file(self.log.name())
+            .help("a calibration starts from positions and a geometry that are right to some degrees and some percent: check units, signs and the order of the columns")
+        })?;
+        Ok(taken.then_some(self.pose.as_slice()))
+    }
+}
+
+/// Magnitudes of the fourth differences of a sensor's successive positions.
+fn differenced(positions: &[f64], n: usize, sensor: usize) -> impl Iterator<Item = f64> + '_ {
+    let count = (positions.len() / n).saturating_sub(DIFFERENCES.len() - 1);
+    (0..count).map(move |first| {
+        let terms = DIFFERENCES.iter().enumerate();
+        // Differences of neighbours, so that an angle may pass a whole turn.
+        let start = positions[first * n + sensor];
+        let sum = terms.map(|(k, factor)| {
+            let step = positions[(first + k) * n + sensor] - start;
+            factor * step
+        });
+        sum.sum::<f64>().abs()
+    })
+}
+
+/// Deviations of the sensors' noise from their differences.
+fn noise(differences: Vec<Vec<f64>>, revolute: &[bool]) -> Vec<f64> {
+    let deviation = |all: Vec<f64>| {
+        let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
+        mean / (NORMAL_MAGNITUDE * DIFFERENCES_NORM)
+    };
+    let own: Vec<f64> = differences.into_iter().map(deviation).collect();
+    let floor = |kind: bool| {
+        let alike = own.iter().zip(revolute).filter(|(_, one)| **one == kind);
+        let largest = alike.map(|(own, _)| *own).fold(0.0, f64::max);
+        if largest > 0.0 {
+            LEAST_NOISE * largest
+        } else {
+            f64::EPSILON
+        }
+    };
+    let pairs = own.iter().zip(revolute);
+    pairs.map(|(own, kind)| own.max(floor(*kind))).collect()
+}
+
+/// The difference of two positions, an angle's modulo a turn.
+pub(super) fn difference(measured: f64, reached: f64, revolute: bool) -> f64 {
+    if revolute {
+        wrap_angle(measured - reached)
+    } else {
+        measured - reached
+    }
+}

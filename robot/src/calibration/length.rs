@@ -1,0 +1,126 @@
+//! The lengths of a mechanism that calibration may change.
+
+use overact_codegen::mechanism::{End, JointKind, Leg, Mechanism, Number};
+use overact_identification::{GeometryParameter, ParameterKind};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A length of a leg.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Length {
+    /// MDH b of a joint's step.
+    B(usize),
+    /// MDH d of a joint's step.
+    D(usize),
+    /// MDH r of a joint's step.
+    R(usize),
+    /// A coordinate of the point where the leg stands.
+    Base(usize),
+    /// A coordinate of the point where the leg ends on the platform.
+    End(usize),
+}
+
+/// A length of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct LegLength {
+    /// Index of the leg.
+    pub(crate) leg: usize,
+    /// Which of its lengths.
+    pub(crate) length: Length,
+}
+
+impl Length {
+    /// The value in a leg, m.
+    fn value(self, leg: &Leg) -> f64 {
+        let coordinate = |at: [Number; 3], axis: usize| at[axis].value();
+        match self {
+            Self::B(joint) => leg.joints[joint].b.value(),
+            Self::D(joint) => leg.joints[joint].d.value(),
+            Self::R(joint) => leg.joints[joint].r.value(),
+            Self::Base(axis) => coordinate(leg.base.at, axis),
+            Self::End(axis) => leg
+                .end
+                .as_ref()
+                .map_or(0.0, |end| coordinate(end.point(), axis)),
+        }
+    }
+
+    /// Adds to the value in a leg, m.
+    pub(crate) fn add(self, leg: &mut Leg, change: f64) {
+        let number = match self {
+            Self::B(joint) => &mut leg.joints[joint].b,
+            Self::D(joint) => &mut leg.joints[joint].d,
+            Self::R(joint) => &mut leg.joints[joint].r,
+            Self::Base(axis) => &mut leg.base.at[axis],
+            Self::End(axis) => match &mut leg.end {
+                Some(End::Rigid(placement)) => &mut placement.at[axis],
+                Some(End::Point { at, .. }) => &mut at[axis],
+                None => return,
+            },
+        };
+        // An unchanged length keeps the exact number that the description gives.
+        if change != 0.0 {
+            *number = Number::float(number.value() + change);
+        }
+    }
+
+    const fn kind(self) -> ParameterKind {
+        match self {
+            Self::B(_) | Self::D(_) | Self::R(_) => ParameterKind::Length,
+            Self::Base(_) => ParameterKind::BasePoint,
+            Self::End(_) => ParameterKind::PlatformPoint,
+        }
+    }
+
+    /// `d_2_leg1`, `base_x_leg1`, `end_y_leg1`.
+    fn name(self, leg: &Leg) -> String {
+        let step = |symbol: &str, joint: usize| {
+            format!("{symbol}_{}_{}", leg.joints[joint].name, leg.name)
+        };
+        match self {
+            Self::B(joint) => step("b", joint),
+            Self::D(joint) => step("d", joint),
+            Self::R(joint) => step("r", joint),
+            Self::Base(axis) => format!("base_{}_{}", AXES[axis], leg.name),
+            Self::End(axis) => format!("end_{}_{}", AXES[axis], leg.name),
+        }
+    }
+
+    /// All lengths of a leg. Those of its chain that are zero are so by design; the points where it stands
+    /// and ends may be off in any direction. The constant of a sliding joint is the offset of its position.
+    fn all(leg: &Leg) -> Vec<Self> {
+        let mut all = Vec::new();
+        for (index, joint) in leg.joints.iter().enumerate() {
+            let slides = joint.kind == JointKind::Prismatic;
+            let steps = [Self::B(index), Self::D(index), Self::R(index)];
+            let steps = steps
+                .into_iter()
+                .filter(|step| !(slides && *step == Self::R(index)));
+            all.extend(steps.filter(|step| step.value(leg) != 0.0));
+        }
+        all.extend((0..AXES.len()).map(Self::Base));
+        all.extend((0..AXES.len()).map(Self::End));
+        all
+    }
+}
+
+/// All lengths of a robot with a platform, and what the calibration knows of them. Legs of a robot without
+/// one close no loop.
+pub(crate) fn lengths(mechanism: &Mechanism) -> (Vec<LegLength>, Vec<GeometryParameter>) {
+    if mechanism.platform.is_none() {
+        return (Vec::new(), Vec::new());
+    }
+    let legs = mechanism.legs.iter().enumerate();
+    let each = legs.flat_map(|(leg, own)| {
+        let of_leg = move |length: Length| {
+            let parameter = GeometryParameter {
+                name: length.name(own),
+                kind: length.kind(),
+                described: length.value(own),
+            };
+            (LegLength { leg, length }, parameter)
+        };
+        Length::all(own).into_iter().map(of_leg)
+    });
+    each.unzip()
+}
