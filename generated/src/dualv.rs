@@ -103,8 +103,10 @@ impl DualV {
         "leg1.1", "leg1.2", "leg1.3", "leg2.1", "leg2.2", "leg2.3", "leg3.1", "leg3.2", "leg3.3",
         "leg4.1", "leg4.2", "leg4.3",
     ];
-    /// Names of the pose's numbers.
+    /// Names of the independent coordinates, in the order of the twist.
     pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
+    /// Names of the pose's numbers.
+    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
     /// Indices of the actuated joints among all joints.
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
         0, 3, 6, 9,

@@ -50,8 +50,10 @@ impl Emps {
     pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 1] = ["1"];
     /// Names of the joints, in the order of q_t.
     pub const JOINT_NAMES: [&'static ::core::primitive::str; 1] = ["1"];
+    /// Names of the independent coordinates, in the order of the twist.
+    pub const COORDINATES: [&'static ::core::primitive::str; 1] = ["1"];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static ::core::primitive::str; 1] = ["q_1"];
+    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 1] = ["q_1"];
     /// Indices of the actuated joints among all joints.
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).

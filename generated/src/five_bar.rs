@@ -86,8 +86,10 @@ impl FiveBar {
     pub const JOINT_NAMES: [&'static ::core::primitive::str; 4] = [
         "left.1", "left.2", "right.1", "right.2",
     ];
-    /// Names of the pose's numbers.
+    /// Names of the independent coordinates, in the order of the twist.
     pub const COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
+    /// Names of the pose's numbers.
+    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
     /// Indices of the actuated joints among all joints.
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 2];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).

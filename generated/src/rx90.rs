@@ -67,8 +67,12 @@ impl Rx90 {
     pub const JOINT_NAMES: [&'static ::core::primitive::str; 6] = [
         "1", "2", "3", "4", "5", "6",
     ];
-    /// Names of the pose's numbers.
+    /// Names of the independent coordinates, in the order of the twist.
     pub const COORDINATES: [&'static ::core::primitive::str; 6] = [
+        "1", "2", "3", "4", "5", "6",
+    ];
+    /// Names of the pose's numbers.
+    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 6] = [
         "q_1", "q_2", "q_3", "q_4", "q_5", "q_6",
     ];
     /// Indices of the actuated joints among all joints.

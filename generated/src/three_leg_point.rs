@@ -91,8 +91,10 @@ impl ThreeLegPoint {
     pub const JOINT_NAMES: [&'static ::core::primitive::str; 6] = [
         "leg1.1", "leg1.2", "leg2.1", "leg2.2", "leg3.1", "leg3.2",
     ];
-    /// Names of the pose's numbers.
+    /// Names of the independent coordinates, in the order of the twist.
     pub const COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
+    /// Names of the pose's numbers.
+    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
     /// Indices of the actuated joints among all joints.
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 2, 4];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).

@@ -126,7 +126,8 @@ pub struct Info<'a> {
     pub actuated_joints: &'a [usize],
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
     pub actuator_is_revolute: &'a [bool],
-    /// Names of the independent platform coordinates.
+    /// Names of the independent coordinates, in the order of the twist: `x`, `y`, `z`, `rx`, `ry`, `rz` of a
+    /// free platform, whose pose has seven numbers.
     pub coordinates: &'a [&'a str],
     /// Standard parameters whose column is not identically zero, in column order.
     pub parameters: &'a [Parameter],

@@ -60,7 +60,12 @@ pub fn items(model: &RobotModel) -> TokenStream {
         ),
         (
             "COORDINATES",
-            coordinates(model),
+            mechanism.coordinates(),
+            " Names of the independent coordinates, in the order of the twist.",
+        ),
+        (
+            "POSE_COORDINATES",
+            mechanism.pose_coordinates(),
             " Names of the pose's numbers.",
         ),
     ];
@@ -92,24 +97,6 @@ pub fn items(model: &RobotModel) -> TokenStream {
         #home
         #(#tables)*
         #base
-    }
-}
-
-fn coordinates(model: &RobotModel) -> Vec<String> {
-    match &model.mechanism.platform {
-        Some(platform) => platform
-            .motion
-            .pose_coordinates()
-            .iter()
-            .map(ToString::to_string)
-            .collect(),
-        None => {
-            let joints = model.mechanism.joints();
-            joints
-                .iter()
-                .map(|&j| format!("q_{}", model.mechanism.joint_name(j)))
-                .collect()
-        }
     }
 }
 

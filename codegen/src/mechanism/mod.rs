@@ -210,6 +210,38 @@ impl Mechanism {
         self.named_actuators().usual().map(str::to_owned).collect()
     }
 
+    /// Names of the independent coordinates, in the order of the twist: the platform's, or the joints of
+    /// a robot without one.
+    #[must_use]
+    pub fn coordinates(&self) -> Vec<String> {
+        match &self.platform {
+            Some(platform) => {
+                let names = platform.motion.coordinates();
+                names.into_iter().map(str::to_owned).collect()
+            }
+            None => self.joints().iter().map(|&j| self.joint_name(j)).collect(),
+        }
+    }
+
+    /// Names of the pose's numbers, a quaternion's `qw`, `qx`, `qy`, `qz` among them: the platform's, or the
+    /// joints' positions of a robot without one.
+    #[must_use]
+    pub fn pose_coordinates(&self) -> Vec<String> {
+        match &self.platform {
+            Some(platform) => {
+                let names = platform.motion.pose_coordinates();
+                names.into_iter().map(str::to_owned).collect()
+            }
+            None => {
+                let joints = self.joints();
+                joints
+                    .iter()
+                    .map(|&j| format!("q_{}", self.joint_name(j)))
+                    .collect()
+            }
+        }
+    }
+
     /// Name of a leg's standard parameter: `zz_2_leg3`, or `zz_2` in a robot of one leg without a
     /// platform.
     #[must_use]

@@ -23,13 +23,7 @@ impl Names {
         let joints = mechanism.joints();
         let actuated_joints = mechanism.actuated();
         let is_revolute = |&at: &usize| mechanism.joint(joints[at]).kind == JointKind::Revolute;
-        let coordinates = match &mechanism.platform {
-            Some(platform) => platform.motion.coordinates(),
-            None => joints
-                .iter()
-                .map(|&at| leaked(mechanism.joint_name(at)))
-                .collect(),
-        };
+        let coordinates = mechanism.coordinates().into_iter().map(leaked).collect();
         Self {
             name: leaked(mechanism.name.clone()),
             sizes: Sizes {

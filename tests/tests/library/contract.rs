@@ -47,6 +47,7 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
         backends: backends(compiled, &interpreted),
         has_quaternion,
     };
+    contract.check_info();
     for (function, is_offered) in offered {
         contract.check(function, is_offered, &all)?;
     }
@@ -81,6 +82,23 @@ struct Contract<'a> {
 }
 
 impl Contract<'_> {
+    /// Every backend says the same about its robot.
+    fn check_info(&self) {
+        let mut said = self
+            .backends
+            .iter()
+            .map(|(name, model)| (name, format!("{:#?}", model.info())));
+        let first = said.next();
+        for (name, info) in said {
+            let (other, expected) = first.as_ref().expect("there is a first backend");
+            assert_eq!(
+                &info, expected,
+                "{}: what {name} and {other} say",
+                self.stem
+            );
+        }
+    }
+
     /// Everything about one function.
     fn check(&self, function: Function, is_offered: bool, all: &[Sample]) -> Result<(), Failure> {
         let (rows, columns) = function.shape(&self.sizes);
