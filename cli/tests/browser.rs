@@ -1,9 +1,11 @@
 //! The report in a browser: every figure is there, with something in it, at desktop and phone width, in
-//! light and dark, nothing runs over the edge, and texts stand out from what is behind them.
+//! light and dark, no table runs over the edge, neither there nor on paper, and texts stand out from what
+//! is behind them.
 //!
-//! The browser is `OVERACT_CHROMIUM`, or a Chromium or Chrome of the PATH; without one the test is skipped
-//! with a message. The report stands in a frame of the wanted width, because a window can't be as narrow
-//! as a phone.
+//! The browser is `OVERACT_CHROMIUM`, or a Chromium or Chrome of the PATH; without one the tests are
+//! skipped with a message. The report stands in a frame of the wanted width, because a window can't be as
+//! narrow as a phone. Paper is looked at twice: as a frame of its width under the rules for print, and as a
+//! PDF, whose text `pdftotext` reads where it is installed.
 
 mod common;
 
@@ -12,7 +14,7 @@ use serde_json::Value;
 use std::{
     env, fs,
     path::{Path, PathBuf},
-    process::Command,
+    process::{Command, Output},
 };
 
 /// The figures that the report of a redundant, virtual robot has, each with words of its plots or of its
@@ -52,9 +54,10 @@ addEventListener('load', () => {
         drawn: p.tagName == 'IMG' ? p.naturalWidth : [...p.querySelectorAll('.line path, .line circle, .bar path')].length }; });
     figures[e.id] = { width: box.width, height: box.height, right: box.right, plots, text: e.textContent.toLowerCase() };
   }
-  const wide = [...document.querySelectorAll('body *')].filter(e => !e.closest('.scroll') && !e.closest('svg') && e.getBoundingClientRect().right > innerWidth + 1).map(e => e.tagName + '.' + e.className + ' ' + e.textContent.trim().slice(0, 40));
+  const cut = [...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.scrollWidth - e.clientWidth + ' px of ' + e.getAttribute('aria-label'));
+  const wide = [...document.querySelectorAll('body *')].filter(e => !e.closest('svg, thead') && e.getBoundingClientRect().right > innerWidth + 1).map(e => e.tagName + '.' + e.className + ' ' + e.textContent.trim().slice(0, 40));
   parent.postMessage({ width: innerWidth, dark: matchMedia('(prefers-color-scheme: dark)').matches,
-    overflow: document.documentElement.scrollWidth - innerWidth, wide: wide.slice(0, 5), figures,
+    overflow: document.documentElement.scrollWidth - innerWidth, wide: wide.slice(0, 5), cut, figures,
     text: least(texts, 'color'), marks: least(marks, 'fill'), lines: least(lines, 'stroke') }, '*');
 });
 </script></body>"#;
@@ -77,11 +80,39 @@ fn browser() -> Option<PathBuf> {
     found
 }
 
-/// The browser's view of a page of the bench, at a width and in a colour scheme: what the probe tells.
-/// With `OVERACT_SCREENSHOTS`, the view is kept in that folder.
-fn view(browser: &Path, bench: &Bench, width: u32, dark: bool) -> Value {
-    let report = bench.read("report.html").replace("</body>", PROBE);
-    bench.write("probed.html", &report);
+/// Width of an A4 sheet between margins of 12 mm, in pixels of 1/96 inch.
+const PAPER: u32 = 703;
+
+/// Runs the browser on a file of the bench.
+fn browse(browser: &Path, bench: &Bench, file: &str, tasks: &[String]) -> Output {
+    Command::new(browser)
+        .args([
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-quic",
+            "--no-first-run",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+            "--hide-scrollbars",
+            "--allow-file-access-from-files",
+            "--virtual-time-budget=20000",
+        ])
+        .arg(format!(
+            "--user-data-dir={}",
+            bench.path("profile").display()
+        ))
+        .args(tasks)
+        .arg(format!("file://{}", bench.path(file).display()))
+        .output()
+        .expect("the browser")
+}
+
+/// The browser's view of a page, at a width and in a colour scheme: what the probe tells. With
+/// `OVERACT_SCREENSHOTS`, the view is kept in that folder.
+fn view(browser: &Path, bench: &Bench, page: &str, width: u32, dark: bool) -> Value {
+    bench.write("probed.html", &page.replace("</body>", PROBE));
     let frame = format!(
         "<!DOCTYPE html><html><body style=\"margin:0\"><pre id=\"told\" hidden></pre>\
          <iframe src=\"probed.html\" style=\"border:0;width:{width}px;height:9000px\"></iframe>\
@@ -89,42 +120,21 @@ fn view(browser: &Path, bench: &Bench, width: u32, dark: bool) -> Value {
          </body></html>"
     );
     bench.write("frame.html", &frame);
-    let scheme = if dark { "dark" } else { "light" };
-    let run = |task: &[String]| {
-        Command::new(browser)
-            .args([
-                "--headless",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--disable-quic",
-                "--no-first-run",
-                "--disable-background-networking",
-                "--disable-component-update",
-                "--disable-sync",
-                "--hide-scrollbars",
-                "--allow-file-access-from-files",
-                "--virtual-time-budget=20000",
-            ])
-            .arg(format!(
-                "--user-data-dir={}",
-                bench.path("profile").display()
-            ))
+    let run = |task: String| {
+        let tasks = [
             // 0 is dark and 1 is light.
-            .arg(format!(
-                "--blink-settings=preferredColorScheme={}",
-                u8::from(!dark)
-            ))
-            .arg(format!("--window-size={},9000", width.max(600)))
-            .args(task)
-            .arg(format!("file://{}", bench.path("frame.html").display()))
-            .output()
-            .expect("the browser")
+            format!("--blink-settings=preferredColorScheme={}", u8::from(!dark)),
+            format!("--window-size={},9000", width.max(600)),
+            task,
+        ];
+        browse(browser, bench, "frame.html", &tasks)
     };
     if let Some(folder) = env::var_os("OVERACT_SCREENSHOTS") {
+        let scheme = if dark { "dark" } else { "light" };
         let file = Path::new(&folder).join(format!("{width}-{scheme}.png"));
-        run(&[format!("--screenshot={}", file.display())]);
+        run(format!("--screenshot={}", file.display()));
     }
-    let output = run(&["--dump-dom".to_owned()]);
+    let output = run("--dump-dom".to_owned());
     let dom = String::from_utf8_lossy(&output.stdout).into_owned();
     let told = dom.split_once("hidden=\"\">").map(|(_, rest)| rest);
     let told = told.and_then(|rest| rest.split_once("</pre>"));
@@ -143,11 +153,8 @@ fn view(browser: &Path, bench: &Bench, width: u32, dark: bool) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error} in `{text}`"))
 }
 
-#[test]
-fn the_report_has_every_figure_at_every_width_and_in_both_colour_schemes() {
-    let Some(browser) = browser() else {
-        return;
-    };
+/// A bench with the report of a short virtual experiment of the DualV, beside published results.
+fn reported() -> (Bench, String) {
     let bench = Bench::new();
     let text = fs::read_to_string(robot("dualv.toml")).expect("the description");
     bench.write(
@@ -162,24 +169,97 @@ fn the_report_has_every_figure_at_every_width_and_in_both_colour_schemes() {
         &published,
         "--report",
         "report.html",
+        "--report",
+        "report.json",
     ]);
+    let page = bench.read("report.html");
+    (bench, page)
+}
+
+/// Nothing is wider than the page, no table is cut, and texts and lines can be told from what is behind
+/// them.
+fn assert_fits(place: &str, seen: &Value) {
+    let overflow = number(&seen["overflow"]);
+    assert!(overflow <= 0.0, "{place}: {overflow} px: {}", seen["wide"]);
+    assert_eq!(list(&seen["wide"]), [Value::Null; 0], "{place}");
+    assert_eq!(list(&seen["cut"]), [Value::Null; 0], "{place}");
+    for (what, least) in [("text", 4.5), ("marks", 4.5), ("lines", 3.0)] {
+        let found = list(&seen[what]);
+        assert!(number(&found[0]) >= least, "{place}: {what}: {found:?}");
+    }
+}
+
+#[test]
+fn the_report_has_every_figure_at_every_width_and_in_both_colour_schemes() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let (bench, page) = reported();
     for (width, dark) in [(1280, false), (1280, true), (390, false), (390, true)] {
-        let seen = view(&browser, &bench, width, dark);
+        let seen = view(&browser, &bench, &page, width, dark);
         let place = format!("{width} px, {}", if dark { "dark" } else { "light" });
         assert_eq!(seen["width"], width, "{place}");
         assert_eq!(seen["dark"], dark, "{place}");
-        let overflow = number(&seen["overflow"]);
-        assert!(overflow <= 0.0, "{place}: {overflow} px: {}", seen["wide"]);
-        assert_eq!(list(&seen["wide"]), [Value::Null; 0], "{place}");
-        for (what, least) in [("text", 4.5), ("marks", 4.5), ("lines", 3.0)] {
-            let found = list(&seen[what]);
-            assert!(number(&found[0]) >= least, "{place}: {what}: {found:?}");
-        }
+        assert_fits(&place, &seen);
         for (id, words) in FIGURES {
             let figure = &seen["figures"][id];
             assert!(figure.is_object(), "{place}: {id} is missing");
             assert_figure(&format!("{place}: {id}"), figure, words, f64::from(width));
         }
+    }
+}
+
+#[test]
+fn paper_shows_every_column_and_what_is_closed_on_the_screen() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let (bench, page) = reported();
+    let printed = page
+        .replace("@media screen", "@media speech")
+        .replace("@media print", "@media all");
+    assert_ne!(printed, page);
+    assert_fits("paper", &view(&browser, &bench, &printed, PAPER, true));
+
+    let file = bench.path("report.pdf");
+    let task = format!("--print-to-pdf={}", file.display());
+    browse(
+        &browser,
+        &bench,
+        "report.html",
+        &[task, "--no-pdf-header-footer".to_owned()],
+    );
+    let read = Command::new("pdftotext")
+        .arg("-layout")
+        .arg(&file)
+        .arg("-")
+        .output();
+    let Ok(read) = read else {
+        println!("skipped: no pdftotext to read the printed report with");
+        return;
+    };
+    let text = String::from_utf8_lossy(&read.stdout).replace('\u{a0}', " ");
+    for title in [
+        "Case 1",
+        "Case 2",
+        "95 % interval",
+        "published",
+        "difference",
+    ] {
+        assert!(text.contains(title), "`{title}` is not in {text}");
+    }
+    // All base parameters, which stand in what is closed on the screen, with both of their intervals.
+    let document: Value = serde_json::from_str(&bench.read("report.json")).expect("a document");
+    let mut estimates = list(&document["estimates"]).iter();
+    let base = estimates.find(|one| one["model"] == "actuators" && one["stage"] == "base");
+    for parameter in list(&base.expect("case 2")["parameters"]) {
+        let name = parameter["name"].as_str().expect("a name");
+        let mut lines = text.lines();
+        let whole = |line: &&str| {
+            let mut words = line.split_whitespace();
+            words.next() == Some(name) && line.matches('…').count() == 2
+        };
+        assert!(lines.any(|line| whole(&line)), "{name} in {text}");
     }
 }
 

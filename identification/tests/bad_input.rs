@@ -260,5 +260,5 @@ fn experiments_are_checked() {
     // At rest only the offset has a column, and it explains torques of zero.
     let result = identify(&PAIR, &dataset, &settings(), &|_| {}).expect("an estimate");
     assert!(result.warnings.iter().any(|warning| warning
-        == "model platform: `m_platformR` is not identifiable: its column is zero on these data"));
+        == "case 1: `m_platformR` is not identifiable: its column is zero on these data"));
 }

@@ -6,7 +6,11 @@ use overact_identification::{
     CrossValidation, Estimate, Identification, ModelKind, Stage, significant,
 };
 
-use super::{published::Published, terminal::table};
+use super::{
+    choice::{answers, of_stage},
+    published::Published,
+    terminal::table,
+};
 
 /// The tables; empty where there is nothing to compare.
 #[must_use]
@@ -51,15 +55,14 @@ const fn case(model: ModelKind) -> &'static str {
     }
 }
 
-/// The last stage of each model.
-fn finals(identification: &Identification) -> Vec<&Estimate> {
-    let all = &identification.estimates;
-    let has_later = |one: &Estimate| {
-        let mut others = all.iter();
-        one.stage != Stage::Essential
-            && others.any(|other| other.model == one.model && other.stage == Stage::Essential)
-    };
-    all.iter().filter(|one| !has_later(one)).collect()
+/// What published results are compared with: the parameters that the rule of r_σ leaves, as theirs are.
+fn comparable(identification: &Identification) -> Vec<&Estimate> {
+    let essential = of_stage(identification, Stage::Essential);
+    if essential.is_empty() {
+        answers(identification)
+    } else {
+        essential
+    }
 }
 
 /// Table 2: every parameter that a published estimate has, or an own one.
@@ -68,7 +71,7 @@ fn parameters(
     published: &Published,
 ) -> (Vec<String>, Vec<Vec<String>>) {
     let mut header = vec![String::from("parameter")];
-    let estimates = finals(identification);
+    let estimates = comparable(identification);
     let mut names: Vec<&str> = Vec::new();
     for estimate in &estimates {
         let case = case(estimate.model);
@@ -92,11 +95,9 @@ fn parameters(
         for estimate in &estimates {
             let own = estimate.parameters.iter().find(|one| one.name == **name);
             row.push(own.map_or_else(nothing, |one| significant(one.value, 4)));
+            // By (47), as published ones are.
             row.push(own.map_or_else(nothing, |one| {
-                significant(
-                    100.0 * one.correlated_standard_deviation / one.value.abs(),
-                    3,
-                )
+                significant(one.relative_standard_deviation_percent, 3)
             }));
             let other = published.estimate(estimate.model);
             let other = other.and_then(|one| one.parameters.get(*name));
@@ -120,7 +121,7 @@ fn torques(
     identification: &Identification,
     published: Option<&Published>,
 ) -> (Vec<String>, Vec<Vec<String>>) {
-    let stages = finals(identification);
+    let stages = comparable(identification);
     let shown = |one: &&CrossValidation| {
         stages
             .iter()

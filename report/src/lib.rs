@@ -6,7 +6,9 @@
 //! own in [`page()`]; the plots' axes and lines are in the module `plot`.
 
 pub mod beside;
+mod choice;
 mod escape;
+mod intervals;
 pub mod numbers;
 pub mod page;
 mod plot;

@@ -98,6 +98,9 @@ fn add_estimate<'a>(rows: &mut Rows<'a>, estimate: &'a Estimate) {
         );
         rows.add(table, name, "relative_standard_deviation_percent", relative);
         rows.add(table, name, "correlated_standard_deviation", correlated);
+        let [low, high] = parameter.interval_95;
+        rows.add(table, name, "interval_95_low", low);
+        rows.add(table, name, "interval_95_high", high);
         rows.add_known(table, name, "true_value", parameter.true_value);
         rows.add_known(table, name, "error_percent", parameter.error_percent);
     }

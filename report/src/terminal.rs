@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use crate::intervals::{half_width_percent, is_outside};
 use overact_identification::{
-    BaseParameter, CrossValidation, Estimate, Identification, LineError, ModelKind, Regrouping,
-    Verdict, significant,
+    BaseParameter, CrossValidation, Estimate, Identification, LineError, ModelKind,
+    ParameterEstimate, Regrouping, Verdict, significant,
 };
 
 /// Largest denominator of a fraction that a coefficient is printed as.
@@ -168,7 +169,7 @@ pub fn estimate(estimate: &Estimate) -> String {
     if truth {
         header.push("true value");
     }
-    header.extend(["estimate", "% sigma", "% correlated"]);
+    header.extend(["estimate", "95 % interval", "+-%"]);
     if truth {
         header.push("error %");
     }
@@ -182,14 +183,8 @@ pub fn estimate(estimate: &Estimate) -> String {
             row.push(optional(parameter.true_value, 6));
         }
         row.push(significant(parameter.value, 7));
-        row.push(significant(
-            parameter.relative_standard_deviation_percent,
-            4,
-        ));
-        row.push(significant(
-            100.0 * parameter.correlated_standard_deviation / parameter.value.abs(),
-            4,
-        ));
+        row.push(interval(parameter));
+        row.push(optional(half_width_percent(parameter), 3));
         if truth {
             row.push(optional(parameter.error_percent, 3));
         }
@@ -197,8 +192,18 @@ pub fn estimate(estimate: &Estimate) -> String {
         row
     });
     text.push_str(&table(&header, rows.collect()));
+    if estimate.parameters.iter().any(is_outside) {
+        text.push_str("* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it\n");
+    }
     text.push_str(&quality(estimate));
     text
+}
+
+/// The interval of a parameter, marked where the estimate lies outside of it.
+fn interval(parameter: &ParameterEstimate) -> String {
+    let [low, high] = parameter.interval_95;
+    let mark = if is_outside(parameter) { " *" } else { "" };
+    format!("{} .. {}{mark}", significant(low, 5), significant(high, 5))
 }
 
 /// Errors, condition and the path of the elimination of an estimate.

@@ -226,10 +226,10 @@ fn on_data(
     let places: Vec<usize> = (0..base.columns.len()).collect();
     let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
     let name = |place: usize| base.names.get(place).map_or("", String::as_str);
-    let label = system.projection.model();
+    let label = system.projection.model().case();
     for &column in &found.zero {
         warnings.push(format!(
-            "model {label}: `{}` is not identifiable: its column is zero on these data",
+            "{label}: `{}` is not identifiable: its column is zero on these data",
             name(column)
         ));
     }
@@ -239,7 +239,7 @@ fn on_data(
             .map(|(kept, _)| format!("`{}`", name(*kept)))
             .collect();
         warnings.push(format!(
-            "model {label}: `{}` is not identifiable: on these data its column is a combination of those of {}",
+            "{label}: `{}` is not identifiable: on these data its column is a combination of those of {}",
             name(*column),
             others.join(", ")
         ));
@@ -261,20 +261,20 @@ fn on_data(
 
 /// What is wrong with a system, its estimate or its elimination.
 fn quality_warnings(system: &System, base: &Estimation, removals: &[Removal]) -> Vec<String> {
-    let label = system.projection.model();
+    let label = system.projection.model().case();
     let mut warnings = Vec::new();
     if let Some(partition) = &system.partition
         && partition.largest > LARGEST_PARTITION_CONDITION
         && matches!(system.projection, Projection::Actuators(_))
     {
         warnings.push(format!(
-            "model {label}: the condition number of the kept actuators reaches {:.1} ({}, t = {:.3} s), above {LARGEST_PARTITION_CONDITION}; keep other actuators or trust the platform model",
+            "{label}: the condition number of the kept actuators reaches {:.1} ({}, t = {:.3} s), above {LARGEST_PARTITION_CONDITION}; keep other actuators or trust case 1",
             partition.largest, partition.run, partition.time
         ));
     }
     if base.relative_error_percent > LARGEST_RELATIVE_ERROR_PERCENT {
         warnings.push(format!(
-            "model {label}: the relative error is {:.0} %: the model does not explain the torques; check signs, units and gains",
+            "{label}: the relative error is {:.0} %: the model does not explain the torques; check signs, units and gains",
             base.relative_error_percent
         ));
     }
@@ -288,7 +288,7 @@ fn quality_warnings(system: &System, base: &Estimation, removals: &[Removal]) ->
         .collect();
     if !significant.is_empty() {
         warnings.push(format!(
-            "model {label}: the elimination cancelled parameters that the data determine ({}); raise `r_sigma`, take the recommended parameters, or leave out the essential ones with `essential = false`",
+            "{label}: the elimination cancelled parameters that the data determine ({}); raise `r_sigma`, take the recommended parameters, or leave out the essential ones with `essential = false`",
             significant.join(", ")
         ));
     }

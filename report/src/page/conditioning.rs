@@ -1,11 +1,12 @@
-//! The conditioning: of the whole system, and along the way of each run.
+//! The conditioning: of the systems of equations, and of the actuators along the way of each run.
 
 use super::{
     Contents,
-    markup::{Cell, Section, Table, figure, key, paragraph},
-    select::case_heading,
+    markup::{Section, figure, key, paragraph},
+    table::{Cell, Table},
 };
 use crate::{
+    choice::{case_heading, projection, stage_name},
     escape::escape,
     plot::{Axis, Chart, Line, Look, Rule},
 };
@@ -26,7 +27,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         .map(|run| chart(run, identification.thresholds.partition_condition))
         .collect();
     if !plots.is_empty() {
-        let caption = "Condition number of the actuators’ Jacobian along each run, platform coordinates scaled to be comparable. Case 2 rests on the kept actuators alone: where its line rises above the dashed threshold, the kept actuators hardly determine the platform, and case 2 amplifies noise.";
+        let caption = "Condition number of the actuators’ Jacobian along each run, the platform’s coordinates scaled to be comparable. Case 2 rests on the kept actuators alone: where its line rises above the dashed limit, they hardly determine the platform’s motion, and case 2 amplifies noise.";
         let keys = [
             ("first", "all actuators (case 1)"),
             ("second", "kept actuators (case 2)"),
@@ -55,25 +56,31 @@ fn table(identification: &Identification) -> String {
             .filter(|_| one.model == ModelKind::Actuators);
         vec![
             Cell::text(case_heading(one.model)),
-            Cell::text(one.stage.name()),
+            Cell::text(stage_name(one.stage)),
+            Cell::text(&projection(one)),
             Cell::number(one.parameters.len().to_string()),
-            Cell::digits(Some(one.condition_number), 4),
-            Cell::digits(partition.map(|partition| partition.largest), 4),
+            Cell::number(one.equations.to_string()),
+            Cell::digits(Some(one.relative_error_percent), 3),
+            Cell::digits(Some(one.condition_number), 3),
+            Cell::digits(partition.map(|partition| partition.largest), 3),
             Cell::text(&partition.map_or_else(String::new, |partition| {
-                format!("{}, t = {:.3} s", partition.run, partition.time)
+                format!("{}, {:.3} s", partition.run, partition.time)
             })),
         ]
     });
     let titles = [
+        ("case", ""),
         ("model", ""),
-        ("stage", ""),
+        ("explains", ""),
         ("parameters", "n"),
-        ("condition of W", "n"),
-        ("worst condition of the kept actuators", "n"),
+        ("equations", "n"),
+        ("relative error (%)", "n"),
+        ("condition number", "n"),
+        ("kept actuators at worst", "n"),
         ("where", ""),
     ];
     Table {
-        caption: String::from("Condition numbers"),
+        caption: String::from("The systems of equations and their condition numbers"),
         header: vec![
             titles
                 .iter()
@@ -109,10 +116,7 @@ fn chart(run: &RunFigures, threshold: f64) -> String {
         x: Axis::linear("t (s)"),
         y: Axis::logarithmic("condition number").including(&[1.0]),
         lines: lines.collect(),
-        rules: vec![Rule {
-            value: threshold,
-            label: format!("threshold {threshold}"),
-        }],
+        rules: vec![Rule::horizontal(threshold, format!("limit {threshold}"))],
     }
     .svg()
 }

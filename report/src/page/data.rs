@@ -5,7 +5,8 @@ use std::fmt::Write;
 use super::{
     Contents,
     header::base64,
-    markup::{Cell, Section, Table, paragraph},
+    markup::{Section, paragraph},
+    table::{Cell, Table},
 };
 
 use crate::escape::escape;
@@ -122,7 +123,7 @@ fn settings(settings: &Settings) -> String {
         header: vec![vec![Cell::text("setting"), Cell::text("value")]],
         rows: rows
             .into_iter()
-            .map(|(name, value)| vec![Cell::text(name), Cell::text(&value).class("prose")])
+            .map(|(name, value)| vec![Cell::text(name), Cell::prose(&value)])
             .collect(),
     }
     .html()

@@ -1,81 +1,109 @@
-//! The way from the base parameters to the essential ones, and why it ended where it did.
+//! The way from the base parameters to smaller models: where the recommended one stops, and where the
+//! rule of r_σ does.
 
 use std::fmt::Write;
 
 use super::{
     Contents,
-    markup::{Cell, Section, Table, details, figure, key, paragraph},
-    select::{case_heading, finals},
+    markup::{Section, details, figure, key, paragraph},
+    table::{Cell, Table},
 };
 use crate::{
+    choice::{case_heading, of, of_stage},
     escape::escape,
     plot::{Axis, Chart, Line, Look, Rule},
 };
-use overact_identification::{Estimate, Removal, significant};
+use overact_identification::{Estimate, Identification, Removal, Stage, significant};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
-    let settings = &contents.identification.settings;
+    let identification = contents.identification;
     let mut body = String::new();
-    for estimate in finals(contents.identification) {
+    for estimate in of_stage(identification, Stage::Essential) {
         if estimate.removals.is_empty() && estimate.stop.is_none() {
             continue;
         }
+        let recommended = of(identification, estimate.model, Stage::Recommended);
         let _ = writeln!(body, "<h3>{}</h3>", case_heading(estimate.model));
-        body.push_str(&paragraph(&told(estimate)));
+        body.push_str(&paragraph(&told(estimate, recommended)));
         if !estimate.removals.is_empty() {
-            body.push_str(&path(estimate, settings.r_sigma));
-            body.push_str(&details("Every step", &steps(estimate)));
+            body.push_str(&path(identification, estimate, recommended));
+            body.push_str(&details(
+                &format!("{}: every step", case_heading(estimate.model)),
+                &steps(estimate),
+            ));
         }
     }
     if !body.is_empty() {
-        let introduction = "Base parameters of the largest relative deviation are cancelled one after the other, until the largest deviation is less than r_σ times the smallest one. That rule alone can walk past the right model, so every step is also judged by a test of significance and by data that were held out.";
+        let introduction = "Parameters are cancelled one after the other, each time the one of the largest relative standard deviation. The recommended model is the last one on this way that the data do not refute; the r_σ rule goes on until the deviations are alike.";
         body = paragraph(introduction) + &body;
     }
     Section {
         id: "elimination",
-        title: "How the essential parameters were found",
+        title: "How the smaller models were found",
         body,
     }
 }
 
 /// The way in words.
-fn told(estimate: &Estimate) -> String {
-    let taken = estimate.removals.iter().filter(|one| one.accepted).count();
-    let mut text = format!(
-        "{taken} parameter{} cancelled, {} left.",
-        if taken == 1 { " was" } else { "s were" },
-        estimate.parameters.len()
-    );
-    if let Some(stop) = estimate.stop.as_deref().filter(|stop| !stop.is_empty()) {
+fn told(estimate: &Estimate, recommended: Option<&Estimate>) -> String {
+    let mut text = String::new();
+    if let Some(one) = recommended {
         let _ = write!(
             text,
-            " The elimination ended because {}.",
-            stop_reason(stop)
+            "The recommended model has {} parameters{}. ",
+            one.parameters.len(),
+            because(one)
         );
     }
+    let taken = estimate.removals.iter().filter(|one| one.accepted).count();
+    let _ = write!(
+        text,
+        "The r_σ rule cancels {taken} and leaves {}{}.",
+        estimate.parameters.len(),
+        because(estimate)
+    );
     text
 }
 
-/// The reason as a clause.
-fn stop_reason(stop: &str) -> String {
-    stop.trim_end_matches('.').to_owned()
+/// Why no more was cancelled, as a clause.
+fn because(estimate: &Estimate) -> String {
+    let stop = estimate.stop.as_deref().unwrap_or_default();
+    match stop.trim_end_matches('.') {
+        "" => String::new(),
+        stop => format!(" and ends there because {stop}"),
+    }
 }
 
 /// The plots of the way: errors, and the rule of the stop.
-fn path(estimate: &Estimate, r_sigma: f64) -> String {
-    let errors = errors(estimate);
+fn path(
+    identification: &Identification,
+    estimate: &Estimate,
+    recommended: Option<&Estimate>,
+) -> String {
+    let base = of(identification, estimate.model, Stage::Base);
+    let end = recommended
+        .zip(base)
+        .map(|(one, base)| base.parameters.len().saturating_sub(one.parameters.len()));
+    let errors = errors(estimate, end);
     let mut entries = vec![("first", "runs identified from")];
     if errors.lines.len() > 1 {
         entries.push(("second", "held-out parts"));
     }
-    let caption = "Left: the error hardly changes while needless parameters go, and jumps when one goes that is needed. Right: the rule of the stop; the way ends below the dashed line, or earlier where the second opinion refuses a step.";
+    let r_sigma = identification.settings.r_sigma;
+    let caption = "Left: the relative error hardly changes while needless parameters go, and grows from the first one that the data need: there the recommended model stops. Right: the ratio that the r_σ rule looks at; it ends below the dashed line.";
     figure(
         &format!("figure-elimination-{}", estimate.model),
-        &[errors.svg(), ratio(estimate, r_sigma).svg()],
+        &[errors.svg(), ratio(estimate, r_sigma, end).svg()],
         &key(&entries),
         &escape(caption),
     )
+}
+
+/// Where the recommended model stands on the way.
+fn mark(end: Option<usize>) -> Vec<Rule> {
+    let mark = end.map(|end| Rule::vertical(end as f64, "recommended"));
+    mark.into_iter().collect()
 }
 
 /// The axis of both plots.
@@ -85,7 +113,7 @@ fn cancelled() -> Axis {
 
 /// The relative errors along the way, on the runs identified from and, where there are any, on
 /// held-out parts.
-fn errors(estimate: &Estimate) -> Chart {
+fn errors(estimate: &Estimate, end: Option<usize>) -> Chart {
     let own = "on the runs identified from";
     let own = errors_line(&estimate.removals, own, Look::First, |one| {
         (
@@ -104,14 +132,14 @@ fn errors(estimate: &Estimate) -> Chart {
         title: String::from("Relative error"),
         description: format!("{case}: relative error after each cancelled parameter"),
         x: cancelled(),
-        y: Axis::linear("%"),
+        y: Axis::logarithmic("%"),
         lines,
-        rules: Vec::new(),
+        rules: mark(end),
     }
 }
 
 /// The ratio of the largest to the smallest relative deviation along the way, with the rule of the stop.
-fn ratio(estimate: &Estimate, r_sigma: f64) -> Chart {
+fn ratio(estimate: &Estimate, r_sigma: f64, end: Option<usize>) -> Chart {
     let removals = &estimate.removals;
     let steps: Vec<f64> = (0..removals.len()).map(|step| step as f64).collect();
     let ratios: Vec<f64> = removals.iter().map(|one| one.deviation_ratio).collect();
@@ -132,10 +160,14 @@ fn ratio(estimate: &Estimate, r_sigma: f64) -> Chart {
         x: cancelled(),
         y: Axis::logarithmic(""),
         lines: vec![line.with_dots()],
-        rules: vec![Rule {
-            value: r_sigma,
-            label: format!("r_σ = {}", significant(r_sigma, 3)),
-        }],
+        rules: [
+            vec![Rule::horizontal(
+                r_sigma,
+                format!("r_σ = {}", significant(r_sigma, 3)),
+            )],
+            mark(end),
+        ]
+        .concat(),
     }
 }
 
@@ -176,34 +208,35 @@ fn steps(estimate: &Estimate) -> String {
             Cell::digits(Some(one.relative_standard_deviation_percent), 3),
             Cell::digits(Some(one.deviation_ratio), 3),
             Cell::digits(Some(one.f_statistic), 3),
-            Cell::digits(Some(one.relative_error_before_percent), 5),
-            Cell::digits(Some(one.relative_error_after_percent), 5),
-            Cell::digits(one.held_out_before_percent, 5),
-            Cell::digits(one.held_out_after_percent, 5),
+            Cell::digits(Some(one.relative_error_after_percent), 4),
+            Cell::digits(one.held_out_after_percent, 4),
             drift(one),
             Cell::text(if one.accepted { "cancelled" } else { "kept" }),
-            Cell::text(&one.reason).class("prose"),
+            Cell::prose(&one.reason),
         ]
     });
     let titles = [
-        "parameter",
-        "% σ",
-        "max/min",
-        "F",
-        "error % before",
-        "after",
-        "held out % before",
-        "after",
-        "moves most",
-        "step",
-        "why",
+        ("parameter", ""),
+        ("% σ", "n"),
+        ("largest by smallest % σ", "n"),
+        ("F", "n"),
+        ("error after (%)", "n"),
+        ("held-out error after (%)", "n"),
+        ("moves most", ""),
+        ("step", ""),
+        ("why", ""),
     ];
     Table {
         caption: format!(
-            "{}: the steps of the elimination",
+            "{}: the steps of the r_σ rule",
             case_heading(estimate.model)
         ),
-        header: vec![titles.iter().map(|title| Cell::text(title)).collect()],
+        header: vec![
+            titles
+                .iter()
+                .map(|(title, class)| Cell::text(title).class(class))
+                .collect(),
+        ],
         rows: rows.collect(),
     }
     .html()

@@ -2,13 +2,12 @@
 
 use std::fmt::Write;
 
-use super::{
-    Contents,
-    markup::paragraph,
-    select::{case_heading, finals},
+use super::{Contents, markup::paragraph};
+use crate::{
+    choice::{answers, case_heading, stage_name},
+    escape::escape,
 };
-use crate::escape::escape;
-use overact_identification::significant;
+use overact_identification::{Stage, significant};
 
 /// The head of the page.
 pub(super) fn header(contents: &Contents<'_>) -> String {
@@ -47,10 +46,14 @@ fn facts(contents: &Contents<'_>) -> String {
     let identification = contents.identification;
     let base = identification.base_parameters.len();
     let mut html = String::from("<dl class=\"facts\">\n");
-    for estimate in finals(identification) {
+    for estimate in answers(identification) {
+        let what = match estimate.stage {
+            Stage::Base => String::from("base parameters"),
+            stage => format!("{} of {base} base parameters", stage_name(stage)),
+        };
         let _ = writeln!(
             html,
-            "<div><dt>{}</dt><dd><b>{}</b> of {base} base parameters, relative error <b>{} %</b></dd></div>",
+            "<div><dt>{}</dt><dd><b>{}</b> {what}, relative error <b>{} %</b></dd></div>",
             case_heading(estimate.model),
             estimate.parameters.len(),
             escape(&significant(estimate.relative_error_percent, 3))

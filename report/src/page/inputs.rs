@@ -4,9 +4,10 @@
 use super::{
     Contents,
     markup::{Section, details, figure, key},
-    select::{case_heading, durations, finals, is_final, relative_error, worst_part},
+    select::{durations, relative_error, worst_part},
 };
 use crate::{
+    choice::{answers, case_heading, is_answer, stage_name},
     escape::escape,
     plot::{Axis, Chart, Line, Look},
     units::Units,
@@ -18,7 +19,7 @@ use overact_identification::{PredictionFigures, Series, significant};
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut body = String::new();
-    for estimate in finals(identification) {
+    for estimate in answers(identification) {
         let all: Vec<&PredictionFigures> = identification
             .figures
             .predictions
@@ -47,7 +48,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
     Section {
         id: "inputs",
-        title: "Measured and predicted inputs",
+        title: "Measured and predicted torques, projected",
         body,
     }
 }
@@ -57,8 +58,9 @@ pub(super) fn torques(contents: &Contents<'_>) -> String {
     let identification = contents.identification;
     let all = || {
         let predictions = identification.figures.predictions.iter();
-        predictions
-            .filter(|one| !one.torques.is_empty() && is_final(identification, one.model, one.stage))
+        predictions.filter(|one| {
+            !one.torques.is_empty() && is_answer(identification, one.model, one.stage)
+        })
     };
     let held_out = all().filter(|one| !one.identified);
     let mut ordered: Vec<&PredictionFigures> = held_out.collect();
@@ -69,7 +71,12 @@ pub(super) fn torques(contents: &Contents<'_>) -> String {
     for (index, one) in ordered.iter().enumerate() {
         let id = format!("figure-torques-{}", index + 1);
         let figure = compared(&id, one, &one.torques, "τ", contents.units);
-        let heading = format!("{}, parameters of {}", one.run, one.model.case());
+        let heading = format!(
+            "{}, {} of {}",
+            one.run,
+            stage_name(one.stage),
+            one.model.case()
+        );
         // The first model's runs are shown, all others on demand.
         if ordered
             .first()

@@ -1,49 +1,52 @@
-//! What is not identifiable, and why.
+//! What was not identified, and why.
 
 use super::{
     Contents,
-    markup::{Cell, Section, Table, paragraph},
-    select::{case_heading, finals},
+    markup::{Section, paragraph},
+    table::{Cell, Table},
 };
-use overact_identification::{Identification, Stage};
+use crate::{
+    choice::{answers, case_heading, of, of_stage},
+    intervals::{excludes_zero, half_width_percent},
+};
+use overact_identification::{Estimate, Identification, Stage, significant};
+
+/// Why, and which parameters.
+type Row = (String, String);
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
-    let mut rows = Vec::new();
-    structural(identification, &mut rows);
-    on_the_data(identification, &mut rows);
-    cancelled(identification, &mut rows);
+    let mut rows = structural(identification);
+    rows.extend(on_the_data(identification));
+    rows.extend(not_needed(identification));
+    rows.extend(cancelled_by_rule(identification));
     let body = if rows.is_empty() {
         paragraph("Every standard parameter of the robot was identified by itself.")
     } else {
-        let introduction = "Some parameters do not show in the torques at all, some show only in sums, and some show too little in these data.";
+        let introduction = "Some parameters do not show in the torques of any motion, some only in sums with others, and some not in these runs.";
         let table = Table {
-            caption: String::from("Parameters that were not identified"),
+            caption: String::from("Parameters that were not identified by themselves"),
             header: vec![vec![Cell::text("why"), Cell::text("which")]],
             rows: rows
                 .into_iter()
-                .map(|(why, which)| {
-                    vec![
-                        Cell::text(&why).class("prose"),
-                        Cell::text(&which).class("prose"),
-                    ]
-                })
+                .map(|(why, which)| vec![Cell::prose(&why), Cell::prose(&which)])
                 .collect(),
         };
         paragraph(introduction) + &table.html()
     };
     Section {
         id: "limits",
-        title: "What is not identifiable, and why",
+        title: "What was not identified, and why",
         body,
     }
 }
 
 /// What no data can tell.
-fn structural(identification: &Identification, rows: &mut Vec<(String, String)>) {
+fn structural(identification: &Identification) -> Vec<Row> {
+    let mut rows = Vec::new();
     if !identification.without_effect.is_empty() {
-        let why = "No effect on the torques, whatever the motion: the robot can’t move in a way that would show them";
+        let why = "No effect on the torques, whatever the motion: the robot can’t move in a way that would show them.";
         rows.push((why.to_owned(), identification.without_effect.join(", ")));
     }
     let mut regrouped: Vec<&str> = Vec::new();
@@ -57,48 +60,71 @@ fn structural(identification: &Identification, rows: &mut Vec<(String, String)>)
         }
     }
     if !regrouped.is_empty() {
-        let why = "Only in sums with others: the structure of the robot makes their columns combinations of others (see the regroupings)";
+        let why =
+            "Only in sums with others, whatever the motion: see what the base parameters are.";
         rows.push((why.to_owned(), regrouped.join(", ")));
     }
+    rows
 }
 
 /// Base parameters that these data do not tell apart: they are missing in the base estimate.
-fn on_the_data(identification: &Identification, rows: &mut Vec<(String, String)>) {
-    for estimate in &identification.estimates {
-        if estimate.stage != Stage::Base {
-            continue;
-        }
-        let missing: Vec<&str> = identification
-            .base_parameters
-            .iter()
-            .map(|base| base.name.as_str())
-            .filter(|name| estimate.parameters.iter().all(|one| one.name != *name))
-            .collect();
-        if !missing.is_empty() {
-            rows.push((
-                format!(
-                    "{}: on these data their columns are zero or combinations of others (see the warnings); runs that move the robot in other ways would show them",
-                    case_heading(estimate.model)
-                ),
-                missing.join(", "),
-            ));
-        }
-    }
+fn on_the_data(identification: &Identification) -> Vec<Row> {
+    let missing = |estimate: &Estimate| {
+        let base = identification.base_parameters.iter();
+        let names = base.map(|base| base.name.as_str());
+        names_without(names, estimate).join(", ")
+    };
+    let why = "In these runs their effect is zero or a combination of others’ (see the warnings). Runs that move the robot in other ways would show them.";
+    let base = of_stage(identification, Stage::Base);
+    for_each(&base, why, missing)
 }
 
-/// Base parameters that the elimination cancelled.
-fn cancelled(identification: &Identification, rows: &mut Vec<(String, String)>) {
-    for estimate in finals(identification) {
-        let taken = estimate.removals.iter().filter(|removal| removal.accepted);
-        let names: Vec<&str> = taken.map(|removal| removal.name.as_str()).collect();
-        if !names.is_empty() {
-            rows.push((
-                format!(
-                    "{}: too small an effect on the torques of these runs, so they were cancelled and count as zero",
-                    case_heading(estimate.model)
-                ),
-                names.join(", "),
-            ));
-        }
-    }
+/// What the data do not need: base parameters that are not recommended.
+fn not_needed(identification: &Identification) -> Vec<Row> {
+    let cancelled = |estimate: &Estimate| {
+        of(identification, estimate.model, Stage::Base).map_or_else(String::new, |base| {
+            let names = base.parameters.iter().map(|one| one.name.as_str());
+            names_without(names, estimate).join(", ")
+        })
+    };
+    let why = "Count as zero in the recommended model: these runs do not refute that all of them are zero together. Their estimates and intervals stand among all base parameters.";
+    for_each(
+        &of_stage(identification, Stage::Recommended),
+        why,
+        cancelled,
+    )
+}
+
+/// What the rule of r_σ cancels although the data determine it.
+fn cancelled_by_rule(identification: &Identification) -> Vec<Row> {
+    let cancelled = |essential: &Estimate| {
+        let answers = answers(identification);
+        let answer = answers.iter().find(|one| one.model == essential.model);
+        let parameters = answer.iter().flat_map(|one| &one.parameters);
+        let gone = parameters.filter(|one| {
+            let mut left = essential.parameters.iter();
+            excludes_zero(one) && !left.any(|other| other.name == one.name)
+        });
+        let named = gone.map(|one| match half_width_percent(one) {
+            Some(percent) => format!("{} (± {} %)", one.name, significant(percent, 2)),
+            None => one.name.clone(),
+        });
+        named.collect::<Vec<_>>().join(", ")
+    };
+    let why = "Cancelled by the r_σ rule alone. The data determine them: their 95 % intervals exclude zero, and half their widths are given in parentheses. The recommended model keeps them.";
+    for_each(&of_stage(identification, Stage::Essential), why, cancelled)
+}
+
+/// One row for each model of which there is something to tell.
+fn for_each(estimates: &[&Estimate], why: &str, which: impl Fn(&Estimate) -> String) -> Vec<Row> {
+    let rows = estimates
+        .iter()
+        .map(|one| (format!("{}. {why}", case_heading(one.model)), which(one)));
+    rows.filter(|(_, which)| !which.is_empty()).collect()
+}
+
+/// The names that are not among an estimate's parameters.
+fn names_without<'a>(names: impl Iterator<Item = &'a str>, estimate: &Estimate) -> Vec<&'a str> {
+    let is_there = |name: &&str| estimate.parameters.iter().any(|one| one.name == *name);
+    names.filter(|name| !is_there(name)).collect()
 }

@@ -1,120 +1,8 @@
-//! Pieces of the page: escaped text, tables, figures, sections. All of it is XML, too, so that a test
-//! can parse it.
-
-use std::fmt::Write;
+//! Pieces of the page: escaped text, figures, sections, numbers with their intervals. All of it is XML,
+//! too, so that a test can parse it.
 
 use crate::{escape::escape, plot::power_of_ten};
 use overact_identification::significant;
-
-/// A cell of a table.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Cell {
-    html: String,
-    class: &'static str,
-    span: usize,
-}
-
-impl Cell {
-    /// A text.
-    pub(super) fn text(text: &str) -> Self {
-        Self::markup(escape(text))
-    }
-
-    /// A piece of markup.
-    pub(super) const fn markup(html: String) -> Self {
-        Self {
-            html,
-            class: "",
-            span: 1,
-        }
-    }
-
-    /// A number, aligned to the right.
-    pub(super) fn number(text: impl AsRef<str>) -> Self {
-        Self::text(&text.as_ref().replace('-', "−")).class("n")
-    }
-
-    /// A number with so many digits; a dash where there is none.
-    pub(super) fn digits(value: Option<f64>, digits: usize) -> Self {
-        match value {
-            Some(value) => Self::number(significant(value, digits)),
-            None => Self::nothing(),
-        }
-    }
-
-    /// Where there is no value.
-    pub(super) fn nothing() -> Self {
-        Self::text("–").class("n none")
-    }
-
-    /// The same cell with another class.
-    pub(super) const fn class(mut self, class: &'static str) -> Self {
-        self.class = class;
-        self
-    }
-
-    /// The same cell over several columns.
-    pub(super) const fn over(mut self, columns: usize) -> Self {
-        self.span = columns;
-        self
-    }
-
-    fn element(&self, name: &str, scope: &str) -> String {
-        let mut tag = format!("<{name}");
-        if !scope.is_empty() {
-            let _ = write!(tag, " scope=\"{scope}\"");
-        }
-        if !self.class.is_empty() {
-            let _ = write!(tag, " class=\"{}\"", self.class);
-        }
-        if self.span > 1 {
-            let _ = write!(tag, " colspan=\"{}\"", self.span);
-        }
-        format!("{tag}>{}</{name}>", self.html)
-    }
-}
-
-/// A table with headers.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Table {
-    /// What it shows; the name by which assistive technology finds it.
-    pub(super) caption: String,
-    /// Header rows; cells over several columns head a group.
-    pub(super) header: Vec<Vec<Cell>>,
-    /// Rows; the first cell of each is its header.
-    pub(super) rows: Vec<Vec<Cell>>,
-}
-
-impl Table {
-    /// The table in a region that scrolls by itself where the screen is narrow.
-    pub(super) fn html(&self) -> String {
-        let caption = escape(&self.caption);
-        let mut html = format!(
-            "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{caption}\"><table><caption>{caption}</caption><thead>"
-        );
-        for row in &self.header {
-            let cell = |cell: &Cell| {
-                let scope = if cell.span > 1 { "colgroup" } else { "col" };
-                cell.element("th", scope)
-            };
-            let _ = write!(
-                html,
-                "<tr>{}</tr>",
-                row.iter().map(cell).collect::<String>()
-            );
-        }
-        html.push_str("</thead><tbody>");
-        for row in &self.rows {
-            let cells = row.iter().enumerate().map(|(column, cell)| match column {
-                0 => cell.element("th", "row"),
-                _ => cell.element("td", ""),
-            });
-            let _ = write!(html, "<tr>{}</tr>", cells.collect::<String>());
-        }
-        html.push_str("</tbody></table></div>\n");
-        html
-    }
-}
 
 /// Plots side by side with one caption; `key` explains the lines and is empty where they explain
 /// themselves.
@@ -131,9 +19,12 @@ pub(super) fn figure(id: &str, plots: &[String], key: &str, caption: &str) -> St
 }
 
 /// The key of a figure: classes of lines and their names.
-pub(super) fn key(entries: &[(&str, &str)]) -> String {
-    let entry = |(class, name): &(&str, &str)| {
-        format!("<li><i class=\"swatch {class}\"></i>{}</li>", escape(name))
+pub(super) fn key<Name: AsRef<str>>(entries: &[(&str, Name)]) -> String {
+    let entry = |(class, name): &(&str, Name)| {
+        format!(
+            "<li><i class=\"swatch {class}\"></i>{}</li>",
+            escape(name.as_ref())
+        )
     };
     format!(
         "<ul class=\"key\">{}</ul>",
@@ -166,9 +57,33 @@ impl Section {
     }
 }
 
+/// A text as markup, in which what stands between backticks is code, and a number keeps its percent
+/// sign beside it.
+pub(super) fn prose(text: &str) -> String {
+    let text = text.replace(" %", "\u{a0}%");
+    let mut html = String::with_capacity(text.len());
+    let mut rest = text.as_str();
+    while let Some((before, after)) = rest.split_once('`') {
+        let Some((code, after)) = after.split_once('`') else {
+            break;
+        };
+        html.push_str(&escape(before));
+        html.push_str("<code>");
+        html.push_str(&escape(code));
+        html.push_str("</code>");
+        rest = after;
+    }
+    html + &escape(rest)
+}
+
 /// A paragraph of text.
 pub(super) fn paragraph(text: &str) -> String {
-    format!("<p>{}</p>\n", escape(text))
+    format!("<p>{}</p>\n", prose(text))
+}
+
+/// A note below a table or a figure.
+pub(super) fn note(text: &str) -> String {
+    format!("<p class=\"note\">{}</p>\n", prose(text))
 }
 
 /// What opens on demand.
@@ -179,16 +94,26 @@ pub(super) fn details(summary: &str, body: &str) -> String {
     )
 }
 
-/// A value with its deviation, rounded where the deviation says: `0.04464 ± 0.00007`.
-pub(super) fn with_deviation(value: f64, deviation: f64) -> String {
-    let certain = value.is_finite() && deviation.is_finite() && deviation > 0.0;
-    if !certain {
-        return significant(value, 5).replace('-', "−");
+/// The first letter large.
+pub(super) fn capital(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(characters).collect()
+    })
+}
+
+/// A value and the interval of the truth, both rounded where the width of the interval says:
+/// `0.044641` and `0.044570 … 0.044712`. The interval is none where it is not known.
+pub(super) fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, Option<String>) {
+    let half = 0.5 * (high - low);
+    let known = value.is_finite() && half.is_finite() && half > 0.0;
+    if !known {
+        return (significant(value, 5).replace('-', "−"), None);
     }
-    let size = value.abs().max(deviation);
+    let size = value.abs().max(low.abs()).max(high.abs());
     let exponent = size.log10().floor() as i32;
-    // Two digits of the deviation, no more than eight of the value.
-    let last = (deviation.log10().floor() as i32 - 1).max(exponent - 7);
+    // Two digits of half the width, no more than eight of the value.
+    let last = (half.log10().floor() as i32 - 1).max(exponent - 7);
     let fixed = (-4..6).contains(&exponent) && last <= 0;
     let (scale, decimals) = if fixed {
         (1.0, -last)
@@ -196,19 +121,19 @@ pub(super) fn with_deviation(value: f64, deviation: f64) -> String {
         (10_f64.powi(exponent), exponent - last)
     };
     let decimals = usize::try_from(decimals).unwrap_or(0);
-    let (value, deviation) = (value / scale, deviation / scale);
-    let text = format!("{value:.decimals$} ± {deviation:.decimals$}");
-    let text = if fixed {
-        text
-    } else {
-        format!("({text})·{}", power_of_ten(&exponent.to_string()))
-    };
-    text.replace('-', "−")
+    let digits = |value: f64| format!("{:.decimals$}", value / scale).replace('-', "−");
+    let interval = format!("{} … {}", digits(low), digits(high));
+    if fixed {
+        return (digits(value), Some(interval));
+    }
+    let power = power_of_ten(&exponent.to_string());
+    let interval = format!("({interval})·{power}");
+    (format!("{}·{power}", digits(value)), Some(interval))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Cell, Table, with_deviation};
+    use super::{prose, with_interval};
     use crate::escape::escape;
 
     #[test]
@@ -220,39 +145,38 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_rounded_by_its_deviation() {
+    fn backticks_are_code_where_they_come_in_pairs() {
         assert_eq!(
-            with_deviation(0.044_641_2, 0.000_072),
-            "0.044641 ± 0.000072"
+            prose("set `a<b` or `c`"),
+            "set <code>a&lt;b</code> or <code>c</code>"
         );
-        assert_eq!(with_deviation(-5.417_766, 0.002_98), "−5.4178 ± 0.0030");
-        assert_eq!(with_deviation(1.234e-6, 5.1e-8), "(1.234 ± 0.051)·10⁻⁶");
-        assert_eq!(with_deviation(12.0, 300.0), "(0.1 ± 3.0)·10²");
-        assert_eq!(with_deviation(1.5, 0.0), "1.5");
-        assert_eq!(with_deviation(f64::NAN, 1.0), "undefined");
+        assert_eq!(
+            prose("a ` alone, `b` & c"),
+            "a <code> alone, </code>b` &amp; c"
+        );
+        assert_eq!(prose("5` <"), "5` &lt;");
     }
 
     #[test]
-    fn a_table_has_headers_and_escapes() {
-        let table = Table {
-            caption: String::from("a < b"),
-            header: vec![vec![Cell::text("name"), Cell::text("values").over(2)]],
-            rows: vec![vec![
-                Cell::text("<x>"),
-                Cell::digits(Some(-1.5), 3),
-                Cell::nothing(),
-            ]],
+    fn a_value_is_rounded_by_its_interval() {
+        let both = |value, interval| {
+            let (value, interval) = with_interval(value, interval);
+            format!("{value} in {}", interval.unwrap_or_default())
         };
-        let html = table.html();
-        let document = roxmltree::Document::parse(&html).expect("XML");
-        let scopes: Vec<_> = document
-            .descendants()
-            .filter_map(|node| node.attribute("scope"))
-            .collect();
-        assert_eq!(scopes, ["col", "colgroup", "row"]);
-        assert!(
-            html.contains("&lt;x&gt;") && html.contains("−1.5"),
-            "{html}"
+        assert_eq!(
+            both(0.044_641_2, [0.044_57, 0.044_712]),
+            "0.044641 in 0.044570 … 0.044712"
         );
+        assert_eq!(
+            both(-5.417_766, [-5.4237, -5.4118]),
+            "−5.4178 in −5.4237 … −5.4118"
+        );
+        assert_eq!(
+            both(1.234e-6, [1.13e-6, 1.336e-6]),
+            "1.23·10⁻⁶ in (1.13 … 1.34)·10⁻⁶"
+        );
+        assert_eq!(both(12.0, [-588.0, 612.0]), "0.1·10² in (−5.9 … 6.1)·10²");
+        assert_eq!(both(1.5, [1.5, 1.5]), "1.5 in ");
+        assert_eq!(both(f64::NAN, [0.0, 1.0]), "undefined in ");
     }
 }

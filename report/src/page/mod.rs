@@ -2,9 +2,9 @@
 //! what the data could not tell.
 //!
 //! The verdict stands first, the parameters follow, and every plot says below what to look for in it.
-//! Each section is a file: `verdict`, `parameters`, `limits`, `elimination`, `conditioning`,
-//! `inputs`, `validation`, `tracking`, `trajectories`, `residuals`, `data`. Sections that
-//! have nothing to show are left out.
+//! Each section is a file: `verdict`, `parameters`, `limits`, `validation`, `inputs`, `residuals`,
+//! `elimination`, `conditioning`, `trajectories`, `tracking`, `data`. Sections that have nothing to
+//! show are left out.
 
 mod conditioning;
 mod data;
@@ -16,6 +16,7 @@ pub(super) mod markup;
 mod parameters;
 mod residuals;
 mod select;
+mod table;
 #[cfg(test)]
 mod tests;
 mod tracking;
@@ -73,13 +74,13 @@ pub fn page(contents: &Contents<'_>) -> String {
         verdict::section(contents),
         parameters::section(contents),
         limits::section(contents),
+        validation::section(contents),
+        inputs::section(contents),
+        residuals::section(contents),
         elimination::section(contents),
         conditioning::section(contents),
-        inputs::section(contents),
-        validation::section(contents),
-        tracking::section(contents),
         trajectories::section(contents),
-        residuals::section(contents),
+        tracking::section(contents),
         data::section(contents),
         data::files(contents),
     ]
@@ -97,8 +98,8 @@ pub fn page(contents: &Contents<'_>) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
          <meta name=\"color-scheme\" content=\"light dark\"/>\n\
          <meta name=\"generator\" content=\"overact {}\"/>\n\
-         <title>Identification of {robot}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
-         {}<nav aria-label=\"Sections\"><ul>{links}</ul></nav>\n{body}</main>\n</body>\n</html>\n",
+         <title>Identification of {robot}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         {}<div class=\"columns\">\n<nav aria-label=\"Sections\"><ul>{links}</ul></nav>\n<main>\n{body}</main>\n</div>\n</body>\n</html>\n",
         env!("CARGO_PKG_VERSION"),
         header::header(contents)
     )

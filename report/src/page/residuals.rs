@@ -3,9 +3,10 @@
 use super::{
     Contents,
     markup::{Section, details, figure, paragraph},
-    select::{case_heading, is_final, look},
+    select::look,
 };
 use crate::{
+    choice::{case_heading, is_answer, stage_name},
     escape::escape,
     plot::{Axis, Chart, Line, Look, Rule},
     units::Units,
@@ -21,14 +22,10 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut body = String::new();
     let all = identification.figures.residuals.iter();
-    let shown = all.filter(|one| is_final(identification, one.model, one.stage));
+    let shown = all.filter(|one| is_answer(identification, one.model, one.stage));
     for (index, one) in shown.enumerate() {
         let figure = residuals(one, contents.units);
-        let heading = format!(
-            "{}: {} parameters",
-            case_heading(one.model),
-            one.stage.name()
-        );
+        let heading = format!("{}: {}", case_heading(one.model), stage_name(one.stage));
         if index == 0 {
             body.push_str(&format!("<h3>{}</h3>\n{figure}", escape(&heading)));
         } else {
@@ -36,7 +33,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         }
     }
     if !body.is_empty() {
-        let introduction = "A residual of noise alone is white: no correlation over time, the same power at all frequencies. What is left beside noise shows here: friction that the model has not, ripple of the drives, flexibility. White deviations are then too small, and the correlated ones are the honest ones.";
+        let introduction = "What is left of the measured torques when the prediction is taken away. A residual of noise alone is white: no correlation over time, the same power at all frequencies. What the model lacks shows here: other friction, ripple of the drives, flexibility. The intervals of the parameters allow for the correlation.";
         body = paragraph(introduction) + &body;
     }
     Section {
@@ -77,8 +74,8 @@ fn residuals(one: &ResidualFigures, units: &Units) -> String {
         })
         .collect();
     let caption = format!(
-        "For each line of Γ: the residual of the run in which it is largest; its autocorrelation, which lies between the dashed lines for 95 % of all lags if the residual is white; its power spectral density. Of {}: {}.",
-        one.model.case(),
+        "For each coordinate: the residual of the run in which it is largest; its autocorrelation, which lies between the dashed lines for 95 % of all lags if the residual is white; its power spectral density. {}: {}.",
+        case_heading(one.model),
         colours.join(", ")
     );
     figure(
@@ -137,10 +134,6 @@ fn autocorrelation(one: &ResidualFigures, line: &LineResidual) -> Option<String>
     let lags: Vec<f64> = (0..line.autocorrelation.len())
         .map(|lag| lag as f64 * line.lag_s)
         .collect();
-    let rule = |value: f64, label: &str| Rule {
-        value,
-        label: label.to_owned(),
-    };
     Some(
         Chart {
             title: format!("{}: autocorrelation", line.name),
@@ -154,8 +147,8 @@ fn autocorrelation(one: &ResidualFigures, line: &LineResidual) -> Option<String>
                 &line.autocorrelation,
             )],
             rules: vec![
-                rule(line.white_bound, "95 % of white noise"),
-                rule(-line.white_bound, ""),
+                Rule::horizontal(line.white_bound, "95 % of white noise"),
+                Rule::horizontal(-line.white_bound, ""),
             ],
         }
         .svg(),

@@ -1,51 +1,12 @@
-//! What several sections choose alike: the estimates that count, names in words, parts of series.
+//! What several sections choose alike: the look of a model, parts of series.
 
 use std::ops::Range;
 
 use crate::plot::Look;
-use overact_identification::{Estimate, Identification, ModelKind, Series, Stage};
+use overact_identification::{ModelKind, Series};
 
 /// Points of a series that a plot can show without becoming a blot.
 const READABLE: usize = 300;
-
-/// The last estimate of each model: the essential one, or the base one where there is no other.
-pub(super) fn finals(identification: &Identification) -> Vec<&Estimate> {
-    let mut finals: Vec<&Estimate> = Vec::new();
-    for estimate in &identification.estimates {
-        match finals.iter_mut().find(|one| one.model == estimate.model) {
-            Some(one) => *one = estimate,
-            None => finals.push(estimate),
-        }
-    }
-    finals
-}
-
-/// Whether an estimate is the last one of its model.
-pub(super) fn is_final(identification: &Identification, model: ModelKind, stage: Stage) -> bool {
-    finals(identification)
-        .iter()
-        .any(|one| one.model == model && one.stage == stage)
-}
-
-/// The case at the beginning of a sentence.
-pub(super) const fn case_heading(model: ModelKind) -> &'static str {
-    match model {
-        ModelKind::Platform => "Case 1",
-        ModelKind::Actuators => "Case 2",
-        ModelKind::Joints => "Joint model",
-    }
-}
-
-/// What a model does with the inputs.
-pub(super) fn projection(estimate: &Estimate) -> String {
-    match estimate.model {
-        ModelKind::Platform => String::from("inputs projected on the platform"),
-        ModelKind::Actuators => {
-            format!("inputs projected on {}", estimate.kept_actuators.join(", "))
-        }
-        ModelKind::Joints => String::from("inputs of all joints"),
-    }
-}
 
 /// The look of a model's lines.
 pub(super) const fn look(model: ModelKind) -> Look {

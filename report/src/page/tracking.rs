@@ -1,12 +1,10 @@
 //! Tracking errors of several controllers on the same runs: Table 4.
 
-use std::fmt::Write;
-
 use super::{
     Contents,
-    markup::{Cell, Section, Table, paragraph},
+    markup::{Section, note, paragraph},
+    table::{Cell, Table},
 };
-use crate::escape::escape;
 
 /// Tracking errors of one controller on one run.
 struct Entry<'a> {
@@ -22,7 +20,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     let mut body = String::new();
     if let Some(first) = tracking.first() {
         body.push_str(&paragraph(
-            "The largest difference between desired and measured position of each actuator. A computed torque with the identified parameters should leave much less of it than the plain controller; the percentages say how much less.",
+            "The largest difference between desired and measured position of each actuator, in simulation. Computed torques with the parameters by the r_σ rule should leave much less of it than the plain controller; the percentages say how much less.",
         ));
         body.push_str(&table(contents, &first.actuators));
     }
@@ -79,11 +77,10 @@ fn table(contents: &Contents<'_>, actuators: &[String]) -> String {
     }
     .html();
     if let Some(all) = published.filter(|all| !all.tracking.is_empty()) {
-        let _ = writeln!(
-            html,
-            "<p class=\"note\">Published: {}.</p>",
-            escape(all.source.trim_end_matches('.'))
-        );
+        html.push_str(&note(&format!(
+            "Published: {}.",
+            all.source.trim_end_matches('.')
+        )));
     }
     html
 }

@@ -1,4 +1,4 @@
-//! The platform's way in every run: Fig. 7 of the paper.
+//! The motion of every run: Fig. 7 of the paper.
 
 use super::{
     Contents,
@@ -28,66 +28,101 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         let (id, what) = if identified {
             (
                 "figure-trajectories",
-                "The runs identified from. They should use the whole workspace, turn the platform as well as move it, and accelerate: what does not accelerate shows no inertia.",
+                "The runs identified from. They should use the whole workspace, turn the platform as well as move it, and accelerate: where nothing accelerates, no inertia shows.",
             )
         } else {
             (
                 "figure-trajectories-held-out",
-                "The runs for the cross-validation. They should differ from those identified from.",
+                "The held-out runs. They should differ from those identified from.",
             )
         };
-        body.push_str(&figure(id, &plots, &keys(runs), &escape(what)));
+        body.push_str(&figure(
+            id,
+            &plots,
+            &keys(runs, contents.units),
+            &escape(what),
+        ));
     }
     Section {
         id: "trajectories",
-        title: "Trajectories",
+        title: "Motion of the runs",
         body,
     }
 }
 
-/// The key: coordinates of one unit share a plot, and their order there gives their look.
-fn keys(runs: &[RunFigures]) -> String {
-    let most = runs.iter().map(|run| run.coordinates.len()).max();
-    let names = [
-        ("first", "first"),
-        ("second", "second"),
-        ("third", "third"),
-        ("fourth", "others"),
-    ];
-    let shown = most.unwrap_or(0).min(names.len());
-    if shown < 2 {
+/// The key: which coordinates have which look.
+fn keys(runs: &[RunFigures], units: &Units) -> String {
+    let Some(run) = runs.first() else {
         return String::new();
+    };
+    let mut named: Vec<(Look, Vec<&str>)> = Vec::new();
+    for chart in groups(run, units) {
+        for (order, index) in chart.members.iter().enumerate() {
+            let (look, name) = (Look::nth(order), run.coordinates[*index].as_str());
+            match named.iter_mut().find(|(own, _)| *own == look) {
+                Some((_, names)) => names.push(name),
+                None => named.push((look, vec![name])),
+            }
+        }
     }
-    key(&names
+    let entries: Vec<(&str, String)> = named
         .iter()
-        .take(shown)
-        .map(|(class, name)| (*class, *name))
-        .collect::<Vec<_>>())
+        .map(|(look, names)| (look.class(), names.join(", ")))
+        .collect();
+    key(&entries)
+}
+
+/// Coordinates that share a plot.
+struct Group {
+    unit: &'static str,
+    members: Vec<usize>,
+}
+
+/// The coordinates of a run in groups of one unit, none larger than there are looks.
+fn groups(run: &RunFigures, units: &Units) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for (index, name) in run.coordinates.iter().enumerate() {
+        let unit = units.position(name);
+        match groups.iter_mut().find(|group| group.unit == unit) {
+            Some(group) => group.members.push(index),
+            None => groups.push(Group {
+                unit,
+                members: vec![index],
+            }),
+        }
+    }
+    let parts = groups.into_iter().flat_map(|group| {
+        let charts = group.members.len().div_ceil(Look::EQUALS);
+        let size = group.members.len().div_ceil(charts);
+        let parts = group.members.chunks(size).map(<[usize]>::to_vec);
+        let parts: Vec<Vec<usize>> = parts.collect();
+        parts.into_iter().map(move |members| Group {
+            unit: group.unit,
+            members,
+        })
+    });
+    parts.collect()
 }
 
 /// The plots of one run: coordinates of the same unit together.
 fn charts(run: &RunFigures, units: &Units) -> Vec<String> {
-    let mut groups: Vec<(&str, Vec<usize>)> = Vec::new();
-    for (index, name) in run.coordinates.iter().enumerate() {
-        let unit = units.position(name);
-        match groups.iter_mut().find(|group| group.0 == unit) {
-            Some(group) => group.1.push(index),
-            None => groups.push((unit, vec![index])),
-        }
-    }
     let payload = if run.payload { ", with payload" } else { "" };
-    let charts = groups.into_iter().map(|(unit, members)| {
+    let charts = groups(run, units).into_iter().map(|group| {
         let name = |index: usize| run.coordinates.get(index).map_or("", String::as_str);
-        let names: Vec<&str> = members.iter().map(|index| name(*index)).collect();
-        let lines = members.iter().enumerate().filter_map(|(order, index)| {
-            let values = run.pose.get(*index)?;
-            Some(Line::new(Look::nth(order), name(*index), &run.time, values))
-        });
+        let names: Vec<&str> = group.members.iter().map(|index| name(*index)).collect();
+        let lines = group
+            .members
+            .iter()
+            .enumerate()
+            .filter_map(|(order, index)| {
+                let values = run.pose.get(*index)?;
+                Some(Line::new(Look::nth(order), name(*index), &run.time, values))
+            });
         Chart {
             title: format!("{}{payload}", run.run),
             description: format!("{} over time in the run {}", names.join(", "), run.run),
             x: Axis::linear("t (s)"),
-            y: Axis::linear(with_unit(&names.join(", "), unit)),
+            y: Axis::linear(with_unit(&names.join(", "), group.unit)),
             lines: lines.collect(),
             rules: Vec::new(),
         }

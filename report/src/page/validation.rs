@@ -1,14 +1,12 @@
-//! Cross-validation: Table 3, and the torques over time of Figs. 8 and 9.
-
-use std::fmt::Write;
+//! Prediction of runs that were held out: Table 3, and the torques over time of Figs. 8 and 9.
 
 use super::{
     Contents, inputs,
-    markup::{Cell, Section, Table, paragraph},
-    select::is_final,
+    markup::{Section, note, paragraph},
+    table::{Cell, Table},
 };
-use crate::escape::escape;
-use overact_identification::{CrossValidation, Identification};
+use crate::choice::{answers, case_heading, of_stage, stage_name};
+use overact_identification::{CrossValidation, Estimate, Identification, Stage};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
@@ -20,9 +18,13 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         ));
     } else {
         body.push_str(&paragraph(
-            "Runs that no parameter was estimated from. An error here that is much larger than on the runs identified from means that the model does not generalise.",
+            "Runs that no parameter was estimated from. An error here that is much larger than on the runs identified from means that the model does not generalise. Where there are more actuators than degrees of freedom, the model leaves open how they share the load: the prediction of least norm is the smallest torques that do it, and measured torques are compared as they are and without the preload that moves nothing.",
         ));
-        body.push_str(&table(contents));
+        body.push_str(&table(contents, &answers(identification), false));
+        let essential = of_stage(identification, Stage::Essential);
+        if !essential.is_empty() {
+            body.push_str(&table(contents, &essential, true));
+        }
     }
     let torques = inputs::torques(contents);
     if torques.is_empty() && identification.cross_validation.is_empty() {
@@ -31,7 +33,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     body.push_str(&torques);
     Section {
         id: "validation",
-        title: "Cross-validation",
+        title: "Prediction of held-out runs",
         body,
     }
 }
@@ -53,7 +55,7 @@ fn predictions(one: &CrossValidation) -> Vec<(&'static str, Vec<Option<f64>>)> {
     if !one.projected_torques.is_empty() {
         let projected = one.projected_torques.iter();
         let errors = projected.map(|t| Some(t.relative_error_percent));
-        rows.push(("measured without preload", errors.collect()));
+        rows.push(("least norm, measured without preload", errors.collect()));
     }
     rows
 }
@@ -71,43 +73,49 @@ fn actuators(identification: &Identification) -> Vec<&str> {
         })
 }
 
-/// Table 3.
-fn table(contents: &Contents<'_>) -> String {
+/// Table 3: the errors of some estimates on every held-out run, beside published ones if those are
+/// comparable.
+fn table(contents: &Contents<'_>, estimates: &[&Estimate], comparable: bool) -> String {
     let identification = contents.identification;
     let actuators = actuators(identification);
     let mut rows = Vec::new();
     for one in &identification.cross_validation {
-        if is_final(identification, one.model, one.stage) {
+        let mut own = estimates.iter();
+        if own.any(|estimate| estimate.model == one.model && estimate.stage == one.stage) {
             for (prediction, errors) in predictions(one) {
-                rows.push(row(&one.run, one.model.case(), prediction, &errors));
+                rows.push(row(&one.run, case_heading(one.model), prediction, &errors));
             }
         }
     }
     let published = contents.published.filter(|all| all.actuators == actuators);
+    let published = published.filter(|all| comparable && !all.cross_validation.is_empty());
     for one in published.iter().flat_map(|all| &all.cross_validation) {
         let errors: Vec<Option<f64>> = one.torques_percent.iter().copied().map(Some).collect();
         let run = format!("{} (published)", one.run);
-        rows.push(row(&run, one.model.case(), "eq. (26)", &errors));
+        rows.push(row(&run, case_heading(one.model), "eq. (26)", &errors));
     }
     let mut header = vec![
         Cell::text("run"),
-        Cell::text("parameters"),
+        Cell::text("case"),
         Cell::text("compared with"),
     ];
     header.extend(actuators.iter().map(|name| Cell::text(name).class("n")));
     header.push(Cell::text("mean").class("n"));
+    let stage = estimates.first().map_or(Stage::Base, |one| one.stage);
     let mut html = Table {
-        caption: String::from("Relative error norms of the torques (%)"),
+        caption: format!(
+            "Relative errors of the torques of held-out runs (%), {}",
+            stage_name(stage)
+        ),
         header: vec![header],
         rows,
     }
     .html();
-    if let Some(all) = published.filter(|all| !all.cross_validation.is_empty()) {
-        let _ = writeln!(
-            html,
-            "<p class=\"note\">Published: {}.</p>",
-            escape(all.source.trim_end_matches('.'))
-        );
+    if let Some(all) = published {
+        html.push_str(&note(&format!(
+            "Published: {}.",
+            all.source.trim_end_matches('.')
+        )));
     }
     html
 }

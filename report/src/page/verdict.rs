@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use super::{
     Contents,
-    markup::{Cell, Section, Table, details, paragraph},
+    markup::{Section, capital, details, paragraph, prose},
+    table::{Cell, Table},
 };
 
 use crate::escape::escape;
@@ -63,7 +64,7 @@ fn cards(identification: &Identification) -> String {
         let reasons: String = verdict
             .reasons
             .iter()
-            .map(|reason| format!("<li>{}</li>", escape(reason)))
+            .map(|reason| format!("<li>{}</li>", prose(reason)))
             .collect();
         let _ = writeln!(
             html,
@@ -73,14 +74,6 @@ fn cards(identification: &Identification) -> String {
     }
     html.push_str("</div>\n");
     html
-}
-
-/// The first letter large.
-fn capital(text: &str) -> String {
-    let mut characters = text.chars();
-    characters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(characters).collect()
-    })
 }
 
 /// What is suspicious in the data, and every other warning.
@@ -101,14 +94,14 @@ fn findings(identification: &Identification) -> String {
         if !place.is_empty() {
             let _ = write!(html, "<b>{}:</b> ", escape(&place.join(", ")));
         }
-        let _ = writeln!(html, "{}</li>", escape(&check.words));
+        let _ = writeln!(html, "{}</li>", prose(&check.words));
     }
     let rest = identification
         .warnings
         .iter()
         .filter(|warning| !found.iter().any(|check| warning.contains(&check.words)));
     for warning in rest {
-        let _ = writeln!(html, "<li>{}</li>", escape(warning));
+        let _ = writeln!(html, "<li>{}</li>", prose(&capital(warning)));
     }
     html.push_str("</ul>\n");
     html
@@ -155,11 +148,7 @@ fn thresholds(identification: &Identification) -> String {
         ),
     ];
     let cell = |(name, value, what): (&str, String, &str)| {
-        vec![
-            Cell::text(name),
-            Cell::number(value),
-            Cell::text(what).class("prose"),
-        ]
+        vec![Cell::text(name), Cell::number(value), Cell::prose(what)]
     };
     Table {
         caption: String::from("Thresholds and what they decide"),

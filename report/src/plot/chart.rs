@@ -5,9 +5,12 @@ use std::fmt::Write;
 use super::{
     WIDTH,
     axis::{Axis, Scale},
-    short,
+    fitted, short,
 };
 use crate::escape::escape;
+
+/// Characters that stand side by side above a chart.
+const TITLE_CHARACTERS: usize = 46;
 
 /// Height of a chart in SVG units.
 const HEIGHT: f64 = 230.0;
@@ -35,6 +38,9 @@ pub(crate) enum Look {
 }
 
 impl Look {
+    /// How many looks there are for lines of equal standing.
+    pub(crate) const EQUALS: usize = 4;
+
     /// The looks of lines of equal standing, in order.
     pub(crate) const fn nth(index: usize) -> Self {
         match index {
@@ -93,10 +99,31 @@ impl Line {
 /// A dashed straight line across a chart.
 #[derive(Debug, Clone)]
 pub(crate) struct Rule {
-    /// Its height on the vertical axis.
+    /// Its place on its axis.
     pub(crate) value: f64,
-    /// Its name, written above it.
+    /// Its name, written beside it.
     pub(crate) label: String,
+    /// Whether it stands on the horizontal axis; else on the vertical one.
+    pub(crate) is_vertical: bool,
+}
+
+impl Rule {
+    /// A line at a height.
+    pub(crate) fn horizontal(value: f64, label: impl Into<String>) -> Self {
+        Self {
+            value,
+            label: label.into(),
+            is_vertical: false,
+        }
+    }
+
+    /// A line at a place of the horizontal axis.
+    pub(crate) fn vertical(value: f64, label: impl Into<String>) -> Self {
+        Self {
+            is_vertical: true,
+            ..Self::horizontal(value, label)
+        }
+    }
 }
 
 /// A chart.
@@ -121,16 +148,23 @@ impl Chart {
     pub(crate) fn svg(&self) -> String {
         let [left, right, top, bottom] = FRAME;
         let points = || self.lines.iter().flat_map(|line| &line.points);
-        let x = self
-            .x
-            .scale(points().map(|point| point.0), (left, right), 6, true);
-        let heights = points().map(|point| point.1);
-        let rules = self.rules.iter().map(|rule| rule.value);
-        let y = self.y.scale(heights.chain(rules), (bottom, top), 5, false);
+        let rules = |is_vertical: bool| {
+            let rules = self.rules.iter();
+            let own = rules.filter(move |rule| rule.is_vertical == is_vertical);
+            own.map(|rule| rule.value)
+        };
+        let places = points().map(|point| point.0).chain(rules(true));
+        let x = self.x.scale(places, (left, right), 6, true);
+        let heights = points().map(|point| point.1).chain(rules(false));
+        let y = self.y.scale(heights, (bottom, top), 5, false);
         let mut svg = opening(WIDTH, HEIGHT, &self.title, &self.description);
         svg.push_str(&self.axes(&x, &y));
         for rule in &self.rules {
-            svg.push_str(&drawn_rule(rule, &self.lines, &y));
+            svg.push_str(&if rule.is_vertical {
+                drawn_vertical(rule, &x)
+            } else {
+                drawn_rule(rule, &self.lines, &y)
+            });
         }
         for line in &self.lines {
             svg.push_str(&drawn_line(line, &x, &y));
@@ -145,7 +179,10 @@ impl Chart {
         let mut svg = format!(
             "<text class=\"head\" x=\"{}\" y=\"15\">{}</text>",
             short(left),
-            escape(&self.title)
+            escape(&fitted(
+                &self.title,
+                TITLE_CHARACTERS.saturating_sub(self.y.label.chars().count())
+            ))
         );
         for (value, label) in &y.ticks {
             let Some(at) = y.at(*value) else { continue };
@@ -223,6 +260,27 @@ fn drawn_rule(rule: &Rule, lines: &[Line], y: &Scale) -> String {
     )
 }
 
+/// A mark on the horizontal axis, its name on the side where there is more room.
+fn drawn_vertical(rule: &Rule, x: &Scale) -> String {
+    let [left, right, top, bottom] = FRAME;
+    let Some(at) = x.at(rule.value) else {
+        return String::new();
+    };
+    let (place, anchor) = if at < 0.5 * (left + right) {
+        (at + 4.0, "start")
+    } else {
+        (at - 4.0, "end")
+    };
+    format!(
+        "<path class=\"rule\" d=\"M{at:.1} {}V{}\"/><text class=\"tick rule-name\" x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\">{}</text>",
+        short(top),
+        short(bottom),
+        short(place),
+        short(top + 11.0),
+        escape(&rule.label)
+    )
+}
+
 /// A line; where it has no value it is interrupted.
 fn drawn_line(line: &Line, x: &Scale, y: &Scale) -> String {
     let place = |point: &(f64, f64)| Some((x.at(point.0)?, y.at(point.1)?));
@@ -261,10 +319,10 @@ mod tests {
             x: Axis::linear("t (s)"),
             y: Axis::logarithmic("y (1)"),
             lines: vec![line],
-            rules: vec![Rule {
-                value: 30.0,
-                label: String::from("limit"),
-            }],
+            rules: vec![
+                Rule::horizontal(30.0, "limit"),
+                Rule::vertical(1.5, "<here>"),
+            ],
         }
     }
 

@@ -6,13 +6,16 @@ use super::{
     WIDTH,
     axis::{Axis, Scale},
     chart::{Look, opening},
-    short,
+    fitted, short,
 };
 use crate::escape::escape;
 
 /// Where the rows begin at the left, and where they end.
 const LEFT: f64 = 112.0;
 const RIGHT: f64 = WIDTH - 10.0;
+
+/// Characters that stand at the left of a row.
+const NAME_CHARACTERS: usize = 16;
 
 /// Heights of the title, of one estimate, of the space between two quantities, and of the axis.
 const HEAD: f64 = 26.0;
@@ -27,12 +30,31 @@ pub(crate) struct Bar {
     pub(crate) look: Look,
     /// Its value.
     pub(crate) value: f64,
-    /// Half the length of the inner, bold bar.
-    pub(crate) inner: f64,
-    /// Half the length of the outer, thin bar.
-    pub(crate) outer: f64,
+    /// The ends of its interval.
+    pub(crate) interval: [f64; 2],
+    /// Another estimate of the same quantity, drawn as a cross.
+    pub(crate) other: Option<f64>,
     /// What it says, for those who can't see it or point at it.
     pub(crate) label: String,
+}
+
+impl Bar {
+    /// All values that it shows.
+    fn values(&self) -> impl Iterator<Item = f64> {
+        let [low, high] = self.interval;
+        [self.value, low, high].into_iter().chain(self.other)
+    }
+
+    /// How far it reaches from zero; infinite where a value is not finite.
+    pub(crate) fn reach(&self) -> f64 {
+        self.values().fold(0.0, |reach, value| {
+            if value.is_finite() {
+                value.abs().max(reach)
+            } else {
+                f64::INFINITY
+            }
+        })
+    }
 }
 
 /// A forest plot.
@@ -51,8 +73,8 @@ pub(crate) struct Forest {
 impl Forest {
     /// The plot as an SVG element.
     pub(crate) fn svg(&self) -> String {
-        let bars = || self.rows.iter().flat_map(|(_, bars)| bars);
-        let ends = bars().flat_map(|bar| [bar.value - bar.outer, bar.value + bar.outer]);
+        let bars = self.rows.iter().flat_map(|(_, bars)| bars);
+        let ends = bars.flat_map(Bar::values);
         let x = self.x.scale(ends, (LEFT, RIGHT), 5, false);
         let height: f64 = self.rows.iter().map(|(_, bars)| row_height(bars)).sum();
         let bottom = HEAD + height;
@@ -66,7 +88,7 @@ impl Forest {
                 "<text class=\"name\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
                 short(LEFT - 8.0),
                 short(middle + 4.0),
-                escape(name)
+                escape(&fitted(name, NAME_CHARACTERS))
             );
             for (index, bar) in bars.iter().enumerate() {
                 let y = top + GAP / 2.0 + BAR * (index as f64 + 0.5);
@@ -113,22 +135,28 @@ fn row_height(bars: &[Bar]) -> f64 {
 
 /// One estimate; nothing where it has no value.
 fn drawn(bar: &Bar, x: &Scale, y: f64) -> String {
-    let span = |half: f64| Some((x.at(bar.value - half)?, x.at(bar.value + half)?));
-    let (Some(at), Some(outer), Some(inner)) = (x.at(bar.value), span(bar.outer), span(bar.inner))
-    else {
+    let [low, high] = bar.interval;
+    let (Some(at), Some(low), Some(high)) = (x.at(bar.value), x.at(low), x.at(high)) else {
         return String::new();
     };
-    let y = short(y);
-    format!(
-        "<g class=\"bar {}\"><title>{}</title><path class=\"outer\" d=\"M{} {y}H{}\"/><path class=\"inner\" d=\"M{} {y}H{}\"/><circle cx=\"{}\" cy=\"{y}\" r=\"3.5\"/></g>",
+    let height = short(y);
+    let mut svg = format!(
+        "<g class=\"bar {}\"><title>{}</title><path d=\"M{} {height}H{}\"/><circle cx=\"{}\" cy=\"{height}\" r=\"3.5\"/>",
         bar.look.class(),
         escape(&bar.label),
-        short(outer.0),
-        short(outer.1),
-        short(inner.0),
-        short(inner.1),
+        short(low),
+        short(high),
         short(at)
-    )
+    );
+    if let Some(other) = bar.other.and_then(|value| x.at(value)) {
+        let _ = write!(
+            svg,
+            "<path class=\"cross\" d=\"M{} {}l7 7m0 -7l-7 7\"/>",
+            short(other - 3.5),
+            short(y - 3.5)
+        );
+    }
+    svg + "</g>"
 }
 
 #[cfg(test)]
@@ -137,11 +165,11 @@ mod tests {
 
     #[test]
     fn a_forest_is_well_formed_whatever_the_values() {
-        let bar = |value, outer| Bar {
+        let bar = |value: f64, half: f64| Bar {
             look: Look::First,
             value,
-            inner: outer / 2.0,
-            outer,
+            interval: [value - half, value + half],
+            other: Some(value + 2.0 * half),
             label: String::from("1 < 2 & 3"),
         };
         let forest = Forest {

@@ -1,0 +1,75 @@
+//! What is read off the 95 % interval of a parameter.
+
+use overact_identification::ParameterEstimate;
+
+/// Whether the interval is one: an estimate without it has both ends at the estimate.
+fn is_known([low, high]: [f64; 2]) -> bool {
+    low.is_finite() && high.is_finite() && low < high
+}
+
+/// Whether the estimate lies outside of its own interval, which is that of the model with all base
+/// parameters: cancelling has moved it there.
+pub(crate) fn is_outside(one: &ParameterEstimate) -> bool {
+    is_known(one.interval_95) && !contains(one.interval_95, one.value)
+}
+
+/// Whether the interval misses the true value, where that is known.
+pub(crate) fn misses_truth(one: &ParameterEstimate) -> bool {
+    is_known(one.interval_95)
+        && one
+            .true_value
+            .is_some_and(|truth| !contains(one.interval_95, truth))
+}
+
+/// Whether the data say that the parameter is not zero.
+pub(crate) fn excludes_zero(one: &ParameterEstimate) -> bool {
+    is_known(one.interval_95) && !contains(one.interval_95, 0.0)
+}
+
+/// Half the width of the interval in percent of the estimate; none without an interval or a value.
+pub(crate) fn half_width_percent(one: &ParameterEstimate) -> Option<f64> {
+    let [low, high] = one.interval_95;
+    let percent = 50.0 * (high - low) / one.value.abs();
+    (is_known(one.interval_95) && percent.is_finite()).then_some(percent)
+}
+
+fn contains([low, high]: [f64; 2], value: f64) -> bool {
+    (low..=high).contains(&value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{excludes_zero, half_width_percent, is_outside, misses_truth};
+    use overact_identification::ParameterEstimate;
+
+    fn parameter(value: f64, interval_95: [f64; 2], true_value: Option<f64>) -> ParameterEstimate {
+        ParameterEstimate {
+            name: String::from("m"),
+            unit: String::from("kg"),
+            column: 0,
+            value,
+            standard_deviation: 0.1,
+            relative_standard_deviation_percent: 10.0,
+            correlated_standard_deviation: 0.1,
+            interval_95,
+            true_value,
+            error_percent: None,
+        }
+    }
+
+    #[test]
+    fn an_estimate_and_the_truth_are_inside_or_outside() {
+        let inside = parameter(2.0, [1.5, 2.5], Some(1.5));
+        assert!(!is_outside(&inside) && !misses_truth(&inside));
+        assert!(excludes_zero(&inside));
+        assert_eq!(half_width_percent(&inside), Some(25.0));
+        let outside = parameter(-2.0, [-1.9, -1.5], Some(-1.4));
+        assert!(is_outside(&outside) && misses_truth(&outside));
+        let unknown = parameter(1.0, [1.0, 1.0], Some(2.0));
+        assert!(!is_outside(&unknown) && !misses_truth(&unknown));
+        assert_eq!(half_width_percent(&unknown), None);
+        let zero = parameter(0.0, [-1.0, 1.0], None);
+        assert!(!excludes_zero(&zero));
+        assert_eq!(half_width_percent(&zero), None);
+    }
+}

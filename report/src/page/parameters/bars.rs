@@ -1,0 +1,150 @@
+//! The plot of all intervals, relative to the true value or to the first estimate.
+
+use std::fmt::Write;
+
+use super::{find, names};
+use crate::{
+    choice::{case_heading, of, stage_name},
+    escape::escape,
+    page::{
+        markup::{key, with_interval},
+        select::look,
+    },
+    plot::{Axis, Bar, Forest},
+};
+use overact_identification::{Estimate, Identification, ParameterEstimate, Stage};
+
+/// Intervals that reach further than this (percent) are told of and not drawn: they would hide all
+/// others.
+const LONGEST_BAR: f64 = 100.0;
+
+/// Parameters that are known so many times better than the worst one have a plot of their own.
+const SCALES_APART: f64 = 5.0;
+
+/// A parameter and its intervals.
+type Row = (String, Vec<Bar>);
+
+/// The figure; nothing where no parameter can be drawn.
+pub(super) fn figure(identification: &Identification, estimates: &[&Estimate]) -> String {
+    let mut rows = Vec::new();
+    let mut left_out = Vec::new();
+    let mut to_truth = false;
+    let mut moved = false;
+    for name in names(identification, estimates) {
+        let found = || {
+            let own = estimates.iter();
+            own.filter_map(|one| Some((*one, find(one, name)?)))
+        };
+        let truth = found().find_map(|(_, one)| one.true_value);
+        let reference = truth.or_else(|| found().next().map(|(_, one)| one.value));
+        let Some(reference) = reference.filter(|value| *value != 0.0) else {
+            left_out.push(name);
+            continue;
+        };
+        let bar = |(estimate, one): (&Estimate, &ParameterEstimate)| {
+            let essential = of(identification, estimate.model, Stage::Essential);
+            let essential = essential.and_then(|estimate| find(estimate, name));
+            bar(estimate, one, essential, reference)
+        };
+        let bars: Vec<Bar> = found().map(bar).collect();
+        if bars.iter().all(|bar| bar.reach() <= LONGEST_BAR) {
+            to_truth |= truth.is_some();
+            moved |= bars.iter().any(|bar| bar.other.is_some());
+            rows.push((name.to_owned(), bars));
+        } else {
+            left_out.push(name);
+        }
+    }
+    if rows.is_empty() {
+        return String::new();
+    }
+    let reference = if to_truth {
+        "the true value"
+    } else {
+        "the first estimate"
+    };
+    let plot = |rows: Vec<Row>| {
+        Forest {
+            title: format!("Deviation from {reference}"),
+            description: format!(
+                "estimates of {} parameters with their 95 % intervals, relative to {reference}",
+                rows.len()
+            ),
+            x: Axis::linear(format!("deviation from {reference} (%)")).including(&[0.0]),
+            rows,
+        }
+        .svg()
+    };
+    let plots: Vec<String> = by_reach(rows).into_iter().map(plot).collect();
+    let caption = caption(to_truth, moved, &left_out);
+    let mut entries: Vec<(&str, &str)> = estimates
+        .iter()
+        .map(|one| (look(one.model).class(), case_heading(one.model)))
+        .collect();
+    if moved {
+        entries.push(("cross", stage_name(Stage::Essential)));
+    }
+    crate::page::markup::figure(
+        "figure-parameters",
+        &plots,
+        &key(&entries),
+        &escape(&caption),
+    )
+}
+
+/// Rows that reach far and those that do not, apart from each other where one scale would hide the
+/// latter.
+fn by_reach(rows: Vec<Row>) -> Vec<Vec<Row>> {
+    let reach = |row: &Row| row.1.iter().map(Bar::reach).fold(0.0, f64::max);
+    let farthest = rows.iter().map(reach).fold(0.0, f64::max);
+    let (near, far): (Vec<Row>, Vec<Row>) = rows
+        .into_iter()
+        .partition(|row| reach(row) < farthest / SCALES_APART);
+    let parts = [near, far].into_iter();
+    parts.filter(|rows| !rows.is_empty()).collect()
+}
+
+/// The interval of a parameter, relative to a reference, with the estimate that the rule of r_σ leaves.
+fn bar(
+    estimate: &Estimate,
+    one: &ParameterEstimate,
+    essential: Option<&ParameterEstimate>,
+    reference: f64,
+) -> Bar {
+    let percent = |value: f64| 100.0 * (value - reference) / reference.abs();
+    let (value, interval) = with_interval(one.value, one.interval_95);
+    Bar {
+        look: look(estimate.model),
+        value: percent(one.value),
+        interval: one.interval_95.map(percent),
+        other: essential.map(|one| percent(one.value)),
+        label: format!(
+            "{}, {}: {value} {}, 95 % interval {}",
+            one.name,
+            estimate.model.case(),
+            one.unit,
+            interval.unwrap_or_else(|| String::from("not known"))
+        ),
+    }
+}
+
+/// What the intervals mean, and which parameters have none.
+fn caption(to_truth: bool, moved: bool, left_out: &[&str]) -> String {
+    let mut caption = String::from("Dots are the estimates, lines their 95 % intervals. ");
+    caption.push_str(if to_truth {
+        "One line in twenty may miss zero, where the true value is."
+    } else {
+        "Lines of one parameter that do not overlap contradict each other."
+    });
+    if moved {
+        caption.push_str(" A cross is what the r_σ rule makes of the parameter: off its line, the data speak against it.");
+    }
+    if !left_out.is_empty() {
+        let _ = write!(
+            caption,
+            " Not drawn, because they are zero or their intervals are longer than their values: {}.",
+            left_out.join(", ")
+        );
+    }
+    caption
+}

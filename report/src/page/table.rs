@@ -1,0 +1,246 @@
+//! Tables of the page.
+//!
+//! On a screen that is narrow, the style sheet makes each row a card, in which every cell stands below
+//! the heading of its column. So each cell carries that heading, and every element its role, which some
+//! browsers forget when a table is laid out in another way.
+
+use std::fmt::Write;
+
+use super::markup::prose;
+use crate::escape::escape;
+use overact_identification::significant;
+
+/// From so many columns on, a table is set narrower where paper or screen is small.
+const MANY_COLUMNS: usize = 8;
+
+/// Characters of a name that may not be broken.
+const SHORT_NAME: usize = 24;
+
+/// A cell of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Cell {
+    html: String,
+    class: &'static str,
+    span: usize,
+}
+
+impl Cell {
+    /// A text.
+    pub(super) fn text(text: &str) -> Self {
+        Self::markup(escape(text))
+    }
+
+    /// A sentence, in which what stands between backticks is code.
+    pub(super) fn prose(text: &str) -> Self {
+        Self::markup(prose(text)).class("prose")
+    }
+
+    /// A piece of markup.
+    pub(super) const fn markup(html: String) -> Self {
+        Self {
+            html,
+            class: "",
+            span: 1,
+        }
+    }
+
+    /// A number, aligned to the right.
+    pub(super) fn number(text: impl AsRef<str>) -> Self {
+        Self::text(&text.as_ref().replace('-', "−")).class("n")
+    }
+
+    /// A number with so many digits; a dash where there is none.
+    pub(super) fn digits(value: Option<f64>, digits: usize) -> Self {
+        match value {
+            Some(value) => Self::number(significant(value, digits)),
+            None => Self::nothing(),
+        }
+    }
+
+    /// Where there is no value.
+    pub(super) fn nothing() -> Self {
+        Self::text("–").class("n none")
+    }
+
+    /// The same cell with another class.
+    pub(super) const fn class(mut self, class: &'static str) -> Self {
+        self.class = class;
+        self
+    }
+
+    /// The same cell over several columns.
+    pub(super) const fn over(mut self, columns: usize) -> Self {
+        self.span = columns;
+        self
+    }
+
+    /// A cell of the head.
+    fn head(&self) -> String {
+        if self.html.is_empty() {
+            return self.element("td", "role=\"cell\"");
+        }
+        let scope = if self.span > 1 { "colgroup" } else { "col" };
+        self.element("th", &format!("scope=\"{scope}\" role=\"columnheader\""))
+    }
+
+    /// A cell that heads its row. A short name stays in one line.
+    fn row_head(&self) -> String {
+        let attributes = "scope=\"row\" role=\"rowheader\"";
+        if self.class.is_empty() && self.html.chars().count() <= SHORT_NAME {
+            return self.clone().class("short").element("th", attributes);
+        }
+        self.element("th", attributes)
+    }
+
+    fn element(&self, name: &str, attributes: &str) -> String {
+        let mut tag = format!("<{name} {attributes}");
+        if !self.class.is_empty() {
+            let _ = write!(tag, " class=\"{}\"", self.class);
+        }
+        if self.span > 1 {
+            let _ = write!(tag, " colspan=\"{}\"", self.span);
+        }
+        format!("{tag}>{}</{name}>", self.html)
+    }
+}
+
+/// A table with headers.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Table {
+    /// What it shows; the name by which assistive technology finds it.
+    pub(super) caption: String,
+    /// Header rows; cells over several columns head a group.
+    pub(super) header: Vec<Vec<Cell>>,
+    /// Rows; the first cell of each is its header.
+    pub(super) rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// The table in a region that scrolls by itself, should it not fit all the same.
+    pub(super) fn html(&self) -> String {
+        let caption = escape(&self.caption);
+        let (labels, starts) = (self.labels(), self.starts());
+        let class = if labels.len() >= MANY_COLUMNS {
+            " class=\"many\""
+        } else {
+            ""
+        };
+        let mut html = format!(
+            "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{caption}\"><table role=\"table\"{class}><caption>{caption}</caption><thead role=\"rowgroup\">"
+        );
+        for row in &self.header {
+            let cells: String = row.iter().map(Cell::head).collect();
+            let _ = write!(html, "<tr role=\"row\">{cells}</tr>");
+        }
+        html.push_str("</thead><tbody role=\"rowgroup\">");
+        for row in &self.rows {
+            let cells = row.iter().enumerate().map(|(column, cell)| match column {
+                0 => cell.row_head(),
+                _ => {
+                    let label = labels.get(column).map_or("", String::as_str);
+                    let group = if starts.contains(&column) {
+                        " data-start=\"\""
+                    } else {
+                        ""
+                    };
+                    cell.element(
+                        "td",
+                        &format!("role=\"cell\" data-label=\"{label}\"{group}"),
+                    )
+                }
+            });
+            let cells: String = cells.collect();
+            let _ = write!(html, "<tr role=\"row\">{cells}</tr>");
+        }
+        html.push_str("</tbody></table></div>\n");
+        html
+    }
+
+    /// The columns with which groups begin.
+    fn starts(&self) -> Vec<usize> {
+        let groups = self.header.first().filter(|_| self.header.len() > 1);
+        let mut column = 0;
+        let starts = groups.into_iter().flatten().map(|cell| {
+            column += cell.span;
+            column - cell.span
+        });
+        starts.collect()
+    }
+
+    /// The heading of each column, with that of its group.
+    fn labels(&self) -> Vec<String> {
+        let mut labels: Vec<String> = Vec::new();
+        for row in &self.header {
+            let spread = row.iter().flat_map(|cell| {
+                let heading = if cell.html.contains('<') {
+                    ""
+                } else {
+                    cell.html.as_str()
+                };
+                std::iter::repeat_n(heading, cell.span)
+            });
+            for (column, heading) in spread.enumerate() {
+                match labels.get_mut(column) {
+                    Some(label) if label.is_empty() => heading.clone_into(label),
+                    Some(label) if heading.is_empty() => label.push_str(heading),
+                    Some(label) => {
+                        label.push_str(": ");
+                        label.push_str(heading);
+                    }
+                    None => labels.push(heading.to_owned()),
+                }
+            }
+        }
+        labels
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cell, Table};
+
+    #[test]
+    fn a_table_has_headers_and_escapes() {
+        let table = Table {
+            caption: String::from("a < b"),
+            header: vec![vec![Cell::text("name"), Cell::text("values").over(2)]],
+            rows: vec![vec![
+                Cell::text("<x>"),
+                Cell::digits(Some(-1.5), 3),
+                Cell::nothing(),
+            ]],
+        };
+        let html = table.html();
+        let document = roxmltree::Document::parse(&html).expect("XML");
+        let scopes: Vec<_> = document
+            .descendants()
+            .filter_map(|node| node.attribute("scope"))
+            .collect();
+        assert_eq!(scopes, ["col", "colgroup", "row"]);
+        assert!(
+            html.contains("&lt;x&gt;") && html.contains("−1.5"),
+            "{html}"
+        );
+    }
+
+    #[test]
+    fn a_cell_carries_the_heading_of_its_column_and_group() {
+        let table = Table {
+            caption: String::from("two groups"),
+            header: vec![
+                vec![Cell::text("").over(2), Cell::text("Case <1>").over(2)],
+                ["name", "unit", "estimate", "error"]
+                    .map(Cell::text)
+                    .to_vec(),
+            ],
+            rows: vec![["m", "kg", "1", "2"].map(Cell::text).to_vec()],
+        };
+        let html = table.html();
+        let document = roxmltree::Document::parse(&html).expect("XML");
+        let labels: Vec<_> = document
+            .descendants()
+            .filter_map(|node| node.attribute("data-label"))
+            .collect();
+        assert_eq!(labels, ["unit", "Case <1>: estimate", "Case <1>: error"]);
+    }
+}
