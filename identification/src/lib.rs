@@ -51,12 +51,13 @@ pub use calibration::{
     CalibratedParameter, Calibration, CalibrationScope, ChangedGeometry, DescribedGeometry,
     Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
-pub use data::{Dataset, Gain, Log, Mapping};
+pub use data::{Dataset, Gain, Log, Mapping, Periods};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
     essential::{Drift, Essential, Removal, essential},
     estimate::{Estimation, LineError, estimate},
+    instruments::regressor::{Agreement, ErrorsInRegressor, RegressorError, RepeatedRun},
 };
 pub use identify::{
     BaseParameter, Identification, Outcome, Prepared, Progress, RankedProjection, Regrouping,
@@ -72,9 +73,9 @@ pub use regression::{
     projection::{ModelKind, Projection},
     system::{Part, PartitionCondition, Stretch, System},
 };
-pub use result::{CrossValidation, Estimate, ParameterEstimate, RunSummary, Stage};
+pub use result::{CrossValidation, Estimate, Estimator, ParameterEstimate, RunSummary, Stage};
 pub use series::{ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series};
-pub use settings::{Normalisation, Settings};
+pub use settings::{Instruments, Normalisation, Settings};
 pub use significant::significant;
 pub use thresholds::Thresholds;
 pub use validation::{TorqueComparison, Validation};

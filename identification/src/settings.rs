@@ -34,6 +34,32 @@ pub enum Normalisation {
     SampleVariance,
 }
 
+/// Where the instruments come from, by which errors of the regressor are found and cured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Instruments {
+    /// The other periods of a periodic motion.
+    #[default]
+    Periods,
+    /// The motion of the simulated robot, which stands beside each run
+    /// ([`Log::with_instruments`](crate::Log::with_instruments)).
+    Simulated,
+    /// No instruments.
+    None,
+}
+
+impl Instruments {
+    /// `periods`, `simulated` or `none`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Periods => "periods",
+            Self::Simulated => "simulated",
+            Self::None => "none",
+        }
+    }
+}
+
 /// What an identification can be told.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -66,6 +92,10 @@ pub struct Settings {
     pub asymmetric_friction: bool,
     /// Weighted least squares (48); ordinary least squares otherwise.
     pub weighted: bool,
+    /// Where the instruments come from.
+    pub instruments: Instruments,
+    /// Period of the motion, s, for instruments from other periods; found from each run if absent.
+    pub period_s: Option<f64>,
     /// Kept actuators of case 2, indices among the actuators; r of them.
     pub kept_actuators: Vec<usize>,
     /// Seed of the random states from which the base parameters are found.
@@ -100,6 +130,8 @@ impl Settings {
             normalisation: Normalisation::Unbiased,
             asymmetric_friction: false,
             weighted: true,
+            instruments: Instruments::default(),
+            period_s: None,
             kept_actuators: info.kept_actuators.to_vec(),
             seed: 1,
         }

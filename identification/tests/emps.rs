@@ -62,7 +62,7 @@ fn symmetric_friction_is_the_published_table() {
         }) else {
             return;
         };
-        println!("{:#?}", result.estimates);
+        println!("{:#?} {:#?}", result.checks, result.errors_in_regressor);
         let base = &result.estimates[0];
         assert_eq!((base.model, base.stage), (ModelKind::Joints, Stage::Base));
         let expected = [
@@ -88,6 +88,10 @@ fn symmetric_friction_is_the_published_table() {
         printed(pulses.relative_error_percent, "5.9824");
         // One motor: the torque is the line.
         assert!((pulses.torques[0].residual_norm - pulses.residual_norm).abs() < 1e-9);
+        // The period is found in the run, and errors of the encoder are harmless.
+        let told = &result.errors_in_regressor[0];
+        assert_eq!(told.runs[0].period_s, 6.24);
+        assert!(told.parameters.iter().all(|parameter| !parameter.spoiled));
         assert!(
             result
                 .warnings

@@ -56,6 +56,7 @@ fn system(lines: &[(DMatrix<f64>, DVector<f64>)]) -> System {
         parts: Vec::new(),
         stretches: Vec::new(),
         partition: None,
+        instruments: Vec::new(),
     }
 }
 

@@ -16,7 +16,9 @@ use std::{
 
 use dualv::{DualV, experiment, records, settings};
 use overact::Model;
-use overact_identification::{Dataset, Mapping, Progress, Settings, data::read_csv, identify};
+use overact_identification::{
+    Dataset, Instruments, Mapping, Progress, Settings, data::read_csv, identify,
+};
 use overact_simulation::Record;
 use peak_alloc::PeakAlloc;
 
@@ -56,6 +58,8 @@ fn identified(robot: &DualV, folder: &Path, record: &Record, times: usize) -> f6
     let settings = Settings {
         // Few equations, so that what is kept of them to judge their residuals is small beside the log.
         decimation: 400,
+        // The decimation of twice as many columns would take as long again to fill its memory.
+        instruments: Instruments::None,
         ..settings(robot)
     };
     let told = Cell::new(0);

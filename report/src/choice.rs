@@ -6,7 +6,7 @@ use overact_identification::{Estimate, Identification, ModelKind, Stage};
 /// recommended.
 pub(crate) fn answers(identification: &Identification) -> Vec<&Estimate> {
     let mut models: Vec<ModelKind> = Vec::new();
-    for estimate in &identification.estimates {
+    for estimate in identification.by_least_squares() {
         if !models.contains(&estimate.model) {
             models.push(estimate.model);
         }
@@ -28,7 +28,7 @@ pub(crate) fn of(
     model: ModelKind,
     stage: Stage,
 ) -> Option<&Estimate> {
-    let mut all = identification.estimates.iter();
+    let mut all = identification.by_least_squares();
     all.find(|one| one.model == model && one.stage == stage)
 }
 

@@ -2,7 +2,7 @@
 //! without knowing what there is. Series over time are not among them; they are in the document of
 //! [`Figures`](overact_identification::Figures).
 
-use overact_identification::{Error, Estimate, Identification, LineError, Problem};
+use overact_identification::{Error, Estimate, Identification, LineError, Problem, Stage};
 
 /// The names of the columns.
 const HEADER: [&str; 7] = [
@@ -32,9 +32,20 @@ pub fn numbers(identification: &Identification) -> Result<String, Error> {
             rows.add("base_parameter", &base.name, "true_value", value);
         }
     }
-    for estimate in &identification.estimates {
+    for estimate in identification.by_least_squares() {
         (rows.model, rows.stage) = (estimate.model.name(), estimate.stage.name());
         add_estimate(&mut rows, estimate);
+    }
+    for told in &identification.errors_in_regressor {
+        (rows.model, rows.stage) = (told.model.name(), Stage::Base.name());
+        let table = "instruments";
+        for own in &told.parameters {
+            let name = own.name.as_str();
+            rows.add(table, name, "value", own.instruments);
+            rows.add_known(table, name, "total_least_squares", own.total_least_squares);
+            rows.add(table, name, "probability", own.probability);
+            rows.add(table, name, "strength", own.strength);
+        }
     }
     for one in &identification.cross_validation {
         (rows.model, rows.stage, rows.run) = (one.model.name(), one.stage.name(), &one.run);

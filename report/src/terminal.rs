@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use crate::intervals::{half_width_percent, is_outside};
 use overact_identification::{
-    BaseParameter, CrossValidation, Estimate, Identification, LineError, ModelKind,
-    ParameterEstimate, Regrouping, Verdict, significant,
+    BaseParameter, CheckKind, CrossValidation, Estimate, Estimator, Identification, LineError,
+    ModelKind, ParameterEstimate, Regrouping, Verdict, significant,
 };
 
 /// Largest denominator of a fraction that a coefficient is printed as.
@@ -35,9 +35,25 @@ pub fn report(identification: &Identification) -> String {
         text.push('\n');
         text.push_str(&cross_validation(&identification.cross_validation));
     }
+    text.push_str(&regressor_errors(identification));
     text.push_str(&warnings(identification));
     text.push_str(&verdicts(&identification.verdicts));
     text
+}
+
+/// Whether errors of the positions bias the estimates.
+fn regressor_errors(identification: &Identification) -> String {
+    let kind = CheckKind::RegressorErrors;
+    let own = identification.checks.iter().filter(|one| one.kind == kind);
+    let lines = own.map(|check| {
+        let models: Vec<&str> = check.models.iter().map(|model| model.case()).collect();
+        format!("  {}: {}\n", models.join(", "), check.words)
+    });
+    let lines: String = lines.collect();
+    if lines.is_empty() {
+        return lines;
+    }
+    format!("\nErrors of the positions\n{lines}")
 }
 
 /// What may be done with the estimates.
@@ -160,7 +176,11 @@ pub fn estimate(estimate: &Estimate) -> String {
         ),
         ModelKind::Joints => String::from("Joint model"),
     };
-    let mut text = format!("{what}: {} parameters\n", estimate.stage.name());
+    let how = match estimate.estimator {
+        Estimator::LeastSquares => "",
+        Estimator::InstrumentalVariables => ", by instruments",
+    };
+    let mut text = format!("{what}: {} parameters{how}\n", estimate.stage.name());
     let truth = estimate
         .parameters
         .iter()

@@ -2,8 +2,8 @@
 
 use crate::robot::Robot;
 use overact::{Info, Model};
-use overact_codegen::description::{Description, Factor, Friction, Normalisation, Reversals};
-use overact_identification::{Gain, Mapping, Settings};
+use overact_codegen::description::{self, Description, Factor, Friction, Normalisation, Reversals};
+use overact_identification::{Gain, Instruments, Mapping, Settings};
 
 impl Robot {
     /// The settings of an identification from runs sampled at `frequency` (Hz).
@@ -52,6 +52,12 @@ pub(crate) fn settings(description: &Description, info: &Info<'_>, frequency: f6
         },
         asymmetric_friction: table.friction == Friction::Asymmetric,
         weighted: table.weighted,
+        instruments: match table.instruments {
+            description::Instruments::Periods => Instruments::Periods,
+            description::Instruments::Simulated => Instruments::Simulated,
+            description::Instruments::None => Instruments::None,
+        },
+        period_s: table.period,
         ..usual
     };
     if table.skip_start.is_none() && table.skip_end.is_none() {

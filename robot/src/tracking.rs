@@ -70,7 +70,7 @@ pub fn tracking(
 /// The last stage of each model.
 fn last_estimates(result: &Identification) -> Vec<&Estimate> {
     let mut last: Vec<&Estimate> = Vec::new();
-    for estimate in &result.estimates {
+    for estimate in result.by_least_squares() {
         match last
             .last_mut()
             .filter(|known| known.model == estimate.model)

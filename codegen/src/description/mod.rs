@@ -43,7 +43,7 @@ pub use model::{
 };
 pub use overact_core::StandardParameter;
 pub use place::place;
-pub use settings::{Data, Factor, Friction, Identification, Normalisation, Reversals};
+pub use settings::{Data, Factor, Friction, Identification, Instruments, Normalisation, Reversals};
 
 use crate::diagnostic::{Diagnostics, Source};
 

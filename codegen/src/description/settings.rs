@@ -62,6 +62,18 @@ pub enum Reversals {
     Sampled,
 }
 
+/// Where the instruments come from, by which errors of the positions are found and cured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Instruments {
+    /// The other periods of a periodic motion.
+    #[default]
+    Periods,
+    /// The motion of the simulated robot.
+    Simulated,
+    /// No instruments.
+    None,
+}
+
 /// Settings of the identification.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identification {
@@ -93,6 +105,10 @@ pub struct Identification {
     pub weighted: bool,
     /// Whether the base parameters are reduced to essential ones.
     pub essential: bool,
+    /// Where the instruments come from.
+    pub instruments: Instruments,
+    /// Period of the motion, s; found from each run if absent.
+    pub period: Option<f64>,
 }
 
 /// Reads `[data]`.
@@ -202,6 +218,8 @@ pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>)
         friction: Friction::default(),
         weighted: true,
         essential: true,
+        instruments: Instruments::default(),
+        period: None,
     };
     if let Some(table) = item.and_then(|item| item.table("the table `[identification]`")) {
         fill(&mut settings, &table, robot);
@@ -260,6 +278,17 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
     if let Some(choice) = table.get("reversals").and_then(|i| i.choice(&choices)) {
         settings.reversals = choice.value;
     }
+    let choices = [
+        ("periods", Instruments::Periods),
+        ("simulated", Instruments::Simulated),
+        ("none", Instruments::None),
+    ];
+    if let Some(choice) = table.get("instruments").and_then(|i| i.choice(&choices)) {
+        settings.instruments = choice.value;
+    }
+    settings.period = table
+        .get("period")
+        .and_then(|i| i.positive(Dimension::TIME, scope));
     settings.weighted = switch("weighted");
     settings.essential = switch("essential");
 }

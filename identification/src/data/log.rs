@@ -1,7 +1,12 @@
 //! One run: uniformly sampled positions and torques of all actuators, in memory or in a file that is
 //! read block by block whenever it is gone through.
 
-use super::csv_file;
+use std::sync::Arc;
+
+use super::{
+    csv_file,
+    periods::{self, Periods},
+};
 use crate::error::{Error, Problem};
 
 /// A step of time may differ from the usual one by this fraction.
@@ -22,15 +27,18 @@ pub struct Log {
     samples: usize,
     source: Source,
     payload: bool,
+    instruments: Option<Box<Log>>,
 }
 
 /// Where the numbers are.
 #[derive(Debug, Clone, PartialEq)]
 enum Source {
     /// Positions and torques, samples x n each.
-    Memory(Vec<f64>, Vec<f64>),
+    Memory(Arc<[f64]>, Arc<[f64]>),
     /// A CSV file that has been looked through before.
     Csv(csv_file::Source),
+    /// At each sample the mean position of the other periods of a run.
+    Others(Box<Log>, Arc<Periods>),
 }
 
 impl Log {
@@ -81,9 +89,34 @@ impl Log {
             sampling_frequency,
             actuators,
             samples: positions.len() / actuators,
-            source: Source::Memory(positions, torques),
+            source: Source::Memory(positions.into(), torques.into()),
             payload,
+            instruments: None,
         })
+    }
+
+    /// The same run with a motion that goes with its own sample by sample, but not with the errors of its
+    /// positions: that of the simulated robot, as instruments of the estimate. Torques are not used.
+    #[must_use]
+    pub fn with_instruments(mut self, instruments: Self) -> Self {
+        self.instruments = Some(Box::new(instruments));
+        self
+    }
+
+    /// The simulated motion beside the run.
+    #[must_use]
+    pub fn instruments(&self) -> Option<&Self> {
+        self.instruments.as_deref()
+    }
+
+    /// The run whose positions are, at each sample, the mean of this run at the same phase of the other
+    /// periods. Its torques are those of this run.
+    #[must_use]
+    pub fn others(&self, periods: Periods) -> Self {
+        Self {
+            source: Source::Others(Box::new(self.clone()), Arc::new(periods)),
+            ..self.clone()
+        }
     }
 
     /// A run that stays in its file.
@@ -100,6 +133,7 @@ impl Log {
             samples,
             source: Source::Csv(source),
             payload,
+            instruments: None,
         }
     }
 
@@ -180,6 +214,9 @@ impl Log {
         let rows = match &self.source {
             Source::Memory(positions, torques) => Rows::Memory(positions, torques),
             Source::Csv(source) => Rows::Csv(Box::new(source.open()?)),
+            Source::Others(log, periods) => {
+                Rows::Others(Box::new(log.reader()?), periods::Others::new(periods))
+            }
         };
         Ok(Reader {
             rows,
@@ -228,6 +265,7 @@ pub struct Reader<'a> {
 enum Rows<'a> {
     Memory(&'a [f64], &'a [f64]),
     Csv(Box<csv_file::Rows<'a>>),
+    Others(Box<Reader<'a>>, periods::Others<'a>),
 }
 
 impl Reader<'_> {
@@ -262,6 +300,11 @@ impl Reader<'_> {
                         return Err(problem.file(self.name).into());
                     }
                 }
+                Ok(Some(block))
+            }
+            Rows::Others(reader, others) => {
+                let mut block = reader.next()?.unwrap_or_default();
+                others.replace(&mut block.positions);
                 Ok(Some(block))
             }
         }

@@ -10,6 +10,7 @@ mod dataset;
 mod log;
 mod mapping;
 mod mat_file;
+pub(crate) mod periods;
 
 use std::{
     path::Path,
@@ -21,6 +22,7 @@ pub use dataset::Dataset;
 pub use log::{Log, Reader, Samples};
 pub use mapping::{Gain, Mapping};
 pub use mat_file::read_mat;
+pub use periods::Periods;
 use rayon::prelude::*;
 
 use crate::error::{Error, Problem, suggestion};

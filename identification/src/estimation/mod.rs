@@ -4,6 +4,7 @@
 //! - `estimate`: ordinary or weighted least squares with standard deviations (44)-(48);
 //! - `correlation`, `fourier`: deviations under residuals that are correlated over time and lines;
 //! - `intervals`: 95 % intervals that admit all of that and what was cancelled;
+//! - `instruments`, `total_least_squares`: estimates that allow for errors of the columns;
 //! - `essential`: backward elimination of parameters that the data do not determine;
 //! - `recommended`: the same as far as a test of the data goes.
 
@@ -12,5 +13,7 @@ pub(crate) mod correlation;
 pub(crate) mod essential;
 pub(crate) mod estimate;
 mod fourier;
+pub(crate) mod instruments;
 pub(crate) mod intervals;
 pub(crate) mod recommended;
+pub(crate) mod total_least_squares;

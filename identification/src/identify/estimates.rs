@@ -11,6 +11,7 @@ use crate::{
         correlation::Noise,
         essential::{Removal, essential},
         estimate::{Estimation, estimate},
+        instruments::{Instrumental, regressor::ErrorsInRegressor},
         intervals::Intervals,
         recommended::recommended,
     },
@@ -20,7 +21,7 @@ use crate::{
         projection::Projection,
         system::System,
     },
-    result::{Estimate, ParameterEstimate, Stage},
+    result::{Estimate, Estimator, ParameterEstimate, Stage},
     settings::Settings,
 };
 
@@ -40,6 +41,10 @@ pub struct Outcome {
     pub recommended: Estimate,
     /// The essential parameters.
     pub essential: Estimate,
+    /// All base parameters by instruments, where there are some.
+    pub instrumental: Option<Estimate>,
+    /// Whether errors of the regressor spoil the estimates.
+    pub errors_in_regressor: ErrorsInRegressor,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -77,7 +82,11 @@ pub fn estimate_projection(
         },
         weighted: settings.weighted,
     };
+    let (instrumental, errors_in_regressor) =
+        context.with_instruments((&selected, &names), &base, settings);
     Ok(Outcome {
+        instrumental,
+        errors_in_regressor,
         base: context.estimate(
             Stage::Base,
             (base, rest.noise),
@@ -157,8 +166,13 @@ impl Context<'_> {
             model: self.system.projection.model(),
             kept_actuators: self.kept_actuators.clone(),
             stage,
+            estimator: Estimator::LeastSquares,
             weighted: self.weighted,
-            parameters: self.parameters((&estimation, noise.as_ref()), selected, names),
+            parameters: self.parameters(
+                (&estimation, &self.intervals),
+                &correlated(&estimation, noise.as_ref(), selected),
+                (selected, names),
+            ),
             residual_norm: estimation.residual_norm,
             relative_error_percent: estimation.relative_error_percent,
             condition_number: estimation.condition_number,
@@ -172,33 +186,83 @@ impl Context<'_> {
         }
     }
 
+    /// The estimate by instruments, where there are some, and what it says of that by least squares.
+    fn with_instruments(
+        &self,
+        (selected, names): (&[usize], &[String]),
+        base: &Estimation,
+        settings: &Settings,
+    ) -> (Option<Estimate>, ErrorsInRegressor) {
+        let companions = &self.prepared.companions;
+        let why = companions.missing.as_ref().map(ToString::to_string);
+        let model = self.system.projection.model();
+        let told = ErrorsInRegressor {
+            runs: companions.runs.clone(),
+            ..ErrorsInRegressor::without(model, settings.instruments, why)
+        };
+        if self.system.instruments.is_empty() {
+            return (None, told);
+        }
+        let found = match Instrumental::new(self.system, selected, base) {
+            Ok(found) => found,
+            Err(error) => {
+                let missing = Some(error.to_string());
+                return (None, ErrorsInRegressor { missing, ..told });
+            }
+        };
+        let named: Vec<(String, String)> = selected
+            .iter()
+            .zip(names)
+            .map(|(column, name)| (name.clone(), self.unit(*column).to_owned()))
+            .collect();
+        let honest = self.intervals.deviations();
+        let told = told.compared((self.system, selected), (base, &honest), &found, &named);
+        let estimation = found.estimation.clone();
+        let intervals = found.intervals.as_ref().unwrap_or(&self.intervals);
+        let white = estimation.standard_deviations.iter();
+        let pairs = white.zip(intervals.deviations());
+        let correlated: Vec<f64> = pairs.map(|(white, own)| white.max(own)).collect();
+        let estimate = Estimate {
+            estimator: Estimator::InstrumentalVariables,
+            parameters: self.parameters((&estimation, intervals), &correlated, (selected, names)),
+            ..self.estimate(
+                Stage::Base,
+                (estimation, None),
+                selected,
+                names,
+                (Vec::new(), None),
+            )
+        };
+        (Some(estimate), told)
+    }
+
+    /// SI unit of a base parameter.
+    fn unit(&self, column: usize) -> &'static str {
+        let standard = self.prepared.base.columns.get(column);
+        let standard = standard.and_then(|&k| self.prepared.columns.as_slice().get(k));
+        standard.map_or("", |column| column.unit)
+    }
+
     /// Joins estimates, names and true values.
     fn parameters(
         &self,
-        (estimation, noise): (&Estimation, Option<&Noise>),
-        selected: &[usize],
-        names: &[String],
+        (estimation, intervals): (&Estimation, &Intervals),
+        correlated: &[f64],
+        (selected, names): (&[usize], &[String]),
     ) -> Vec<ParameterEstimate> {
-        let prepared = self.prepared;
-        let correlated = noise.map_or_else(
-            || estimation.standard_deviations.clone(),
-            |noise| noise.deviations(selected, estimation),
-        );
         let parameter = |(place, (&column, name)): (usize, (&usize, &String))| {
             let value = estimation.values[place];
             let true_value = self.truth.get(&column).copied();
-            let standard = prepared.base.columns.get(column);
-            let standard = standard.and_then(|&k| prepared.columns.as_slice().get(k));
             ParameterEstimate {
                 name: name.clone(),
-                unit: standard.map_or("", |column| column.unit).to_owned(),
+                unit: self.unit(column).to_owned(),
                 column,
                 value,
                 standard_deviation: estimation.standard_deviations[place],
                 relative_standard_deviation_percent: estimation
                     .relative_standard_deviations_percent[place],
                 correlated_standard_deviation: correlated[place],
-                interval_95: self.intervals.of(column).unwrap_or([value; 2]),
+                interval_95: intervals.of(column).unwrap_or([value; 2]),
                 true_value,
                 error_percent: true_value
                     .filter(|truth| *truth != 0.0)
@@ -212,6 +276,14 @@ impl Context<'_> {
             .map(parameter)
             .collect()
     }
+}
+
+/// Deviations under correlated residuals, white ones where these are not known.
+fn correlated(estimation: &Estimation, noise: Option<&Noise>, selected: &[usize]) -> Vec<f64> {
+    noise.map_or_else(
+        || estimation.standard_deviations.clone(),
+        |noise| noise.deviations(selected, estimation),
+    )
 }
 
 /// The base parameters that the data can tell apart, with their names; the others are warned of.

@@ -18,9 +18,9 @@ use crate::{
         verdict::Verdict,
     },
     calibration::Calibration,
-    estimation::base::BaseParameters,
+    estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
     regression::columns::ColumnSet,
-    result::{CrossValidation, Estimate, RunSummary},
+    result::{CrossValidation, Estimate, Estimator, RunSummary},
     settings::Settings,
     thresholds::Thresholds,
 };
@@ -38,7 +38,8 @@ pub struct Identification {
     pub base_parameters: Vec<BaseParameter>,
     /// Standard parameters that have no effect on the model.
     pub without_effect: Vec<String>,
-    /// The estimates: for each model base, recommended and essential.
+    /// The estimates: for each model base, recommended and essential, all by least squares; then those
+    /// of the base parameters by instruments, where there are some.
     pub estimates: Vec<Estimate>,
     /// Every estimate on every run that was not identified from.
     pub cross_validation: Vec<CrossValidation>,
@@ -59,6 +60,8 @@ pub struct Identification {
     /// Table 4, where controlled runs were compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tracking: Vec<TrackingError>,
+    /// For each model, whether errors of the regressor spoil it.
+    pub errors_in_regressor: Vec<ErrorsInRegressor>,
     /// The settings used.
     pub settings: Settings,
     /// What is plotted.
@@ -67,6 +70,12 @@ pub struct Identification {
 }
 
 impl Identification {
+    /// The estimates by least squares: for each model base, recommended and essential.
+    pub fn by_least_squares(&self) -> impl Iterator<Item = &Estimate> {
+        let own = |one: &&Estimate| one.estimator == Estimator::LeastSquares;
+        self.estimates.iter().filter(own)
+    }
+
     /// What may be done with the result as a whole: the grade of the first case, which takes in all
     /// actuators.
     #[must_use]

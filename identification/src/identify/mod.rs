@@ -9,6 +9,7 @@ mod cross_validation;
 mod estimates;
 pub(crate) mod figures;
 mod identification;
+mod instruments;
 mod plots;
 mod prepare;
 mod progress;
@@ -33,6 +34,7 @@ use crate::{
     },
     data::Dataset,
     error::Error,
+    estimation::instruments::regressor::ErrorsInRegressor,
     regression::projection::{ModelKind, Projection},
     result::Estimate,
     settings::Settings,
@@ -56,6 +58,7 @@ pub fn identify(
     let prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
     let mut warnings = prepared_warnings(&prepared, dataset.validation);
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
+    let (errors_in_regressor, instrumental) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
     let held_out = cross_validate(
         model,
@@ -82,6 +85,7 @@ pub fn identify(
         watched: &watched,
         estimates: &estimates,
         cross_validation: &cross_validation,
+        errors_in_regressor: &errors_in_regressor,
     })?;
     let failed = checks.iter().filter(|check| !check.passed);
     warnings.extend(failed.map(Check::located));
@@ -109,9 +113,20 @@ pub fn identify(
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,
-        estimates,
+        estimates: estimates.into_iter().chain(instrumental).collect(),
         cross_validation,
+        errors_in_regressor,
     })
+}
+
+/// What is known of errors in the regressors, and the estimates by instruments.
+fn regressor_errors(
+    outcomes: &[Result<Outcome, Error>],
+) -> (Vec<ErrorsInRegressor>, Vec<Estimate>) {
+    let own = || outcomes.iter().filter_map(|outcome| outcome.as_ref().ok());
+    let told = own().map(|outcome| outcome.errors_in_regressor.clone());
+    let estimates = own().filter_map(|outcome| outcome.instrumental.clone());
+    (told.collect(), estimates.collect())
 }
 
 /// The estimates, each with the number of its projection. A projection on kept actuators that fails is

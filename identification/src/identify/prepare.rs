@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use overact::Model;
 
-use super::progress::Progress;
+use super::{instruments::Companions, progress::Progress};
 use crate::{
     assessment,
     data::Log,
@@ -43,6 +43,8 @@ pub struct Prepared {
     pub(super) seen: Vec<Seen>,
     /// For each run and projection, the equations of each line at the points of the plots.
     pub(super) points: Vec<Vec<Vec<DMatrix<f64>>>>,
+    /// What there is of instruments.
+    pub(super) companions: Companions,
 }
 
 impl Prepared {
@@ -98,12 +100,19 @@ pub fn prepare(
         |projection: &Projection| Ok(System::new(projection.clone(), &info, base.columns.len()));
     let mut systems: Vec<Result<System, Error>> = projections.iter().map(new).collect();
     let (mut seen, mut points, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+    let mut companions = Companions::new(runs, settings);
+    if !companions.logs.is_empty() {
+        let with = |system: Result<System, Error>| system.map(System::with_instruments);
+        systems = systems.into_iter().map(with).collect();
+    }
     for (number, log) in runs.iter().enumerate() {
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
         let budget = LARGEST_STRETCHES / runs.len();
-        match observer.run(number, log, budget, &report) {
+        let both = (log, companions.of(number));
+        match observer.run(number, both, budget, &report) {
             Ok((equations, told)) => {
+                companions.missing = companions.missing.or_else(|| told.unusable.clone());
                 seen.push(told);
                 points.push(add(&mut systems, equations));
             }
@@ -121,6 +130,7 @@ pub fn prepare(
         systems,
         seen,
         points,
+        companions,
     })
 }
 

@@ -24,7 +24,7 @@ use crate::{
         system::PartitionCondition,
     },
     result::{CrossValidation, Estimate, ParameterEstimate, Stage},
-    settings::Settings,
+    settings::{Instruments, Settings},
     significant,
     thresholds::Thresholds,
 };
@@ -91,6 +91,11 @@ pub fn study(
 ) -> Result<Study, Error> {
     let mut projections = vec![Projection::Platform];
     projections.extend(choices.iter().cloned().map(Projection::Actuators));
+    // Instruments do not compare choices of kept actuators.
+    let settings = &Settings {
+        instruments: Instruments::None,
+        ..settings.clone()
+    };
     let prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
     let reference = outcomes[0].as_ref().map_err(Clone::clone)?.clone();

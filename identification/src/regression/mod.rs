@@ -3,6 +3,7 @@
 //! - `columns`: the columns of the model: standard parameters, payload, split friction;
 //! - `friction`, `states`: which joint a friction parameter belongs to, and states to find it out by;
 //! - `chunk`, `observation`: successive samples as equations; the pass over a run;
+//! - `instruments`: the same equations at the motion of the instruments, in step with the run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
 //! - `projection`: on what the inputs are projected;
 //! - `points`: what is plotted of the motion;
@@ -14,6 +15,7 @@ pub(crate) mod columns;
 pub(crate) mod elimination;
 pub(crate) mod factor;
 mod friction;
+mod instruments;
 pub(crate) mod observation;
 pub(crate) mod points;
 pub(crate) mod projection;

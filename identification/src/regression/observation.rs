@@ -10,9 +10,10 @@ use rayon::prelude::*;
 use super::{
     chunk::{Chunk, conditions, projected},
     columns::ColumnSet,
+    instruments::Companion,
     points::Points,
     projection::Projection,
-    sink::{LineSink, Plan, observed},
+    sink::{LineSink, Plan, observed, row_width},
     system::{Observed, singular},
 };
 use crate::{
@@ -51,32 +52,38 @@ pub(crate) struct Seen {
     pub(crate) torques: Vec<f64>,
     /// What has been watched of its raw numbers.
     pub(crate) monitor: Monitor,
+    /// Why its instruments can't be used, where that was found on the way.
+    pub(crate) unusable: Option<Error>,
 }
 
 impl Observer<'_> {
-    /// Goes through a run. Gives, for each projection, what its system keeps, or why it has none; and
-    /// what is told of the run. `budget` is the number of values that may be kept as stretches.
+    /// Goes through a run, beside its instruments where it has some. Gives, for each projection, what
+    /// its system keeps, or why it has none; and what is told of the run. `budget` is the number of
+    /// values that may be kept as stretches.
     ///
     /// # Errors
     /// A run that does not fit, a sample outside the workspace, a file that can't be read.
     pub(crate) fn run(
         &self,
         number: usize,
-        log: &Log,
+        (log, instruments): (&Log, Option<&Log>),
         budget: usize,
         progress: &dyn Fn(usize, usize),
     ) -> Result<(Vec<Result<Observed, Error>>, Seen), Error> {
         let info = self.model.info();
+        let companion = |own| Companion::new(self.model, (own, log.samples()), self.settings);
+        let mut companion = instruments.map(companion).transpose()?;
         let mut motions = Motions::new(self.model, log, self.settings)?;
         let samples = motions.samples();
         let decimator = Decimator::new(self.settings.decimation)?;
-        let (lines, width) = (info.sizes.dof, self.base.len() + 1);
+        let lines = info.sizes.dof;
+        let width = row_width(self.base.len(), companion.is_some());
         let equations = decimator.kept(samples);
         let plan = Plan::new(
             equations,
             budget / (lines * width * self.projections.len()).max(1),
         );
-        let mut sinks = self.sinks(&plan, &decimator, samples)?;
+        let mut sinks = self.sinks(&plan, (&decimator, samples), companion.is_some())?;
         let mut torques = decimator.stream(info.sizes.actuators, samples)?;
         let mut decimated_torques = Vec::new();
         let mut points = Points::new(
@@ -91,12 +98,16 @@ impl Observer<'_> {
         while let Some(motion) = motions.next()? {
             closure_residual = closure_residual.max(motion.closure_residual);
             let chunks = self.chunks(&motion, &mut failed)?;
+            let own = companion.as_mut().map(|own| own.chunks(self, &motion));
+            let beside = own.unwrap_or_default();
             sinks.par_iter_mut().enumerate().for_each(|(index, sink)| {
                 let (projection, line) = (index / lines, index % lines);
                 if failed[projection].is_none() {
-                    chunks
-                        .iter()
-                        .for_each(|chunk| sink.push(&plan, &chunk.lines[projection][line]));
+                    for (place, chunk) in chunks.iter().enumerate() {
+                        let instruments = beside.get(place);
+                        let instruments = instruments.map(|own| &own.lines[projection][line][..]);
+                        sink.push(&plan, &chunk.lines[projection][line], instruments);
+                    }
                 }
             });
             torques.push(&motion.torques, &mut decimated_torques);
@@ -105,10 +116,15 @@ impl Observer<'_> {
         }
         progress(log.samples(), log.samples());
         let partitions = points.partitions(self.projections);
+        let unusable = companion.and_then(Companion::into_failure);
         let mut sinks = sinks.into_iter();
         let system = |(failure, partition): (Option<Error>, _)| {
             let own: Vec<LineSink> = sinks.by_ref().take(lines).collect();
-            failure.map_or_else(|| Ok(observed(number, &plan, own, partition)), Err)
+            let mut observed = observed(number, &plan, own, partition);
+            if unusable.is_some() {
+                observed.instruments.clear();
+            }
+            failure.map_or_else(|| Ok(observed), Err)
         };
         let systems = failed.into_iter().zip(partitions).map(system).collect();
         let seen = Seen {
@@ -117,6 +133,7 @@ impl Observer<'_> {
             figures: points.figures,
             torques: plan.at_points(&decimated_torques, info.sizes.actuators),
             monitor: motions.into_monitor(),
+            unusable,
         };
         Ok((systems, seen))
     }
@@ -125,13 +142,13 @@ impl Observer<'_> {
     fn sinks(
         &self,
         plan: &Plan,
-        decimator: &Decimator,
-        samples: usize,
+        (decimator, samples): (&Decimator, usize),
+        instruments: bool,
     ) -> Result<Vec<LineSink>, Error> {
         let (lines, parameters) = (self.model.info().sizes.dof, self.base.len());
         let sink = |_| {
-            let stream = decimator.stream(parameters + 1, samples)?;
-            Ok(LineSink::new(plan, stream, parameters))
+            let stream = decimator.stream(row_width(parameters, instruments), samples)?;
+            Ok(LineSink::new(plan, stream, (parameters, instruments)))
         };
         (0..lines * self.projections.len()).map(sink).collect()
     }

@@ -82,7 +82,9 @@ fn stretches(equations: usize, budget: usize) -> Vec<Range<usize>> {
 #[derive(Debug)]
 pub(crate) struct LineSink {
     decimation: Decimation,
+    /// Columns and Y of an equation.
     width: usize,
+    instruments: Option<InstrumentSink>,
     /// Equations that have come.
     taken: usize,
     /// Decimated rows that are in no factor yet.
@@ -93,12 +95,68 @@ pub(crate) struct LineSink {
     points: Vec<f64>,
 }
 
+/// What is kept of the instruments of a line's equations.
+#[derive(Debug)]
+struct InstrumentSink {
+    /// Columns, instruments and Y of equations that are in no factor yet.
+    rows: Vec<f64>,
+    factor: Factor,
+    stretches: Vec<Vec<f64>>,
+}
+
+/// Values of a row that is decimated: columns and Y, then the instruments where there are some.
+pub(crate) const fn row_width(parameters: usize, instruments: bool) -> usize {
+    if instruments {
+        2 * parameters + 1
+    } else {
+        parameters + 1
+    }
+}
+
+impl InstrumentSink {
+    fn new(plan: &Plan, parameters: usize) -> Self {
+        Self {
+            rows: Vec::new(),
+            factor: Factor::new(2 * parameters),
+            stretches: vec![Vec::new(); plan.stretches.len()],
+        }
+    }
+
+    /// Takes the instruments of equation number `taken`, whose columns and Y are `own`.
+    fn push(&mut self, plan: &Plan, taken: usize, (own, instruments): (&[f64], &[f64])) {
+        let (y, columns) = own.split_last().unwrap_or((&0.0, &[]));
+        self.rows.extend_from_slice(columns);
+        self.rows.extend_from_slice(instruments);
+        self.rows.push(*y);
+        for (range, stretch) in plan.stretches.iter().zip(&mut self.stretches) {
+            if range.contains(&taken) {
+                stretch.extend_from_slice(instruments);
+            }
+        }
+        if self.rows.len() >= self.factor.worthwhile() * (self.factor.parameters() + 1) {
+            self.finish();
+        }
+    }
+
+    /// Adds the equations that wait.
+    fn finish(&mut self) {
+        self.factor.push_rows(&self.rows);
+        self.rows.clear();
+    }
+}
+
 impl LineSink {
-    /// A sink for equations in `parameters` unknowns that are decimated first.
-    pub(crate) fn new(plan: &Plan, decimation: Decimation, parameters: usize) -> Self {
+    /// A sink for equations in `parameters` unknowns that are decimated first, by a decimation for rows
+    /// of [`row_width`].
+    pub(crate) fn new(
+        plan: &Plan,
+        decimation: Decimation,
+        (parameters, instruments): (usize, bool),
+    ) -> Self {
         Self {
             decimation,
             width: parameters + 1,
+            instruments: instruments.then(|| InstrumentSink::new(plan, parameters)),
             taken: 0,
             rows: Vec::new(),
             factor: Factor::new(parameters),
@@ -108,11 +166,21 @@ impl LineSink {
         }
     }
 
-    /// Takes rows at the full rate.
-    pub(crate) fn push(&mut self, plan: &Plan, rows: &[f64]) {
+    /// Takes rows at the full rate; those of the instruments have room for Y, which they do not need.
+    pub(crate) fn push(&mut self, plan: &Plan, rows: &[f64], instruments: Option<&[f64]>) {
         let mut kept = Vec::new();
-        self.decimation.push(rows, &mut kept);
-        for row in kept.chunks_exact(self.width) {
+        let whole = row_width(self.width - 1, self.instruments.is_some());
+        if self.instruments.is_some() {
+            let both = joined(rows, instruments, self.width);
+            self.decimation.push(&both, &mut kept);
+        } else {
+            self.decimation.push(rows, &mut kept);
+        }
+        for row in kept.chunks_exact(whole) {
+            let (row, instruments) = row.split_at(self.width);
+            if let Some(sink) = &mut self.instruments {
+                sink.push(plan, self.taken, (row, instruments));
+            }
             if self.taken.is_multiple_of(plan.stride) {
                 self.points.extend_from_slice(row);
             }
@@ -136,15 +204,35 @@ impl LineSink {
     }
 }
 
+/// Rows of columns and Y with the instruments behind them; zeros where these are missing.
+fn joined(rows: &[f64], instruments: Option<&[f64]>, width: usize) -> Vec<f64> {
+    let count = width - 1;
+    let mut both = Vec::with_capacity(2 * rows.len());
+    for (index, row) in rows.chunks_exact(width).enumerate() {
+        both.extend_from_slice(row);
+        match instruments.and_then(|all| all.get(index * width..index * width + count)) {
+            Some(own) => both.extend_from_slice(own),
+            None => both.resize(both.len() + count, 0.0),
+        }
+    }
+    both
+}
+
 /// What the sinks of all lines hold of run number `run`.
 pub(crate) fn observed(
     run: usize,
     plan: &Plan,
-    sinks: Vec<LineSink>,
+    mut sinks: Vec<LineSink>,
     partition: Option<PartitionCondition>,
 ) -> Observed {
+    let mut instruments: Vec<InstrumentSink> = sinks
+        .iter_mut()
+        .filter_map(|sink| sink.instruments.take())
+        .collect();
+    instruments.iter_mut().for_each(InstrumentSink::finish);
     let width = sinks.first().map_or(1, |sink| sink.width);
-    let matrix = |rows: &[f64]| DMatrix::from_row_slice(rows.len() / width, width, rows);
+    let matrix =
+        |rows: &[f64], width: usize| DMatrix::from_row_slice(rows.len() / width, width, rows);
     let part = |part: usize| Part {
         run,
         lines: sinks
@@ -156,14 +244,22 @@ pub(crate) fn observed(
         run,
         lines: sinks
             .iter()
-            .map(|sink| matrix(&sink.stretches[stretch]))
+            .map(|sink| matrix(&sink.stretches[stretch], width))
+            .collect(),
+        instruments: instruments
+            .iter()
+            .map(|sink| matrix(&sink.stretches[stretch], width - 1))
             .collect(),
     };
     Observed {
         parts: (0..plan.ends.len()).map(part).collect(),
         stretches: (0..plan.stretches.len()).map(stretch).collect(),
         partition,
-        points: sinks.iter().map(|sink| matrix(&sink.points)).collect(),
+        points: sinks
+            .iter()
+            .map(|sink| matrix(&sink.points, width))
+            .collect(),
+        instruments: instruments.into_iter().map(|sink| sink.factor).collect(),
     }
 }
 

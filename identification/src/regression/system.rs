@@ -63,6 +63,8 @@ pub struct System {
     pub stretches: Vec<Stretch>,
     /// Where actuators are kept: how well they determine the platform.
     pub partition: Option<PartitionCondition>,
+    /// With instruments, R factor of the columns, the instruments and Y of each line; else empty.
+    pub instruments: Vec<Factor>,
 }
 
 /// The equations of a part of a run.
@@ -83,6 +85,8 @@ pub struct Stretch {
     pub run: usize,
     /// For each line of Γ: equations x (columns + 1), Y last.
     pub lines: Vec<DMatrix<f64>>,
+    /// With instruments, for each line of Γ: equations x columns; else empty.
+    pub instruments: Vec<DMatrix<f64>>,
 }
 
 impl System {
@@ -96,7 +100,15 @@ impl System {
             parts: Vec::new(),
             stretches: Vec::new(),
             partition: None,
+            instruments: Vec::new(),
         }
+    }
+
+    /// With instruments to come for every equation.
+    pub(crate) fn with_instruments(mut self) -> Self {
+        let wide = |line: &Factor| Factor::new(2 * line.parameters());
+        self.instruments = self.lines.iter().map(wide).collect();
+        self
     }
 
     /// Adds the equations of a run.
@@ -108,6 +120,12 @@ impl System {
                 .filter_map(|part| part.lines.get(line));
             of_line.for_each(|part| factor.add(part));
         }
+        // Instruments serve if all equations have them.
+        if observed.instruments.is_empty() {
+            self.instruments.clear();
+        }
+        let lines = self.instruments.iter_mut().zip(&observed.instruments);
+        lines.for_each(|(line, factor)| line.add(factor));
         self.parts.extend(observed.parts);
         self.stretches.extend(observed.stretches);
         let own = self.partition.take();
@@ -121,6 +139,8 @@ pub(crate) struct Observed {
     pub(crate) parts: Vec<Part>,
     pub(crate) stretches: Vec<Stretch>,
     pub(crate) partition: Option<PartitionCondition>,
+    /// As in the system.
+    pub(crate) instruments: Vec<Factor>,
     /// Equations at the points of the plots, line by line: points x (columns + 1).
     pub(crate) points: Vec<DMatrix<f64>>,
 }

@@ -8,6 +8,16 @@ use crate::{
     regression::{projection::ModelKind, system::PartitionCondition},
 };
 
+/// How parameters are estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Estimator {
+    /// By ordinary or weighted least squares.
+    LeastSquares,
+    /// By instrumental variables.
+    InstrumentalVariables,
+}
+
 /// One estimate of the robot's parameters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimate {
@@ -17,6 +27,8 @@ pub struct Estimate {
     pub kept_actuators: Vec<String>,
     /// Which parameters are estimated.
     pub stage: Stage,
+    /// How.
+    pub estimator: Estimator,
     /// Whether least squares were weighted.
     pub weighted: bool,
     /// The parameters.

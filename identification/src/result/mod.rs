@@ -7,6 +7,6 @@ mod run;
 mod stage;
 
 pub use cross_validation::CrossValidation;
-pub use estimate::{Estimate, ParameterEstimate};
+pub use estimate::{Estimate, Estimator, ParameterEstimate};
 pub use run::RunSummary;
 pub use stage::Stage;

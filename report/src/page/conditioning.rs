@@ -49,7 +49,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
 
 /// Condition numbers of the systems, and the worst of the kept actuators.
 fn table(identification: &Identification) -> String {
-    let rows = identification.estimates.iter().map(|one| {
+    let rows = identification.by_least_squares().map(|one| {
         let partition = one
             .partition
             .as_ref()

@@ -199,6 +199,7 @@ fn an_identification_without_anything_still_has_a_page() {
         thresholds: Thresholds::default(),
         calibration: None,
         tracking: Vec::new(),
+        errors_in_regressor: Vec::new(),
         settings: settings(),
         figures: Figures::default(),
     };

@@ -6,6 +6,7 @@ mod held_out;
 mod negative_parameters;
 mod partition;
 pub(super) mod raw_numbers;
+mod regressor_errors;
 mod relative_error;
 mod torque_faults;
 
@@ -15,7 +16,7 @@ use super::check::Check;
 use crate::{
     data::{Dataset, Log},
     error::Error,
-    estimation::base::BaseParameters,
+    estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
     monitor::Monitor,
     regression::{columns::ColumnSet, projection::ModelKind, system::System},
     result::{CrossValidation, Estimate, Stage},
@@ -38,6 +39,8 @@ pub(crate) struct Context<'a> {
     pub(crate) estimates: &'a [(usize, Estimate)],
     /// Every estimate on every run that was held out.
     pub(crate) cross_validation: &'a [CrossValidation],
+    /// For each model, the estimates by instruments beside those by least squares.
+    pub(crate) errors_in_regressor: &'a [ErrorsInRegressor],
 }
 
 /// What has been watched of a run while it was gone through.
@@ -73,12 +76,13 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 7] = [
+const CHECKS: [Function; 8] = [
     raw_numbers::check,
     closure::check,
     torque_faults::check,
     negative_parameters::check,
     relative_error::check,
+    regressor_errors::check,
     partition::check,
     held_out::check,
 ];

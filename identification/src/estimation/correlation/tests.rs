@@ -51,8 +51,13 @@ fn system(a: f64, seed: u64) -> System {
         line_names: vec![String::from("x"), String::from("y")],
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
-        stretches: vec![Stretch { run: 0, lines }],
+        stretches: vec![Stretch {
+            run: 0,
+            lines,
+            instruments: Vec::new(),
+        }],
         partition: None,
+        instruments: Vec::new(),
     }
 }
 
@@ -70,6 +75,8 @@ pub(crate) fn settings() -> Settings {
         normalisation: Normalisation::Unbiased,
         asymmetric_friction: false,
         weighted: true,
+        instruments: crate::settings::Instruments::None,
+        period_s: None,
         kept_actuators: Vec::new(),
         seed: 1,
     }
@@ -133,8 +140,10 @@ fn a_residual_that_repeats_itself_does_not_average_out() {
             stretches: vec![Stretch {
                 run: 0,
                 lines: vec![rows],
+                instruments: Vec::new(),
             }],
             partition: None,
+            instruments: Vec::new(),
         };
         let found = estimate(&system, &[0, 1], &settings()).expect("an estimate");
         let noise = Noise::new(&system, &[0, 1], &found).expect("equations");

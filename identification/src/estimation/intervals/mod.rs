@@ -46,24 +46,36 @@ impl Intervals {
     /// those under white residuals.
     pub(crate) fn new(system: &System, selected: &[usize], estimation: &Estimation) -> Self {
         let context = Context::new(selected, estimation);
-        let columns = selected.to_vec();
-        let values = &estimation.values;
-        let Some(mut covariance) = Covariance::new(system, &context) else {
+        Self::of_context(system, &context).unwrap_or_else(|| {
             let square = estimation.residual_deviation.powi(2);
-            return Self::known(columns, values, context.inverse * square, f64::INFINITY);
-        };
+            let (columns, values) = (selected.to_vec(), &estimation.values);
+            Self::known(columns, values, context.inverse * square, f64::INFINITY)
+        })
+    }
+
+    /// Those of any linear estimate; none without successive equations.
+    pub(crate) fn of_context(system: &System, context: &Context<'_>) -> Option<Self> {
+        let columns = context.selected.to_vec();
+        let values = &context.estimation.values;
+        let mut covariance = Covariance::new(system, context)?;
         let mut sorted = covariance.freedoms.clone();
         sorted.sort_by(f64::total_cmp);
         let freedom = sorted[sorted.len() / 2];
-        covariance.enlarge(&ratios(system, &context));
+        covariance.enlarge(&ratios(system, context));
         let ends = ends(values, &covariance.matrix, &covariance.freedoms);
-        Self {
+        Some(Self {
             columns,
             values: values.clone(),
             covariance: covariance.matrix,
             freedom,
             ends,
-        }
+        })
+    }
+
+    /// The standard deviation of each estimate.
+    pub(crate) fn deviations(&self) -> Vec<f64> {
+        let variances = self.covariance.diagonal();
+        variances.iter().map(|variance| variance.sqrt()).collect()
     }
 
     /// Those of estimates with a known covariance of so many degrees of freedom.

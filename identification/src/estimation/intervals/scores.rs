@@ -25,6 +25,12 @@
 //! Its trace tells by how much σ_i² is too small, which is made good, and (tr C)²/tr C² are the degrees
 //! of freedom of σ_i² (Bell and McCaffrey, *Survey Methodology* 28, 2002), which are few where a few
 //! instants outweigh all others.
+//!
+//! Any other estimate that is linear in Y serves, too: with instruments Z, rows x = [w z] and the
+//! estimate M Σ λ² x y, the scores are M x ρ, the matrix A^-1 G_t A^-1 becomes M G_t Mᵀ with G_t of the
+//! rows x, and z_b = R^-T (Σ_t φ_b G_t)_w Mᵀ e_i with the rows of G_t that belong to w.
+
+use std::ops::Range;
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -76,17 +82,19 @@ impl Covariance {
                 shares.iter().map(|share| of(&share.moments[i])).sum()
             };
             let (expected, squares) = (sum(|own| own.expected), sum(|own| own.squares));
-            factors.push((sum(|own| own.wanted) / expected).sqrt());
-            freedoms.push(expected * expected / squares);
+            // What does not depend on the data at all has no variance.
+            let varies = expected > 0.0;
+            let factor = (sum(|own| own.wanted) / expected).sqrt();
+            factors.push(if varies { factor } else { 1.0 });
+            let freedom = expected * expected / squares;
+            freedoms.push(if varies { freedom } else { f64::INFINITY });
         }
         let scale = equations as f64 / kept as f64;
         for (i, j) in (0..p).flat_map(|i| (0..p).map(move |j| (i, j))) {
             matrix[(i, j)] *= scale * factors[i] * factors[j];
         }
-        let sound = matrix
-            .iter()
-            .chain(&freedoms)
-            .all(|value| value.is_finite());
+        let sound = matrix.iter().all(|value| value.is_finite())
+            && freedoms.iter().all(|freedom| !freedom.is_nan());
         sound.then_some(Self { matrix, freedoms })
     }
 
@@ -111,6 +119,8 @@ pub(crate) struct Context<'a> {
     pub(crate) estimation: &'a Estimation,
     /// A^-1.
     pub(crate) inverse: DMatrix<f64>,
+    /// M of an estimate that is not that of least squares: p x 2 p, for columns, then instruments.
+    influence: Option<DMatrix<f64>>,
 }
 
 /// What a stretch adds to the covariance.
@@ -119,6 +129,16 @@ struct Share {
     /// (1/B) Σ_b T_b T_bᵀ.
     matrix: DMatrix<f64>,
     moments: Vec<Moments>,
+}
+
+/// Sections of a stretch, a column for each.
+struct Sections {
+    /// Σ x ρ, q x sections, of rows x of q values.
+    scores: DMatrix<f64>,
+    /// [M G Mᵀ]_ii, p x sections.
+    variances: DMatrix<f64>,
+    /// The rows of G Mᵀ that belong to columns, p² x sections.
+    fitted: DMatrix<f64>,
 }
 
 /// For one parameter, what white noise of unit variance gives.
@@ -145,7 +165,22 @@ impl<'a> Context<'a> {
             selected,
             estimation,
             inverse: triangle * triangle.transpose(),
+            influence: None,
         }
+    }
+
+    /// That of another linear estimate, which weighs columns and instruments by the matrix M; the
+    /// `estimation` has the values by which its residual is told, and R^-1 of least squares.
+    pub(crate) fn with_influence(self, influence: DMatrix<f64>) -> Self {
+        Self {
+            influence: Some(influence),
+            ..self
+        }
+    }
+
+    /// M.
+    fn influence(&self) -> &DMatrix<f64> {
+        self.influence.as_ref().unwrap_or(&self.inverse)
     }
 
     fn share(&self, stretch: &Stretch) -> Option<Share> {
@@ -155,74 +190,97 @@ impl<'a> Context<'a> {
         if sections <= cosines {
             return None;
         }
-        let (scores, grams) = self.sections(stretch, equations, sections);
+        let told = self.sections(stretch, equations, sections);
         let waves = DMatrix::from_fn(sections, cosines, |k, b| {
             std::f64::consts::SQRT_2 * cosine(b + 1, k, sections)
         });
-        let sums = &self.inverse * scores * &waves;
+        let sums = self.influence() * &told.scores * &waves;
         let matrix = &sums * sums.transpose() / cosines as f64;
         Some(Share {
             equations,
             matrix,
-            moments: self.moments(&grams, &waves),
+            moments: self.moments(&told, &waves),
         })
     }
 
-    /// For each section of a stretch its score, p x sections, and its G, p² x sections.
-    fn sections(
-        &self,
-        stretch: &Stretch,
-        equations: usize,
-        sections: usize,
-    ) -> (DMatrix<f64>, DMatrix<f64>) {
-        let p = self.selected.len();
-        let mut scores = DMatrix::zeros(p, sections);
-        let mut grams = DMatrix::zeros(p * p, sections);
+    /// What is needed of each section of a stretch.
+    fn sections(&self, stretch: &Stretch, equations: usize, sections: usize) -> Sections {
+        let turned = self.influence().transpose();
+        let (q, p) = turned.shape();
+        let mut told = Sections {
+            scores: DMatrix::zeros(q, sections),
+            variances: DMatrix::zeros(p, sections),
+            fitted: DMatrix::zeros(p * p, sections),
+        };
         for section in 0..sections {
             let first = equations * section / sections;
             let count = equations * (section + 1) / sections - first;
-            let mut gram = DMatrix::zeros(p, p);
-            for (line, weight) in stretch.lines.iter().zip(&self.estimation.weights) {
+            let mut gram = DMatrix::zeros(q, q);
+            for (number, (line, weight)) in stretch
+                .lines
+                .iter()
+                .zip(&self.estimation.weights)
+                .enumerate()
+            {
                 let rows = line.rows(first, count);
-                let own = rows.select_columns(self.selected) * *weight;
+                let own = self.rows(stretch, number, first..first + count) * *weight;
                 let mut residual = rows.column(rows.ncols() - 1) * *weight;
+                // The columns come before the instruments.
                 for (column, value) in own.column_iter().zip(&self.estimation.values) {
                     residual.axpy(-value, &column, 1.0);
                 }
-                scores
+                told.scores
                     .column_mut(section)
                     .gemv_tr(1.0, &own, &residual, 1.0);
                 gram.gemm_tr(1.0, &own, &own, 1.0);
             }
-            grams.column_mut(section).copy_from_slice(gram.as_slice());
+            let product = gram * &turned;
+            for i in 0..p {
+                told.variances[(i, section)] = turned.column(i).dot(&product.column(i));
+            }
+            let columns = product.rows(0, p);
+            let mut place = told.fitted.column_mut(section);
+            place
+                .iter_mut()
+                .zip(columns.iter())
+                .for_each(|(to, from)| *to = *from);
         }
-        (scores, grams)
+        told
     }
 
-    fn moments(&self, grams: &DMatrix<f64>, waves: &DMatrix<f64>) -> Vec<Moments> {
+    /// The rows x of a line of a stretch.
+    fn rows(&self, stretch: &Stretch, line: usize, range: Range<usize>) -> DMatrix<f64> {
+        let pick = |rows: &DMatrix<f64>| {
+            let rows = rows.rows(range.start, range.len());
+            rows.select_columns(self.selected)
+        };
+        let columns = pick(&stretch.lines[line]);
+        match (&self.influence, stretch.instruments.get(line)) {
+            (Some(_), Some(instruments)) => {
+                let instruments = pick(instruments);
+                let p = columns.ncols();
+                let mut both = columns.resize_horizontally(2 * p, 0.0);
+                both.columns_mut(p, p).copy_from(&instruments);
+                both
+            }
+            _ => columns,
+        }
+    }
+
+    fn moments(&self, told: &Sections, waves: &DMatrix<f64>) -> Vec<Moments> {
         let p = self.selected.len();
         let (sections, cosines) = waves.shape();
-        // [A^-1 G_k A^-1]_ii of all sections k.
-        let diagonals: Vec<Vec<f64>> = grams
-            .column_iter()
-            .map(|gram| {
-                let gram = nalgebra::DMatrixView::from_slice(gram.as_slice(), p, p);
-                let product = gram * &self.inverse;
-                let own = |i: usize| self.inverse.column(i).dot(&product.column(i));
-                (0..p).map(own).collect()
-            })
-            .collect();
-        let sums = grams * waves;
+        let sums = &told.fitted * waves;
         let fitted: Vec<DMatrix<f64>> = sums
             .column_iter()
             .map(|sum| {
                 let sum = nalgebra::DMatrixView::from_slice(sum.as_slice(), p, p);
-                self.estimation.inverse.tr_mul(&(sum * &self.inverse))
+                self.estimation.inverse.tr_mul(&sum)
             })
             .collect();
         (0..p)
             .map(|i| {
-                let own: Vec<f64> = diagonals.iter().map(|diagonal| diagonal[i]).collect();
+                let own = told.variances.row(i);
                 // φ_b φ_b' are cosines of the difference and of the sum.
                 let spectrum: Vec<f64> = (0..=2 * cosines)
                     .map(|m| {

@@ -73,8 +73,13 @@ fn system(kind: Kind, samples: usize, seed: u64) -> System {
         line_names: vec![String::from("x"), String::from("y")],
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
-        stretches: vec![Stretch { run: 0, lines }],
+        stretches: vec![Stretch {
+            run: 0,
+            lines,
+            instruments: Vec::new(),
+        }],
         partition: None,
+        instruments: Vec::new(),
     }
 }
 

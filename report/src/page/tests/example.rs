@@ -7,10 +7,10 @@ use crate::{
 use overact::{Info, Sizes};
 use overact_identification::{
     About, BaseParameter, Check, CheckKind, ConditionSeries, CrossValidation, Drift, Estimate,
-    Figures, Grade, Identification, LineError, LineResidual, ModelKind, Normalisation,
-    ParameterEstimate, PartitionCondition, PredictionFigures, Regrouping, Removal, ResidualFigures,
-    ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage, Thresholds, TorqueComparison,
-    TrackingError, Verdict,
+    Estimator, Figures, Grade, Identification, Instruments, LineError, LineResidual, ModelKind,
+    Normalisation, ParameterEstimate, PartitionCondition, PredictionFigures, Regrouping, Removal,
+    ResidualFigures, ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage, Thresholds,
+    TorqueComparison, TrackingError, Verdict,
 };
 
 /// A name that breaks whatever does not escape it.
@@ -75,6 +75,7 @@ fn estimate(model: ModelKind, stage: Stage) -> Estimate {
         model,
         kept_actuators: vec![HOSTILE.to_owned()],
         stage,
+        estimator: Estimator::LeastSquares,
         weighted: true,
         parameters: if stage == Stage::Essential {
             // Cancelling has moved it out of its interval.
@@ -204,6 +205,8 @@ pub(super) fn settings() -> Settings {
         normalisation: Normalisation::Unbiased,
         asymmetric_friction: false,
         weighted: true,
+        instruments: Instruments::None,
+        period_s: None,
         kept_actuators: vec![0],
         seed: 1,
     }
@@ -273,6 +276,7 @@ pub(super) fn identification() -> Identification {
                 largest: vec![largest],
             })
             .collect(),
+        errors_in_regressor: Vec::new(),
         settings: settings(),
         figures: figures(),
     }

@@ -1,0 +1,142 @@
+//! Whether errors of the positions bias least squares, as the test of Durbin, Wu and Hausman tells.
+
+use super::Context;
+use crate::{
+    assessment::check::{About, Check, CheckKind, Grade},
+    error::Error,
+    estimation::instruments::regressor::{Agreement, ErrorsInRegressor, RepeatedRun},
+    settings::Instruments,
+    significant,
+};
+
+/// Looks at all models.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    Ok(context.errors_in_regressor.iter().map(of_model).collect())
+}
+
+fn of_model(told: &ErrorsInRegressor) -> Check {
+    let new = |words: String| {
+        Check::new(CheckKind::RegressorErrors, About::Model, words).of_model(told.model)
+    };
+    let Some(agreement) = &told.agreement else {
+        return new(untested(told));
+    };
+    let check = |words: String| {
+        new(words)
+            .measured(agreement.probability, "probability")
+            .against(
+                agreement.level,
+                format!(
+                    "false alarms in {} % of all reports",
+                    significant(100.0 * agreement.level, 2)
+                ),
+            )
+    };
+    if told.is_weak() {
+        return check(format!(
+            "the instruments ({}) are too weak to test the positions' errors: F = {} is below {}, the rule of Staiger and Stock; do not use the estimate by instruments",
+            source(told),
+            significant(agreement.weakest, 3),
+            agreement.weak_below,
+        ));
+    }
+    let words = outcome(told, agreement) + &returning(&told.runs);
+    let spoiled: Vec<String> = told
+        .parameters
+        .iter()
+        .filter(|one| agreement.differs && one.spoiled)
+        .map(|one| one.name.clone())
+        .collect();
+    let check = check(words);
+    if spoiled.is_empty() {
+        check
+    } else {
+        check.allowing(Grade::UseListed).spoiling(spoiled)
+    }
+}
+
+/// Why nothing is tested, in words.
+fn untested(told: &ErrorsInRegressor) -> String {
+    let start = "whether errors of the positions bias the estimates is not tested: ";
+    let why = match (&told.missing, told.instruments) {
+        (Some(why), _) => why.clone(),
+        (None, Instruments::None) => String::from("`instruments` is \"none\""),
+        (None, _) => String::from("there are no instruments"),
+    };
+    format!("{start}{why}")
+}
+
+/// Where the instruments come from, in words.
+fn source(told: &ErrorsInRegressor) -> String {
+    match told.instruments {
+        Instruments::Simulated => return String::from("the motion of the simulated robot"),
+        Instruments::None => return String::from("none"),
+        Instruments::Periods => {}
+    }
+    let one = |run: &RepeatedRun| {
+        format!(
+            "{} of {} s in {}{}",
+            run.periods,
+            significant(run.period_s, 6),
+            run.run,
+            if run.found { ", found" } else { "" }
+        )
+    };
+    let runs: Vec<String> = told.runs.iter().map(one).collect();
+    format!("the other periods: {}", runs.join("; "))
+}
+
+/// Whether the estimates agree, in words.
+fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
+    let [k, rest] = agreement.degrees_of_freedom;
+    let test = format!(
+        "Durbin, Wu and Hausman: F = {} on {k:.0} and {rest:.0} degrees of freedom, which chance exceeds with a probability of {}",
+        significant(agreement.statistic, 3),
+        significant(agreement.probability, 2),
+    );
+    if !agreement.differs {
+        return format!(
+            "least squares and instruments ({}) agree ({test})",
+            source(told)
+        );
+    }
+    let spoiled = told.parameters.iter().filter(|one| one.spoiled);
+    let spoiled: Vec<String> = spoiled
+        .map(|one| {
+            format!(
+                "`{}` {} by least squares, {} {} by instruments",
+                one.name,
+                significant(one.least_squares, 4),
+                significant(one.instruments, 4),
+                one.unit
+            )
+        })
+        .collect();
+    if spoiled.is_empty() {
+        return format!(
+            "least squares and instruments ({}) differ by more than chance ({test}), but no parameter by more than its standard deviation: the bias is harmless",
+            source(told)
+        );
+    }
+    format!(
+        "errors of the positions bias least squares, as instruments ({}) tell ({test}): {}; take the estimate by instruments for these",
+        source(told),
+        spoiled.join(", ")
+    )
+}
+
+/// What is to be said of errors that return with the motion.
+fn returning(runs: &[RepeatedRun]) -> String {
+    let worst = runs
+        .iter()
+        .filter(|run| run.errors_return())
+        .filter_map(|run| Some((run, run.error_correlation?)))
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    worst.map_or_else(String::new, |(run, correlation)| {
+        format!(
+            "; in {} the errors of the positions return with the motion (correlation {} between periods), as an encoder's steps do: other periods have them, too, so this part of them is neither found nor cured; vary the motion from period to period, or describe the controller for simulated instruments",
+            run.run,
+            significant(correlation, 2)
+        )
+    })
+}

@@ -1,0 +1,138 @@
+//! The period after which a motion repeats itself, found from the motion.
+//!
+//! The part D(L) of the variance by which positions differ from those L samples before is small at every
+//! multiple of the period. It is looked for on some thousand means first, then next to each of its
+//! minima sample by sample. A period that has no whole number of samples is off by a part of one; among
+//! its multiples, the first one that fits as well as the best is taken.
+
+use super::Log;
+use crate::error::Error;
+
+/// Values of the beginning of a run in which the period is looked for (4 MB), so that memory does not
+/// grow with the run.
+const LARGEST_BEGINNING: usize = 1 << 19;
+
+/// Means on which minima are looked for.
+const MEANS: usize = 2048;
+
+/// Shortest period, in means.
+const SHORTEST: usize = 8;
+
+/// D of means below which a minimum is looked at.
+const LARGEST_COARSE: f64 = 0.1;
+
+/// D below which a motion repeats itself.
+const LARGEST_FINE: f64 = 1e-3;
+
+/// Pairs of samples from which D is told.
+const PAIRS: usize = 2000;
+
+/// A lag fits as well as the best if D is at most so many times as large.
+const AS_GOOD: f64 = 2.0;
+
+/// Samples of the period, or of the fewest periods that have a whole number of them.
+pub(super) fn period(log: &Log) -> Result<Option<usize>, Error> {
+    let n = log.actuators();
+    let motion = Motion::new(beginning(log, LARGEST_BEGINNING / n)?, n);
+    let factor = motion.samples().div_ceil(MEANS).max(1);
+    let coarse = Motion::new(motion.means(factor), n);
+    let last = coarse.samples() / 2;
+    let lags: Vec<f64> = (0..=last + 1)
+        .map(|lag| coarse.difference(lag, usize::MAX))
+        .collect();
+    let minimum = |lag: &usize| {
+        let here = lags[*lag];
+        here < LARGEST_COARSE && here <= lags[lag - 1] && here <= lags[lag + 1]
+    };
+    let found: Vec<(usize, f64)> = (SHORTEST..=last)
+        .filter(minimum)
+        .filter_map(|lag| motion.finest((lag - 1) * factor..=(lag + 1) * factor))
+        .collect();
+    let best = found.iter().map(|(_, d)| *d).fold(f64::INFINITY, f64::min);
+    let fits = |(_, d): &&(usize, f64)| *d < LARGEST_FINE && *d <= AS_GOOD * best;
+    Ok(found.iter().find(fits).map(|(lag, _)| *lag))
+}
+
+/// Positions of the first `samples` of a run.
+fn beginning(log: &Log, samples: usize) -> Result<Vec<f64>, Error> {
+    let wanted = samples.min(log.samples()) * log.actuators();
+    let mut positions = Vec::with_capacity(wanted);
+    let mut reader = log.reader()?;
+    while positions.len() < wanted
+        && let Some(block) = reader.next()?
+    {
+        let rest = wanted - positions.len();
+        positions.extend(block.positions.into_iter().take(rest));
+    }
+    Ok(positions)
+}
+
+/// Positions of all actuators, freed of their means, by their deviations.
+struct Motion {
+    values: Vec<f64>,
+    width: usize,
+}
+
+impl Motion {
+    fn new(mut values: Vec<f64>, width: usize) -> Self {
+        let samples = (values.len() / width).max(1) as f64;
+        let mut moving = 0_u32;
+        for i in 0..width {
+            let own = || values[i..].iter().step_by(width);
+            let mean = own().sum::<f64>() / samples;
+            let variance = own().map(|q| (q - mean).powi(2)).sum::<f64>() / samples;
+            // An actuator that stands still says nothing.
+            let scale = if variance > 0.0 {
+                moving += 1;
+                variance.sqrt().recip()
+            } else {
+                0.0
+            };
+            let column = values[i..].iter_mut().step_by(width);
+            column.for_each(|q| *q = (*q - mean) * scale);
+        }
+        let whole = f64::from(moving.max(1)).sqrt().recip();
+        values.iter_mut().for_each(|q| *q *= whole);
+        Self { values, width }
+    }
+
+    fn samples(&self) -> usize {
+        self.values.len() / self.width
+    }
+
+    /// Means of so many samples each.
+    fn means(&self, count: usize) -> Vec<f64> {
+        let mut means = Vec::new();
+        for rows in self.values.chunks_exact(count * self.width) {
+            for i in 0..self.width {
+                let sum: f64 = rows[i..].iter().step_by(self.width).sum();
+                means.push(sum / count as f64);
+            }
+        }
+        means
+    }
+
+    /// D of a lag, from about so many pairs of samples.
+    fn difference(&self, lag: usize, pairs: usize) -> f64 {
+        let count = self.samples().saturating_sub(lag);
+        if count == 0 {
+            return f64::INFINITY;
+        }
+        let stride = (count / pairs).max(1);
+        let row = |sample: usize| &self.values[sample * self.width..(sample + 1) * self.width];
+        let (mut sum, mut taken) = (0.0, 0);
+        for sample in (0..count).step_by(stride) {
+            let both = row(sample).iter().zip(row(sample + lag));
+            sum += both.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            taken += 1;
+        }
+        0.5 * sum / f64::from(taken)
+    }
+
+    /// The lag with the smallest D, and D, where two periods are in the run.
+    fn finest(&self, lags: std::ops::RangeInclusive<usize>) -> Option<(usize, f64)> {
+        lags.filter(|lag| *lag > 0 && 2 * lag <= self.samples())
+            .map(|lag| (lag, self.difference(lag, PAIRS)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}

@@ -1,0 +1,180 @@
+//! Durbin, Wu and Hausman: whether least squares and instruments estimate the same.
+//!
+//! If the regressor has no errors, both estimates are consistent and their difference d is noise. Its
+//! instants are weighed by M = [-(Wᵀ Λ² W)^-1, (Zᵀ Λ² W)^-1], so its covariance V is found as that of any
+//! linear estimate (see `intervals::scores`), whatever the residual is like in time, size and between the
+//! lines; the textbook difference of two covariance matrices holds for white residuals only. Then
+//!
+//! ```text
+//! F = (ν - k + 1)/(ν k) dᵀ V^-1 d
+//! ```
+//!
+//! has Fisher's distribution of k and ν - k + 1 degrees of freedom (Hotelling), with k the rank of V:
+//! columns without errors add nothing. For each parameter d_i/√V_ii is Student's of ν_i degrees, and
+//! counts as different at the level of the whole test divided by the number of parameters (Bonferroni).
+//! Where k exceeds half of ν, the joint test is that of the parameter that differs most.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::Instrumental;
+use crate::{
+    estimation::{
+        estimate::Estimation,
+        intervals::{
+            distributions::{fisher_tail, student_tail},
+            scores::{Context, Covariance},
+        },
+    },
+    regression::system::System,
+};
+
+/// The probability with which estimates that agree are called different.
+pub(crate) const LEVEL: f64 = 0.05;
+
+/// Directions of V below this part of the largest, in units of deviations, are rounding.
+const SMALLEST_DIRECTION: f64 = 1e-9;
+
+/// A difference below this part of the standard deviation is rounding.
+const SMALLEST_DIFFERENCE: f64 = 1e-6;
+
+/// The outcome of the test.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Hausman {
+    /// F.
+    pub(crate) statistic: f64,
+    /// k and ν - k + 1.
+    pub(crate) freedoms: [f64; 2],
+    /// Of a larger F by chance.
+    pub(crate) probability: f64,
+    /// Each parameter.
+    pub(crate) parameters: Vec<Difference>,
+}
+
+/// What both estimates of a parameter differ by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Difference {
+    /// d_i, instruments less least squares.
+    pub(crate) difference: f64,
+    /// √V_ii.
+    pub(crate) deviation: f64,
+    /// Of a larger difference by chance.
+    pub(crate) probability: f64,
+}
+
+impl Hausman {
+    /// Compares the estimates of the columns `selected`; none without successive equations.
+    pub(crate) fn new(
+        system: &System,
+        selected: &[usize],
+        least_squares: &Estimation,
+        instrumental: &Instrumental,
+    ) -> Option<Self> {
+        let context = Context::new(selected, least_squares);
+        let mut influence = instrumental.influence()?;
+        let p = selected.len();
+        influence.columns_mut(0, p).copy_from(&-&context.inverse);
+        let covariance = Covariance::new(system, &context.with_influence(influence))?;
+        let pairs = instrumental.estimation.values.iter();
+        let pairs = pairs.zip(&least_squares.values);
+        let differences: Vec<f64> = pairs.map(|(z, w)| z - w).collect();
+        let parameters = (0..p).map(|i| {
+            let deviation = covariance.matrix[(i, i)].sqrt();
+            let scale = least_squares.standard_deviations[i];
+            let noise = SMALLEST_DIFFERENCE * scale;
+            let (d, freedom) = (differences[i], covariance.freedoms[i]);
+            let same = d.abs() <= noise || deviation == 0.0;
+            Difference {
+                difference: d,
+                deviation,
+                probability: if same {
+                    1.0
+                } else {
+                    student_tail(d / deviation, freedom)
+                },
+            }
+        });
+        Some(Self::judged(parameters.collect(), &covariance))
+    }
+
+    /// The joint test.
+    fn judged(parameters: Vec<Difference>, covariance: &Covariance) -> Self {
+        let differs = |i: &usize| parameters[*i].probability < 1.0;
+        let places: Vec<usize> = (0..parameters.len()).filter(differs).collect();
+        let mut freedoms: Vec<f64> = places.iter().map(|&i| covariance.freedoms[i]).collect();
+        freedoms.sort_by(f64::total_cmp);
+        let Some(&freedom) = freedoms.get(freedoms.len() / 2) else {
+            return Self {
+                statistic: 0.0,
+                freedoms: [0.0, f64::INFINITY],
+                probability: 1.0,
+                parameters,
+            };
+        };
+        let (square, rank) = distance(&parameters, &places, &covariance.matrix);
+        let rest = freedom - rank + 1.0;
+        if rank > 0.5 * freedom {
+            return Self::of_the_largest(parameters, &places, covariance);
+        }
+        let statistic = rest / (freedom * rank) * square;
+        Self {
+            statistic,
+            freedoms: [rank, rest],
+            probability: fisher_tail(statistic, rank, rest),
+            parameters,
+        }
+    }
+
+    /// The joint test where there are too few degrees of freedom for all parameters together.
+    fn of_the_largest(
+        parameters: Vec<Difference>,
+        places: &[usize],
+        covariance: &Covariance,
+    ) -> Self {
+        let least = |a: &&usize, b: &&usize| {
+            let [a, b] = [a, b].map(|place| parameters[**place].probability);
+            a.total_cmp(&b)
+        };
+        let place = places.iter().min_by(least).copied().unwrap_or_default();
+        let own = parameters[place];
+        let count = places.len() as f64;
+        Self {
+            statistic: (own.difference / own.deviation).powi(2),
+            freedoms: [1.0, covariance.freedoms[place]],
+            probability: (count * own.probability).min(1.0),
+            parameters,
+        }
+    }
+
+    /// Whether the estimates differ by more than chance explains.
+    pub(crate) fn rejects(&self) -> bool {
+        self.probability < LEVEL
+    }
+
+    /// Whether a parameter on its own does.
+    pub(crate) fn differs(&self, parameter: &Difference) -> bool {
+        parameter.probability * (self.parameters.len() as f64) < LEVEL
+    }
+}
+
+/// dᵀ V^-1 d of some parameters in units of their deviations, and the rank of V.
+fn distance(parameters: &[Difference], places: &[usize], covariance: &DMatrix<f64>) -> (f64, f64) {
+    let deviation = |place: usize| parameters[places[place]].deviation;
+    let scaled = DMatrix::from_fn(places.len(), places.len(), |i, j| {
+        covariance[(places[i], places[j])] / (deviation(i) * deviation(j))
+    });
+    let values = places.iter().map(|&place| {
+        let own = parameters[place];
+        own.difference / own.deviation
+    });
+    let values = DVector::from_iterator(places.len(), values);
+    let system = SymmetricEigen::new(scaled);
+    let floor = SMALLEST_DIRECTION * system.eigenvalues.max();
+    let pairs = system
+        .eigenvalues
+        .iter()
+        .zip(system.eigenvectors.column_iter());
+    let kept = pairs.filter(|(value, _)| **value > floor);
+    kept.fold((0.0, 0.0), |(square, rank), (value, direction)| {
+        (square + direction.dot(&values).powi(2) / value, rank + 1.0)
+    })
+}
