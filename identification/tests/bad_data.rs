@@ -245,6 +245,28 @@ fn swapped_columns_are_named() {
 }
 
 #[test]
+fn two_mistakes_are_not_explained_by_one() {
+    let both = |positions: &mut Vec<f64>| {
+        for row in positions.chunks_exact_mut(4) {
+            row.swap(0, 2);
+            row[3] = -row[3];
+        }
+    };
+    match with(|_, positions, _| both(positions)) {
+        Ok(result) => {
+            let found = found(&result);
+            let explained = [CheckKind::SwappedColumns, CheckKind::WrongSign];
+            assert!(!found.is_empty());
+            assert!(
+                !found.iter().any(|(kind, ..)| explained.contains(kind)),
+                "{found:?}"
+            );
+        }
+        Err(error) => assert!(!error.to_string().contains(" look"), "{error}"),
+    }
+}
+
+#[test]
 fn degrees_are_named() {
     let result = with(|_, positions, _| positions.iter_mut().for_each(|q| *q = q.to_degrees()));
     match result {

@@ -10,8 +10,8 @@ use std::{collections::BTreeMap, f64::consts::PI};
 use nalgebra::DMatrix;
 use overact::{Function, Model};
 use overact_identification::{
-    Dataset, Log, Motion, Projection, Settings, Stage, estimate_projection, identify, motion,
-    prepare,
+    Dataset, Log, ModelKind, Motion, Projection, Settings, Stage, estimate_projection, identify,
+    motion, prepare, study,
 };
 use point::{Point, column, leg};
 use rand::{RngExt, SeedableRng};
@@ -216,5 +216,55 @@ fn noise_is_covered_by_the_standard_deviations() {
             .expect("its estimate");
         assert!(cross.relative_error_percent < 1.5 * own.relative_error_percent);
         assert_eq!(cross.torques.len(), 3);
+    }
+}
+
+/// ||Y - W χ|| and ||Y|| of a run on the platform's equations, χ being the base parameters of another
+/// run.
+fn predicted(run: &Log, from: &Log) -> (f64, f64) {
+    let dataset = Dataset {
+        runs: std::slice::from_ref(from),
+        validation: std::slice::from_ref(run),
+        true_values: None,
+    };
+    let result = identify(&Point, &dataset, &settings(), &|_| {}).expect("a result");
+    let mut all = result.cross_validation.iter();
+    let one = all
+        .find(|one| (one.model, one.stage) == (ModelKind::Platform, Stage::Base))
+        .expect("case 1");
+    let measured = 100.0 * one.residual_norm / one.relative_error_percent;
+    (one.residual_norm, measured)
+}
+
+#[test]
+fn choices_are_judged_by_runs_that_were_held_out() {
+    let runs = [run("one", 1.0, 0.5), run("two", 2.0, 0.5)];
+    let folds = [predicted(&runs[0], &runs[1]), predicted(&runs[1], &runs[0])];
+    let norm = |part: fn(&(f64, f64)) -> f64| {
+        let squares = folds.iter().map(|fold| part(fold).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    let expected = 100.0 * norm(|fold| fold.0) / norm(|fold| fold.1);
+    let dataset = Dataset {
+        runs: &runs,
+        validation: &[],
+        true_values: None,
+    };
+    let choices = [vec![0, 1], vec![0, 2], vec![1, 2]];
+    let study = study(&Point, &dataset, &choices, &settings(), &|_| {}).expect("a study");
+    let platform = study.platform.held_out_percent.expect("folds");
+    // The weights of the lines come from both runs, those of `predicted` from one.
+    assert!(
+        (platform / expected - 1.0).abs() < 0.01,
+        "{platform} {expected}"
+    );
+    assert_eq!(study.partitions.len(), 3);
+    for choice in &study.partitions {
+        // Judged on the platform, where case 1 predicts best, if only just.
+        let held_out = choice.held_out_percent.expect("folds");
+        assert!(
+            held_out > 0.99 * platform && held_out < 1.5 * platform,
+            "{held_out} {platform}"
+        );
     }
 }

@@ -173,6 +173,40 @@ fn both_cases_and_the_payload_recover_the_truth() {
 }
 
 #[test]
+fn times_count_from_the_start_of_the_log() {
+    let log = run("run", 1.0, false, 0.0);
+    let moved = motion(&PAIR, &log, &settings(), &|_, _| {}).expect("a motion");
+    assert_eq!(moved.time(0), 20.0 / 500.0);
+    let last = moved.samples - 1;
+    assert_eq!(moved.time(last), (4000 - 30 - 1) as f64 / 500.0);
+    // So many samples that plots show every second one.
+    let settings = Settings {
+        decimation: 2,
+        ..settings()
+    };
+    let runs = [log];
+    let dataset = Dataset {
+        runs: &runs,
+        validation: &runs,
+        true_values: None,
+    };
+    let figures = identify(&PAIR, &dataset, &settings, &|_| {})
+        .expect("an identification")
+        .figures;
+    for shown in &figures.runs {
+        assert!(shown.time.len() > 900 && shown.time[0] >= 20.0 / 500.0);
+        for (t, x) in shown.time.iter().zip(&shown.pose[0]) {
+            assert!((x - trajectory(*t, 1.0)).abs() < 1e-4, "{x} at {t}");
+        }
+        for prediction in &figures.predictions {
+            for line in &prediction.lines {
+                assert_eq!(line.time, shown.time);
+            }
+        }
+    }
+}
+
+#[test]
 fn the_regroupings_are_exact() {
     let columns = ColumnSet::new(&PAIR, true, false, 1).expect("columns");
     let base = base_parameters(&PAIR, &columns, PayloadUse::Separate, 1).expect("base");

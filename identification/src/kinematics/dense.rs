@@ -118,3 +118,42 @@ fn swap_rows(matrix: &mut [f64], r: usize, a: usize, b: usize) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{eliminated, invert};
+    use nalgebra::DMatrix;
+
+    /// Row by row; without pivots, the digits of each are lost, or its first step divides by zero.
+    const NEEDS_PIVOTS: [[f64; 9]; 4] = [
+        [0.0, 2.0, 1.0, 1.0, 0.0, 3.0, 4.0, 1.0, 0.0],
+        [1e-17, 1.0, 2.0, 1.0, 1.0, 1.0, 2.0, -1.0, 1.0],
+        [1.0, 2.0, 3.0, 1.0, 2.0, -1.0, 0.5, 3.0, 1.0],
+        [3.0, 1.0, -2.0, 3.0, 1.0 + 1e-17, 4.0, 1.0, 5.0, 9.0],
+    ];
+
+    #[test]
+    fn rows_are_exchanged_where_a_diagonal_is_small() {
+        for rows in NEEDS_PIVOTS {
+            let matrix = DMatrix::from_row_slice(3, 3, &rows);
+            let determinant = eliminated(&mut rows.clone(), 3);
+            let expected = matrix.determinant();
+            assert!(
+                (determinant / expected - 1.0).abs() < 1e-14,
+                "{determinant}"
+            );
+            let mut inverse = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+            assert!(invert(&mut rows.clone(), &mut inverse, 3));
+            let product = matrix * DMatrix::from_row_slice(3, 3, &inverse);
+            let miss = (product - DMatrix::identity(3, 3)).abs().max();
+            assert!(miss < 1e-14, "{rows:?}: {miss:e}");
+        }
+    }
+
+    #[test]
+    fn a_singular_matrix_has_no_inverse() {
+        let rows = [1.0, 2.0, 2.0, 4.0];
+        assert_eq!(eliminated(&mut rows.clone(), 2), 0.0);
+        assert!(!invert(&mut rows.clone(), &mut [1.0, 0.0, 0.0, 1.0], 2));
+    }
+}

@@ -11,6 +11,8 @@ mod clipping;
 mod peaks;
 mod statistics;
 mod suspicion;
+#[cfg(test)]
+mod tests;
 mod watch;
 
 pub(crate) use suspicion::{Suspicion, Trouble};

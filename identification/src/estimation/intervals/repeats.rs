@@ -260,3 +260,62 @@ impl Neighbours {
         [0, 1].map(|part| means.iter().map(|mean| mean[part]).collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Line, Neighbours};
+    use nalgebra::{Complex, DMatrix};
+
+    const BINS: usize = 9;
+
+    /// A line of which only residual and leverage matter.
+    fn line(residual: impl Fn(f64) -> [f64; 2], leverage: impl Fn(f64) -> f64) -> Line {
+        let parts: Vec<[f64; 2]> = (0..BINS).map(|bin| residual(bin as f64)).collect();
+        let nothing = || [DMatrix::zeros(BINS, 0), DMatrix::zeros(BINS, 0)];
+        Line {
+            columns: nothing(),
+            influence: nothing(),
+            residual: [0, 1].map(|part| parts.iter().map(|both| both[part]).collect()),
+            leverage: (0..BINS).map(|bin| leverage(bin as f64)).collect(),
+        }
+    }
+
+    /// The mean of ρ_a ρ_b* around a frequency by its definition, on the whole circle of frequencies.
+    fn mean(neighbours: &Neighbours, a: &Line, b: &Line, bin: usize) -> Complex<f64> {
+        let size = 2 * (BINS as isize - 1);
+        let (mut sum, mut weight) = (Complex::ZERO, 0.0);
+        for distance in neighbours.nearest as isize..=neighbours.farthest as isize {
+            for place in [bin as isize - distance, bin as isize + distance] {
+                let place = place.rem_euclid(size);
+                let inside = place.min(size - place) as usize;
+                let of = |line: &Line| {
+                    let [x, y] = line.residual.each_ref().map(|part| part[inside]);
+                    Complex::new(x, if inside as isize == place { y } else { -y })
+                };
+                sum += of(a) * of(b).conj();
+                weight += ((1.0 - a.leverage[inside]) * (1.0 - b.leverage[inside])).sqrt();
+            }
+        }
+        sum / weight
+    }
+
+    #[test]
+    fn neighbours_are_averaged_on_the_circle_of_frequencies() {
+        // At the ends, which are their own conjugates, the transform of real numbers is real.
+        let imaginary = |bin: f64| bin * (bin - (BINS - 1) as f64);
+        let a = line(|k| [1.0 + k * k, 0.3 * imaginary(k)], |k| 0.02 * k);
+        let b = line(|k| [5.0 - 2.0 * k, 0.7 * imaginary(k)], |k| 0.5 - 0.03 * k);
+        for (nearest, farthest) in [(1, 1), (1, 3), (2, 8)] {
+            let neighbours = Neighbours { nearest, farthest };
+            for (a, b) in [(&a, &a), (&a, &b), (&b, &a)] {
+                let [real, imaginary] = neighbours.means(a, b);
+                for bin in 0..BINS {
+                    let expected = mean(&neighbours, a, b, bin);
+                    let found = Complex::new(real[bin], imaginary[bin]);
+                    let miss = (found - expected).norm() / expected.norm().max(1.0);
+                    assert!(miss < 1e-12, "{bin}: {found} is not {expected}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Which torques count as clipped.
+
+use super::{Monitor, Suspicion, Trouble};
+use crate::data::Samples;
+use std::f64::consts::TAU;
+
+/// Samples per second.
+const FREQUENCY: f64 = 500.0;
+
+/// What is suspicious in a run of so many samples, of an actuator that swings twice in three seconds.
+fn suspicions(samples: usize, torque: impl Fn(f64) -> f64) -> Vec<Suspicion> {
+    let time = |sample: usize| sample as f64 / FREQUENCY;
+    let swing = |sample: usize| (TAU * 2.0 / 3.0 * time(sample)).sin();
+    let mut monitor = Monitor::new(1, FREQUENCY);
+    monitor.take(&Samples {
+        positions: (0..samples).map(swing).collect(),
+        torques: (0..samples).map(|sample| torque(time(sample))).collect(),
+    });
+    monitor.suspicions(&["motor"], true)
+}
+
+/// A torque of amplitude 2 and an incommensurable period, so that no two samples are equal.
+fn swing(time: f64) -> f64 {
+    2.0 * (3.7 * time).sin()
+}
+
+#[test]
+fn both_ends_and_the_part_of_the_time_are_told() {
+    let found = suspicions(5000, |time| swing(time).clamp(-1.5, 1.0));
+    let [one] = &found[..] else {
+        panic!("one suspicion, not {found:?}");
+    };
+    assert_eq!(one.trouble, Trouble::Clipped);
+    let clipped = |sample: &usize| !(-1.5..=1.0).contains(&swing(*sample as f64 / FREQUENCY));
+    let part = (0..5000).filter(clipped).count() as f64 / 5000.0;
+    let told = format!("clipped at -1.5 and 1 for {:.1} % of", 100.0 * part);
+    assert!(one.message.contains(&told), "{told}: {}", one.message);
+}
+
+#[test]
+fn a_few_equal_peaks_of_a_long_run_are_not_clipped() {
+    // Twelve of fifteen thousand samples.
+    let spike = |time: f64| ((time * FREQUENCY).round() as usize).is_multiple_of(1250);
+    let torque = |time: f64| if spike(time) { 3.0 } else { swing(time) };
+    assert_eq!(suspicions(15_000, torque), []);
+}
+
+#[test]
+fn peaks_of_a_quantised_torque_are_not_clipped() {
+    let found = suspicions(5000, |time| (swing(time) / 0.05).round() * 0.05);
+    assert_eq!(found, []);
+}
