@@ -1,6 +1,7 @@
 //! The kinematics of the test robots.
 
 use overact::Error;
+use std::sync::LazyLock;
 
 /// Inverse kinematics and its derivatives.
 pub trait Kinematics: Sync {
@@ -144,9 +145,20 @@ const GAMMA: [f64; 4] = [15.52, 164.48, -164.48, -15.52];
 /// The elbows point away from the platform's centre.
 const MODE: [f64; 4] = [-1.0, 1.0, -1.0, 1.0];
 
-/// Geometry of a leg: arm C - A half-way angle, motor angle, forearm C - B.
+/// Cosine and sine of gamma: where the motors stand.
+static MOTORS: LazyLock<[[f64; 2]; 4]> = LazyLock::new(|| {
+    GAMMA.map(|gamma| {
+        let (sin, cos) = gamma.to_radians().sin_cos();
+        [cos, sin]
+    })
+});
+
+/// Geometry of a leg.
 struct Leg {
+    /// The motor's angle, and the direction of the arm B - A.
     motor: f64,
+    direction: [f64; 2],
+    /// C - B.
     forearm: [f64; 2],
     /// C relative to the platform's centre.
     lever: [f64; 2],
@@ -157,7 +169,7 @@ impl DualV {
         let side = if i < 2 { HALF_PLATFORM } else { -HALF_PLATFORM };
         let (sin, cos) = x[2].sin_cos();
         let lever = [-side * sin, side * cos];
-        let (sa, ca) = GAMMA[i].to_radians().sin_cos();
+        let [ca, sa] = MOTORS[i];
         let arm = [x[0] + lever[0] - BASE * ca, x[1] + lever[1] - BASE * sa];
         let reach = arm[0].hypot(arm[1]) / (2.0 * LINK);
         if reach > 1.0 {
@@ -169,6 +181,7 @@ impl DualV {
         let (s, c) = motor.sin_cos();
         Ok(Leg {
             motor,
+            direction: [c, s],
             forearm: [arm[0] - LINK * c, arm[1] - LINK * s],
             lever,
         })
@@ -176,7 +189,7 @@ impl DualV {
 
     /// (C - B) . ∂B/∂q.
     fn determinant(leg: &Leg) -> Result<f64, Error> {
-        let (s, c) = leg.motor.sin_cos();
+        let [c, s] = leg.direction;
         let value = LINK * (leg.forearm[1] * c - leg.forearm[0] * s);
         if value.abs() < 1e-4 {
             return Err(Error::SingularLeg {
@@ -222,7 +235,7 @@ impl Kinematics for DualV {
             let (f, b) = (leg.forearm, Self::determinant(&leg)?);
             let tip = [v[0] - v[2] * leg.lever[1], v[1] + v[2] * leg.lever[0]];
             let rate = (f[0] * tip[0] + f[1] * tip[1]) / b;
-            let (s, co) = leg.motor.sin_cos();
+            let [co, s] = leg.direction;
             let elbow = [-LINK * s * rate, LINK * co * rate];
             let slip = (tip[0] - elbow[0]).powi(2) + (tip[1] - elbow[1]).powi(2);
             let centripetal = [

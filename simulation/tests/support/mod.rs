@@ -28,6 +28,14 @@ pub struct Robot<K> {
     kept: Vec<usize>,
 }
 
+/// What the forces at a motion share, whatever the parameters are.
+struct Moving {
+    /// J_p^inv, n x r.
+    jacobian: [f64; MAX * MAX],
+    /// c(x, v) = dJ/dt v.
+    convection: [f64; MAX],
+}
+
 /// Columns: ia, fv, fs of each actuator, then the platform's; the payload's are like the platform's.
 impl<K: Kinematics> Robot<K> {
     pub fn new(kinematics: K) -> Self {
@@ -88,25 +96,26 @@ impl<K: Kinematics> Robot<K> {
         }
     }
 
-    /// Γ¹ of the motion for parameters χ (own and payload's).
-    fn force(
-        &self,
-        x: &[f64],
-        v: &[f64],
-        a: &[f64],
-        chi: &[f64],
-        out: &mut [f64],
-    ) -> Result<(), Error> {
+    fn moving(&self, x: &[f64], v: &[f64]) -> Result<Moving, Error> {
+        let mut moving = Moving {
+            jacobian: [0.0; MAX * MAX],
+            convection: [0.0; MAX],
+        };
+        self.kinematics.jacobian(x, &mut moving.jacobian)?;
+        self.kinematics.convection(x, v, &mut moving.convection)?;
+        Ok(moving)
+    }
+
+    /// Γ¹ of the motion (pose, twist, acceleration) for parameters χ (own and payload's).
+    fn force(&self, moving: &Moving, [x, v, a]: [&[f64]; 3], chi: &[f64], out: &mut [f64]) {
         let (n, r) = (self.sizes.actuators, self.sizes.dof);
-        let (mut j, mut c) = ([0.0; MAX * MAX], [0.0; MAX]);
-        self.kinematics.jacobian(x, &mut j)?;
-        self.kinematics.convection(x, v, &mut c)?;
         let own = self.sizes.parameters - self.sizes.payload_parameters;
         out.fill(0.0);
         for i in 0..n {
-            let row = &j[i * r..(i + 1) * r];
+            let row = &moving.jacobian[i * r..(i + 1) * r];
             let rate: f64 = row.iter().zip(v).map(|(j, v)| j * v).sum();
-            let second: f64 = c[i] + row.iter().zip(a).map(|(j, a)| j * a).sum::<f64>();
+            let second: f64 =
+                moving.convection[i] + row.iter().zip(a).map(|(j, a)| j * a).sum::<f64>();
             let torque = chi[3 * i] * second + chi[3 * i + 1] * rate + chi[3 * i + 2] * sign(rate);
             for (out, j) in out.iter_mut().zip(row) {
                 *out += j * torque;
@@ -126,7 +135,6 @@ impl<K: Kinematics> Robot<K> {
             out[1] += m * a[1] + mx * (wd * c - w2 * s) - my * (wd * s + w2 * c);
             out[2] += zz * wd + mx * (a[1] * c - a[0] * s) - my * (a[1] * s + a[0] * c);
         }
-        Ok(())
     }
 
     /// Least squares (JᵀJ)^-1 Jᵀ y.
@@ -187,28 +195,40 @@ impl<K: Kinematics> Robot<K> {
                 self.least_squares(x, &rest, out)
             }
             Function::ProjectPlatform => project(input[1], out),
-            Function::Bias => self.force(x, input[1], &zero[..r], input[2], out),
-            Function::MassMatrix => self.columns(r, r, out, |k, column| {
-                let mut unit = [0.0; MAX];
-                unit[k] = 1.0;
-                self.force(x, &zero[..r], &unit[..r], input[1], column)
-            }),
+            Function::Bias => {
+                let moving = self.moving(x, input[1])?;
+                self.force(&moving, [x, input[1], &zero[..r]], input[2], out);
+                Ok(())
+            }
+            Function::MassMatrix => {
+                let moving = self.moving(x, &zero[..r])?;
+                columns(r, r, out, |k, column| {
+                    let mut unit = [0.0; MAX];
+                    unit[k] = 1.0;
+                    self.force(&moving, [x, &zero[..r], &unit[..r]], input[1], column);
+                });
+                Ok(())
+            }
             Function::IdmRedPlatform(Columns::Standard) | Function::IdmRedPayload => {
                 let own = self.sizes.parameters;
                 let (first, count) = match function {
                     Function::IdmRedPlatform(Columns::Standard) => (0, own),
                     _ => (own, self.sizes.payload_parameters),
                 };
+                let moving = self.moving(x, input[1])?;
                 let mut chi = vec![0.0; own + self.sizes.payload_parameters];
-                self.columns(r, count, out, |k, column| {
+                columns(r, count, out, |k, column| {
                     chi.fill(0.0);
                     chi[first + k] = 1.0;
-                    self.force(x, input[1], input[2], &chi, column)
-                })
+                    self.force(&moving, [x, input[1], input[2]], &chi, column);
+                });
+                Ok(())
             }
             Function::InverseDynamics => {
                 let mut force = [0.0; MAX];
-                self.force(x, input[1], input[2], input[3], &mut force[..r])?;
+                let moving = self.moving(x, input[1])?;
+                let motion = [x, input[1], input[2]];
+                self.force(&moving, motion, input[3], &mut force[..r]);
                 self.least_norm(x, &mut force[..r], out)
             }
             Function::ProjectTorques => {
@@ -221,23 +241,21 @@ impl<K: Kinematics> Robot<K> {
             }),
         }
     }
+}
 
-    /// Fills a row-major matrix column by column.
-    fn columns(
-        &self,
-        rows: usize,
-        columns: usize,
-        out: &mut [f64],
-        mut column: impl FnMut(usize, &mut [f64]) -> Result<(), Error>,
-    ) -> Result<(), Error> {
-        let mut values = [0.0; MAX];
-        for k in 0..columns {
-            column(k, &mut values[..rows])?;
-            for row in 0..rows {
-                out[row * columns + k] = values[row];
-            }
+/// Fills a row-major matrix column by column.
+fn columns(
+    rows: usize,
+    columns: usize,
+    out: &mut [f64],
+    mut column: impl FnMut(usize, &mut [f64]),
+) {
+    let mut values = [0.0; MAX];
+    for k in 0..columns {
+        column(k, &mut values[..rows]);
+        for row in 0..rows {
+            out[row * columns + k] = values[row];
         }
-        Ok(())
     }
 }
 
