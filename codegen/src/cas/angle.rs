@@ -171,4 +171,19 @@ mod tests {
         assert!((c1 * c2 - s1 * s2 + Number::ONE).is_zero());
         assert!((s1 - s2).is_zero());
     }
+
+    #[test]
+    fn decimal_radians_add_up() {
+        let point = |text| Angle::radians(Ratio::decimal(text).unwrap()).circle_point();
+        assert_eq!(point("0.1") * point("0.2"), point("0.3"));
+        assert_eq!(point("-1.25") * point("1.25"), Element::ONE);
+        assert_ne!(point("0.1"), Element::ONE);
+    }
+
+    #[test]
+    fn a_fraction_that_is_no_decimal_has_a_point_of_its_own() {
+        let point = |radians| Angle::radians(radians).circle_point();
+        let third = Ratio::new(1, 3).unwrap();
+        assert_ne!(point(third), point(Ratio::decimal("0.333333333").unwrap()));
+    }
 }

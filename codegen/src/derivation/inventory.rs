@@ -75,3 +75,37 @@ pub fn function_name(function: Function, from: MotionInput, tree: bool) -> Strin
     };
     format!("{name}{base}{from}")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{JointsBy, inventory};
+    use crate::diagnostic::Source;
+    use crate::mechanism::check;
+    use overact_core::{Condition, Function};
+
+    /// Whether a robot of the library has the functions of a condition: all of them, or none.
+    fn has(description: &str, condition: Condition) -> bool {
+        let source = Source::new("robot.toml", description);
+        let description = crate::description::parse(&source).expect("a right description");
+        let mechanism = check(&description).expect("a right mechanism");
+        let offered = inventory(&mechanism, JointsBy::Rule);
+        let wanted = Function::ALL
+            .into_iter()
+            .filter(|f| f.condition() == condition);
+        let found: Vec<bool> = wanted
+            .map(|wanted| offered.iter().any(|(function, _)| *function == wanted))
+            .collect();
+        assert!(!found.is_empty() && found.iter().all(|one| *one == found[0]));
+        found[0]
+    }
+
+    #[test]
+    fn functions_of_redundancy_are_those_of_redundant_robots() {
+        let dualv = include_str!("../../../robots/dualv.toml");
+        assert!(has(dualv, Condition::Redundancy));
+        // As many actuators as coordinates: a closure, and nothing to distribute.
+        let five_bar = include_str!("../../../robots/five_bar.toml");
+        assert!(has(five_bar, Condition::Platform));
+        assert!(!has(five_bar, Condition::Redundancy));
+    }
+}

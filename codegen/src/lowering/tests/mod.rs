@@ -4,6 +4,7 @@
 mod build;
 mod cases;
 mod damage;
+mod digits;
 mod language;
 mod listing;
 mod properties;

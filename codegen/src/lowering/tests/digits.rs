@@ -1,0 +1,67 @@
+//! What the comparison of digits says, and what repair makes of it.
+
+use super::build::{Built, Start, build};
+use super::language::parse;
+use super::random::function;
+use crate::lowering::SearchLimits;
+use crate::lowering::dag::{Dag, Definition};
+use crate::lowering::passes::PASSES;
+
+#[test]
+fn forms_of_the_derivation_lose_no_digits() {
+    for seed in 0..20 {
+        let mut built = build(&function(seed), Start::Arena);
+        built.measure();
+        let dag = &built.dag;
+        for node in dag.operands_first() {
+            let own = dag.definition(node);
+            if !own.is_leaf() {
+                assert_eq!(dag.loss(own, node), 1.0, "function {seed}: {own:?}");
+            }
+        }
+    }
+}
+
+/// Runs the pass `repair`.
+fn repair(dag: &mut Dag, limits: &SearchLimits) {
+    let mut passes = PASSES.iter();
+    let pass = passes.find(|pass| pass.name == "repair").expect("a pass");
+    (pass.run)(dag, limits);
+    dag.verify().expect("a sound graph");
+}
+
+/// A guard (a - b) (a + b) that is written a² - b², which loses its digits where it is near zero.
+fn lossy() -> (Dag, usize) {
+    let text = "
+        input a b x
+        home a = 2
+        home b = 1
+        let d = (a - b) * (a + b)
+        guard d
+        output a * a, b * b, x / d";
+    let mut built = build(&parse(text), Start::Nodes);
+    built.measure();
+    let Built { mut dag, .. } = built;
+    let (guard, squares) = (dag.guards()[0].value, &dag.entries()[..2]);
+    let difference = Definition::Sum(squares[0], squares[1].times(true));
+    let node = guard.node();
+    assert!(dag.means(difference, node) && dag.loss(difference, node) > 100.0);
+    dag.replace(node, difference);
+    (dag, node)
+}
+
+#[test]
+fn repair_gives_a_cancelling_sum_the_form_of_the_derivation_back() {
+    let (mut dag, node) = lossy();
+    let own = dag.own_form(node).expect("another form");
+    repair(&mut dag, &SearchLimits::QUICK);
+    assert_eq!(dag.definition(node), own);
+}
+
+#[test]
+fn nothing_is_repaired_where_nothing_is_replaced() {
+    let (mut dag, node) = lossy();
+    let before = dag.definition(node);
+    repair(&mut dag, &SearchLimits::NONE);
+    assert_eq!(dag.definition(node), before);
+}
