@@ -122,6 +122,7 @@ fn mappings_are_checked() {
         positions: vec![String::from("a"), String::from("b")],
         torques: vec![String::from("c")],
         position_scale: vec![1.0, 0.0],
+        position_offset: Vec::new(),
         torque_gain: vec![Gain::Value(f64::NAN)],
     };
     let error = read_csv(Path::new("x.csv"), &mapping, false).expect_err("an error");

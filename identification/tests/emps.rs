@@ -16,6 +16,7 @@ fn log(file: &str) -> Option<Log> {
         positions: vec![String::from("qm")],
         torques: vec![String::from("vir")],
         position_scale: vec![1.0],
+        position_offset: Vec::new(),
         torque_gain: vec![Gain::Variable(String::from("gtau"))],
     };
     Some(read_mat(&path, &mapping, false).unwrap_or_else(|error| panic!("{error}")))

@@ -1,5 +1,7 @@
 //! Plain-text tables of an identification, for a terminal or a file.
 
+mod calibration;
+
 use std::fmt::Write;
 
 use crate::intervals::{half_width_percent, is_outside};
@@ -19,6 +21,9 @@ const SNAP: f64 = 1e-11;
 pub fn report(identification: &Identification) -> String {
     let mut text = format!("Identification of {}\n", identification.robot);
     text.push_str(&runs(identification));
+    if let Some(own) = &identification.calibration {
+        text.push_str(&calibration::calibration(own));
+    }
     text.push_str(&base_parameters(&identification.base_parameters));
     if !identification.without_effect.is_empty() {
         let _ = writeln!(

@@ -3,7 +3,8 @@
 use crate::{error::Error, partitions::partitions, robot::Robot, runs::Runs};
 use overact::Model;
 use overact_identification::{
-    Dataset, Identification, Log, Progress, Settings, Stage, Study, identify, study,
+    Calibration, CalibrationScope, Dataset, Identification, Log, Progress, Settings, Stage, Study,
+    identify, study,
 };
 use std::collections::BTreeMap;
 
@@ -30,6 +31,7 @@ pub struct Identifier<'a> {
     validation: &'a [Log],
     true_values: Option<&'a BTreeMap<String, f64>>,
     settings: Option<Settings>,
+    calibration: Option<CalibrationScope>,
     progress: &'a dyn Fn(Progress<'_>),
 }
 
@@ -53,6 +55,7 @@ impl<'a> Identifier<'a> {
             validation: &[],
             true_values: None,
             settings: None,
+            calibration: None,
             progress: &|_| {},
         }
     }
@@ -87,6 +90,17 @@ impl<'a> Identifier<'a> {
         Self { settings, ..self }
     }
 
+    /// With encoder offsets and lengths that are first calibrated from the closure of the loops in the runs
+    /// to identify from: [`Robot::calibrate`].
+    #[must_use]
+    pub fn calibrate(self, scope: CalibrationScope) -> Self {
+        let calibration = Some(scope);
+        Self {
+            calibration,
+            ..self
+        }
+    }
+
     /// With someone who hears what is being done.
     #[must_use]
     pub fn progress(self, progress: &'a dyn Fn(Progress<'_>)) -> Self {
@@ -99,6 +113,43 @@ impl<'a> Identifier<'a> {
     /// # Errors
     /// Runs or settings that can't be used, data that determine no parameter.
     pub fn run(&self) -> Result<Identification, Error> {
+        let Some(scope) = self.calibration else {
+            return self.identified();
+        };
+        let calibration = self.robot.calibrate(self.runs, scope)?;
+        let mut result = self.with_calibration(&calibration)?;
+        let others = std::mem::take(&mut result.warnings);
+        result.warnings = [calibration.warnings.clone(), others].concat();
+        result.calibration = Some(calibration);
+        Ok(result)
+    }
+
+    /// The identification with calibrated offsets and lengths.
+    fn with_calibration(&self, calibration: &Calibration) -> Result<Identification, Error> {
+        if !calibration.is_change() {
+            return self.identified();
+        }
+        let offsets = calibration.offsets();
+        let shifted = |logs: &[Log]| -> Vec<Log> {
+            let logs = logs.iter().cloned();
+            logs.map(|log| log.without_offsets(&offsets)).collect()
+        };
+        let (runs, validation) = (shifted(self.runs), shifted(self.validation));
+        let rebuilt = match calibration.lengths().next() {
+            Some(_) => Some(self.robot.calibrated(calibration)?),
+            None => None,
+        };
+        let own = Identifier {
+            robot: rebuilt.as_ref().unwrap_or(self.robot),
+            runs: &runs,
+            validation: &validation,
+            ..self.clone()
+        };
+        own.identified()
+    }
+
+    /// The identification of the robot as it is described.
+    fn identified(&self) -> Result<Identification, Error> {
         let settings = self.with_defaults();
         let essential = self.essential();
         let mut result = identify(

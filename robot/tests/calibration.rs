@@ -116,6 +116,15 @@ fn a_dualv_tells_an_encoder_offset_and_a_long_link() {
     assert!(found.misfit_before > 100.0);
     assert_eq!(found.offsets()[..2], [0.0, 0.0]);
     assert_eq!(found.lengths().count(), 1);
+    // The calibrated description keeps the author's words and leaves nothing to calibrate.
+    let right = robot(&described).calibrated(&found).expect("a description");
+    let own = &right.source().text;
+    assert!(own.contains("d = \"l_ab + d_2_change\"\n"), "{own}");
+    assert!(own.contains("# Table 1. Legs 1, 2 and 3, 4 meet the platform at the same points."));
+    assert_eq!(right.mapping().position_offset[..2], [0.0, 0.0]);
+    let again = run(&robot(&long), log).without_offsets(&right.mapping().position_offset);
+    let again = right.calibrate(&[again], CalibrationScope::Smallest);
+    check(&again.expect("a calibration"), &[]);
     // What does not lie in the plane has no effect; a factor of all lengths goes unseen.
     let out_of_plane = found.held.iter().find(|one| one.name == "base_z_leg1");
     let reason = out_of_plane.and_then(|one| one.reason.as_deref());

@@ -5,8 +5,9 @@
 
 use super::runs;
 use crate::{failure::Failure, output, progress::Progress, report as files};
+use clap::ValueEnum;
 use overact::Model;
-use overact_identification::{Identification, Progress as Doing, Settings};
+use overact_identification::{CalibrationScope, Identification, Progress as Doing, Settings};
 use overact_robot::{Identifier, Robot, Runs, tracking};
 use std::path::PathBuf;
 
@@ -28,8 +29,43 @@ pub(crate) struct Arguments {
     /// Write the tables (with --json the document) to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Estimate encoder offsets and lengths from the closure of redundant loops first, and go on with them:
+    /// the fewest that explain the data, all offsets, or all offsets and lengths that the data determine
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WHICH",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "smallest"
+    )]
+    calibrate: Option<Scope>,
+    /// Write the description with the calibrated offsets and lengths
+    #[arg(long, value_name = "TOML", requires = "calibrate")]
+    calibrated_robot: Option<PathBuf>,
     #[command(flatten)]
     reports: files::Arguments,
+}
+
+/// What is calibrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Scope {
+    /// The fewest offsets and lengths that explain the data
+    Smallest,
+    /// All encoder offsets that the data determine
+    Offsets,
+    /// All encoder offsets and lengths that the data determine
+    All,
+}
+
+impl From<Scope> for CalibrationScope {
+    fn from(scope: Scope) -> Self {
+        match scope {
+            Scope::Smallest => Self::Smallest,
+            Scope::Offsets => Self::Offsets,
+            Scope::All => Self::All,
+        }
+    }
 }
 
 /// Runs the command.
@@ -40,10 +76,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let reports = arguments.reports.check(&arguments.file)?;
     let inputs = [arguments.runs.inputs(&arguments.file), reports.inputs()].concat();
     let output = arguments.output.as_deref();
-    output::check(
-        &inputs,
-        &[reports.outputs(), output.into_iter().collect()].concat(),
-    )?;
+    let outputs = output
+        .into_iter()
+        .chain(arguments.calibrated_robot.as_deref());
+    output::check(&inputs, &[reports.outputs(), outputs.collect()].concat())?;
     let robot = Robot::from_toml(&arguments.file)?;
     let reports = reports.read()?;
     let kept = match &arguments.kept {
@@ -53,7 +89,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let runs = arguments.runs.runs(&robot, as_json)?;
     let mut settings = arguments.runs.settings(&robot, &runs);
     settings.kept_actuators = kept.unwrap_or(settings.kept_actuators);
-    let mut result = identified(&robot, &runs, settings, as_json)?;
+    let scope = arguments.calibrate.map(CalibrationScope::from);
+    let mut result = identified(&robot, &runs, (settings, scope), as_json)?;
     let beside = reports.published().filter(|_| arguments.runs.are_virtual());
     if arguments.tracking || beside.is_some() {
         let bar = Progress::new("simulating", as_json);
@@ -65,7 +102,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let beside = reports.published();
         overact_report::report(&result) + &overact_report::beside(&result, beside)
     };
-    let written = reports.written(&robot, &robot.model().info(), &result)?;
+    let mut written = reports.written(&robot, &robot.model().info(), &result)?;
+    if let (Some(path), Some(calibration)) = (&arguments.calibrated_robot, &result.calibration) {
+        let text = robot.calibrated_text(calibration)?;
+        written.push((path.clone(), text.into_bytes()));
+    }
     output::emit_with(&text, output, written)
 }
 
@@ -73,11 +114,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 fn identified(
     robot: &Robot,
     runs: &Runs,
-    settings: Settings,
+    (settings, calibrated): (Settings, Option<CalibrationScope>),
     as_json: bool,
 ) -> Result<Identification, Failure> {
     let bar = Progress::new("identifying", as_json);
     let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
     let identifier = Identifier::new(robot).data(runs).settings(settings);
+    let identifier = match calibrated {
+        Some(scope) => identifier.calibrate(scope),
+        None => identifier,
+    };
     Ok(identifier.progress(&tell).run()?)
 }

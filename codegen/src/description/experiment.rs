@@ -164,7 +164,8 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Experim
     Some(experiment)
 }
 
-fn position(kind: JointKind) -> Dimension {
+/// Of an actuator's position.
+pub(super) fn position(kind: JointKind) -> Dimension {
     joint::dimension(kind).unwrap_or(Dimension::NONE)
 }
 

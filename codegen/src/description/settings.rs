@@ -1,6 +1,7 @@
 //! The tables `[data]` and `[identification]`.
 
 use super::dimension::Dimension;
+use super::experiment::position;
 use super::inventory::Inventory;
 use super::model::{Spanned, actuators};
 use super::reader::{Item, Table};
@@ -17,6 +18,8 @@ pub struct Data {
     pub torques: Vec<String>,
     /// Factors from columns to rad or m, one for each actuator.
     pub position_scale: Vec<f64>,
+    /// What the positions show too much after that, rad or m, one for each actuator.
+    pub position_offset: Vec<f64>,
     /// Factors from columns to N m or N, one for each actuator.
     pub torque_gain: Vec<Factor>,
     /// Place of the table.
@@ -140,12 +143,14 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     let (positions, torques) = (columns("positions"), columns("torques"));
     let (position_scale, torque_gain) = (factors("position_scale"), factors("torque_gain"));
     let position_scale = position_scale.and_then(|scales| numbers(&table, &scales));
+    let position_offset = offsets(&table, robot);
     table.finish();
     Some(Data {
         time: time?.value,
         positions: positions?,
         torques: torques?,
         position_scale: position_scale?,
+        position_offset: position_offset?,
         torque_gain: torque_gain?,
         span: table.span.clone(),
     })
@@ -168,6 +173,25 @@ fn numbers(table: &Table<'_, '_>, scales: &[Factor]) -> Option<Vec<f64>> {
     // Every one is looked at, so that every wrong one is reported.
     let numbers: Vec<Option<f64>> = scales.iter().map(number).collect();
     numbers.into_iter().collect()
+}
+
+/// Offsets of the positions: one for all or a list, none where the key is left out.
+fn offsets(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
+    let kinds = robot.actuator_kinds();
+    let Some(item) = table.get("position_offset") else {
+        return Some(vec![0.0; kinds.len()]);
+    };
+    let list = match item.value.is_array() {
+        true => item.list()?,
+        false => vec![item.clone(); kinds.len()],
+    };
+    check_count(&item, list.len(), kinds.len())?;
+    // Every one is looked at, so that every wrong one is reported.
+    let each = list.iter().zip(kinds);
+    let offsets: Vec<Option<f64>> = each
+        .map(|(item, kind)| Some(item.number(position(kind), robot.scope)?.value.value()))
+        .collect();
+    offsets.into_iter().collect()
 }
 
 fn check_count(item: &Item<'_, '_>, found: usize, expected: usize) -> Option<()> {

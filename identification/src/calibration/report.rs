@@ -70,7 +70,8 @@ pub(super) fn without_redundancy(
     scope: CalibrationScope,
 ) -> Calibration {
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
-    let reason = format!("{n} sensors for {r} coordinates: every reading has its pose");
+    let reason =
+        String::from("every reading has its pose: there are no more sensors than coordinates");
     let held = named(info, geometry).into_iter().map(|one| HeldParameter {
         name: one.name,
         unit: one.unit,
@@ -89,8 +90,10 @@ pub(super) fn without_redundancy(
         misfit_after: 0.0,
         estimated: Vec::new(),
         held: held.collect(),
+        converged: true,
+        warnings: Vec::new(),
         remarks: vec![format!(
-            "nothing can be determined: the robot has {n} sensors for {r} coordinates, so every reading agrees with a pose, whatever offsets and lengths are; calibration takes more sensors than coordinates"
+            "nothing can be determined: with {n} sensors for as many coordinates every reading agrees with a pose, whatever offsets and lengths are; calibration takes more sensors than coordinates"
         )],
     }
 }
@@ -126,7 +129,9 @@ impl Report<'_> {
                 .iter()
                 .map(|(place, one)| self.held(*place, one, &named))
                 .collect(),
-            remarks: self.remarks(&named),
+            converged: self.fit.converged,
+            remarks: self.scale(&named).into_iter().collect(),
+            warnings: self.warnings(&named),
         }
     }
 
@@ -209,21 +214,34 @@ impl Report<'_> {
         format!("its effect is that of changes of {}", of.join(", "))
     }
 
-    fn remarks(&self, all: &[Named]) -> Vec<String> {
-        let mut remarks = Vec::new();
+    fn warnings(&self, all: &[Named]) -> Vec<String> {
+        let mut warnings = Vec::new();
         if !self.fit.converged {
-            remarks.push(String::from(
-                "the estimation has not converged: its numbers are not to be used",
+            warnings.push(String::from(
+                "calibration: the estimation has not converged; its numbers are not used",
             ));
         }
         let after = self.misfit(&self.fit.normal, self.fit.selected.len());
         if after > UNEXPLAINED {
-            remarks.push(format!(
-                "what is left is {after:.1} times the noise of the sensors: something else than these offsets and lengths is wrong (directions of axes, play, flexible parts, filtered positions), and the deviations do not cover it"
+            warnings.push(format!(
+                "calibration: what is left is {after:.1} times the noise of the sensors: something else than these offsets and lengths is wrong (directions of axes, play, flexible parts, filtered positions), and the deviations do not cover it"
             ));
         }
-        remarks.extend(self.scale(all));
-        remarks
+        if self.scope == CalibrationScope::Smallest {
+            for &place in &self.fit.selected {
+                let others = self.choice.alternatives(self.fit, place);
+                if others.is_empty() {
+                    continue;
+                }
+                let others: Vec<&str> = others.iter().map(|&one| all[one].name.as_str()).collect();
+                warnings.push(format!(
+                    "calibration: a change of `{}` is estimated, but the data would as well be explained by one of {} in its place; measure which one is wrong",
+                    all[place].name,
+                    others.join(", ")
+                ));
+            }
+        }
+        warnings
     }
 
     /// Whether a common factor of all lengths would go unseen.

@@ -39,8 +39,12 @@ pub struct Calibration {
     pub estimated: Vec<CalibratedParameter>,
     /// The parameters that stay as described.
     pub held: Vec<HeldParameter>,
-    /// What the user should know: what is not determined and why, what is left unexplained.
+    /// Whether the estimation has converged; what has not is not to be used.
+    pub converged: bool,
+    /// What is right to know: what the data can't determine at all, and why.
     pub remarks: Vec<String>,
+    /// What speaks against the result.
+    pub warnings: Vec<String>,
 }
 
 /// The noise of a sensor.
@@ -97,6 +101,12 @@ pub struct HeldParameter {
 }
 
 impl Calibration {
+    /// Whether it changes anything: an estimation that has not converged does not.
+    #[must_use]
+    pub fn is_change(&self) -> bool {
+        self.converged && !self.estimated.is_empty()
+    }
+
     /// What is to be subtracted from the position of each sensor; zero where no offset is estimated.
     #[must_use]
     pub fn offsets(&self) -> Vec<f64> {

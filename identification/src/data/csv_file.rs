@@ -79,7 +79,7 @@ pub(super) fn read_telling(
     Error::check(problems)?;
     let count = clock.samples();
     let frequency = clock.frequency(&source.file)?;
-    if fits {
+    let log = if fits {
         let Samples { positions, torques } = samples;
         let actuators = source.actuators();
         Log::new(
@@ -89,10 +89,11 @@ pub(super) fn read_telling(
             positions,
             torques,
             payload,
-        )
+        )?
     } else {
-        Ok(Log::in_file(source, frequency, count, payload))
-    }
+        Log::in_file(source, frequency, count, payload)
+    };
+    Ok(log.without_offsets(&mapping.position_offset))
 }
 
 /// The gains of the mapping, which must all be numbers: a CSV file has no scalar variables.

@@ -26,6 +26,8 @@ pub struct Log {
     actuators: usize,
     samples: usize,
     source: Source,
+    /// What is subtracted from the position of each actuator of the source.
+    offsets: Vec<f64>,
     payload: bool,
     instruments: Option<Box<Log>>,
 }
@@ -90,6 +92,7 @@ impl Log {
             actuators,
             samples: positions.len() / actuators,
             source: Source::Memory(positions.into(), torques.into()),
+            offsets: vec![0.0; actuators],
             payload,
             instruments: None,
         })
@@ -115,6 +118,8 @@ impl Log {
     pub fn others(&self, periods: Periods) -> Self {
         Self {
             source: Source::Others(Box::new(self.clone()), Arc::new(periods)),
+            // The other periods are this run's, whose offsets are subtracted already.
+            offsets: vec![0.0; self.actuators],
             ..self.clone()
         }
     }
@@ -129,6 +134,7 @@ impl Log {
         Self {
             name: source.file().to_owned(),
             sampling_frequency,
+            offsets: vec![0.0; source.actuators()],
             actuators: source.actuators(),
             samples,
             source: Source::Csv(source),
@@ -180,6 +186,15 @@ impl Log {
         self
     }
 
+    /// The same run with encoder offsets (rad, m) subtracted from its positions, one for each actuator.
+    #[must_use]
+    pub fn without_offsets(mut self, offsets: &[f64]) -> Self {
+        for (own, more) in self.offsets.iter_mut().zip(offsets) {
+            *own += more;
+        }
+        self
+    }
+
     /// The first `samples` of the run, in memory.
     ///
     /// # Errors
@@ -221,7 +236,7 @@ impl Log {
         Ok(Reader {
             rows,
             name: &self.name,
-            width: self.actuators,
+            offsets: &self.offsets,
             left: self.samples,
         })
     }
@@ -255,7 +270,8 @@ pub struct Samples {
 pub struct Reader<'a> {
     rows: Rows<'a>,
     name: &'a str,
-    width: usize,
+    /// What is subtracted from the position of each actuator.
+    offsets: &'a [f64],
     /// Samples that have not been given out.
     left: usize,
 }
@@ -280,7 +296,18 @@ impl Reader<'_> {
             return Ok(None);
         }
         self.left -= count;
-        let size = count * self.width;
+        let mut block = self.block(count)?;
+        for row in block.positions.chunks_exact_mut(self.offsets.len()) {
+            row.iter_mut()
+                .zip(self.offsets)
+                .for_each(|(position, offset)| *position -= offset);
+        }
+        Ok(Some(block))
+    }
+
+    /// The next samples as the source has them.
+    fn block(&mut self, count: usize) -> Result<Samples, Error> {
+        let size = count * self.offsets.len();
         match &mut self.rows {
             Rows::Memory(positions, torques) => {
                 let (now, later) = positions.split_at(size);
@@ -290,7 +317,7 @@ impl Reader<'_> {
                     torques: torques[..size].to_vec(),
                 };
                 *torques = &torques[size..];
-                Ok(Some(block))
+                Ok(block)
             }
             Rows::Csv(rows) => {
                 let mut block = Samples::default();
@@ -300,12 +327,12 @@ impl Reader<'_> {
                         return Err(problem.file(self.name).into());
                     }
                 }
-                Ok(Some(block))
+                Ok(block)
             }
             Rows::Others(reader, others) => {
                 let mut block = reader.next()?.unwrap_or_default();
                 others.replace(&mut block.positions);
-                Ok(Some(block))
+                Ok(block)
             }
         }
     }

@@ -28,6 +28,10 @@ pub struct Mapping {
     pub torques: Vec<String>,
     /// Factors to rad or m, one per actuator (π/180 for degrees).
     pub position_scale: Vec<f64>,
+    /// What is subtracted from the positions after that, rad or m, one per actuator: the offset of an
+    /// encoder. Empty where all are zero.
+    #[serde(default)]
+    pub position_offset: Vec<f64>,
     /// Factors to N m or N, one per actuator.
     pub torque_gain: Vec<Gain>,
 }
@@ -47,6 +51,7 @@ impl Mapping {
             positions: named("q_"),
             torques: named("tau_"),
             position_scale: vec![1.0; info.actuators.len()],
+            position_offset: Vec::new(),
             torque_gain: vec![Gain::Value(1.0); info.actuators.len()],
         }
     }
@@ -74,6 +79,20 @@ impl Mapping {
                     .help("give one entry per actuator"),
                 );
             }
+        }
+        let offsets = &self.position_offset;
+        if !offsets.is_empty() && offsets.len() != actuators {
+            let found = offsets.len();
+            let message = format!(
+                "the mapping names {actuators} positions, but `position_offset` has {found} {}",
+                if found == 1 { "entry" } else { "entries" }
+            );
+            let problem = Problem::new(message).column("position_offset");
+            problems.push(problem.help("give one entry per actuator, or none"));
+        }
+        for offset in offsets.iter().filter(|offset| !offset.is_finite()) {
+            let message = format!("an offset of `position_offset` is {offset}");
+            problems.push(Problem::new(message).column("position_offset"));
         }
         if actuators == 0 {
             problems.push(Problem::new("the mapping names no position").column("positions"));

@@ -51,7 +51,8 @@ pub fn read_mat(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Er
     };
     let positions = interleaved(&columns[..n], &mapping.position_scale);
     let torques = interleaved(&columns[n..], &gains);
-    Log::new(file, frequency, n, positions, torques, payload)
+    let log = Log::new(file, frequency, n, positions, torques, payload)?;
+    Ok(log.without_offsets(&mapping.position_offset))
 }
 
 /// The gains as numbers, read from the file's scalars where the mapping names them.

@@ -2,10 +2,12 @@
 //! and written back into the description.
 //!
 //! - `length`: which lengths a mechanism has;
-//! - `closure`: a mechanism with changed lengths, evaluated.
+//! - `closure`: a mechanism with changed lengths, evaluated;
+//! - `text`: the calibrated description.
 
 mod closure;
 mod length;
+mod text;
 
 use crate::{error::Error, robot::Robot};
 use closure::MechanismGeometry;
@@ -20,5 +22,26 @@ impl Robot {
     pub fn calibrate(&self, runs: &[Log], scope: CalibrationScope) -> Result<Calibration, Error> {
         let geometry = MechanismGeometry::new(self.model());
         Ok(calibrate(self.model(), &geometry, runs, scope)?)
+    }
+
+    /// The text of the description with the changes of a calibration that was made with this robot; as it is
+    /// where there is none.
+    ///
+    /// # Errors
+    /// Never for descriptions that a robot was made from.
+    pub fn calibrated_text(&self, calibration: &Calibration) -> Result<String, Error> {
+        if !calibration.is_change() {
+            return Ok(self.source().text.clone());
+        }
+        let (lengths, _) = length::lengths(&self.model().model().mechanism);
+        text::calibrated(self, calibration, &|parameter| lengths[parameter])
+    }
+
+    /// The robot with the changes of a calibration that was made with this one.
+    ///
+    /// # Errors
+    /// Lengths with which the robot does not close any more.
+    pub fn calibrated(&self, calibration: &Calibration) -> Result<Self, Error> {
+        Self::from_text(self.file(), &self.calibrated_text(calibration)?)
     }
 }

@@ -1,0 +1,178 @@
+//! Calibrated encoder offsets and lengths as text.
+
+use std::fmt::Write;
+
+use overact_identification::{Calibration, HeldParameter, significant};
+
+use super::table;
+
+/// Digits of a deviation.
+const DIGITS: usize = 2;
+
+/// Characters of a line of names.
+const WIDTH: usize = 100;
+
+/// What is changed, what stays as described, and what the data can't tell.
+pub(super) fn calibration(calibration: &Calibration) -> String {
+    let mut text = format!(
+        "\nCalibration from the closure of the loops ({} sensors, {} of the platform's coordinates)\n",
+        calibration.sensors, calibration.coordinates
+    );
+    if calibration.samples > 0 {
+        let _ = writeln!(
+            text,
+            "{} samples; what is left is {} times the sensors' noise as described, {} as calibrated",
+            calibration.samples,
+            significant(calibration.misfit_before, 3),
+            significant(calibration.misfit_after, 3)
+        );
+    }
+    text.push_str(&changes(calibration));
+    text.push_str(&held(&calibration.held));
+    for remark in &calibration.remarks {
+        let _ = writeln!(text, "- {remark}");
+    }
+    text
+}
+
+/// The table of what is changed.
+fn changes(calibration: &Calibration) -> String {
+    if calibration.estimated.is_empty() {
+        return String::from("nothing is changed\n");
+    }
+    let rows = calibration.estimated.iter().map(|one| {
+        let [low, high] = one.interval_95;
+        vec![
+            one.name.clone(),
+            significant(one.described, 6),
+            format!("{:+.4e}", one.change),
+            format!("{:.1e}", one.standard_deviation),
+            format!("{low:+.4e} … {high:+.4e}"),
+            one.unit.to_owned(),
+        ]
+    });
+    let header = [
+        "parameter",
+        "described",
+        "change",
+        "deviation",
+        "95 % interval",
+        "unit",
+    ];
+    table(&header, rows.collect())
+}
+
+/// What stays as described: what would be seen of a change, and what the data can't tell.
+fn held(held: &[HeldParameter]) -> String {
+    let mut text = String::new();
+    let known = held.iter().filter_map(|one| {
+        let deviation = one.deviation_of_a_change?;
+        let deviation = significant(deviation, DIGITS);
+        Some(format!("{} ({deviation} {})", one.name, one.unit))
+    });
+    let known: Vec<String> = known.collect();
+    if !known.is_empty() {
+        text.push_str("as described (in brackets the deviation that a change of it would have):\n");
+        text.push_str(&wrapped(&known));
+    }
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for one in held {
+        let Some(reason) = one.reason.as_deref() else {
+            continue;
+        };
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, names)) => names.push(&one.name),
+            None => reasons.push((reason, vec![&one.name])),
+        }
+    }
+    for (reason, names) in reasons {
+        let _ = writeln!(text, "not determined, since {reason}:");
+        text.push_str(&wrapped(&names));
+    }
+    text
+}
+
+/// Words with commas between them, in indented lines.
+fn wrapped(words: &[impl AsRef<str>]) -> String {
+    let mut text = String::new();
+    let mut width = WIDTH;
+    for (index, word) in words.iter().map(AsRef::as_ref).enumerate() {
+        let comma = if index + 1 < words.len() { "," } else { "" };
+        let length = word.chars().count() + comma.len() + 1;
+        if width + length > WIDTH {
+            let newline = if text.is_empty() { "" } else { "\n" };
+            let _ = write!(text, "{newline} ");
+            width = 1;
+        }
+        let _ = write!(text, " {word}{comma}");
+        width += length;
+    }
+    text.push('\n');
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::calibration;
+    use overact_identification::{
+        CalibratedParameter, Calibration, CalibrationScope, HeldParameter, ParameterKind,
+    };
+
+    fn held(name: &str, deviation: Option<f64>, reason: Option<&str>) -> HeldParameter {
+        HeldParameter {
+            name: name.to_owned(),
+            unit: "m",
+            kind: ParameterKind::BasePoint,
+            described: 0.0,
+            deviation_of_a_change: deviation,
+            reason: reason.map(str::to_owned),
+        }
+    }
+
+    #[test]
+    fn what_is_changed_and_what_is_not_is_told() {
+        let offset = CalibratedParameter {
+            name: "offset_leg2".to_owned(),
+            unit: "rad",
+            kind: ParameterKind::EncoderOffset,
+            described: 0.0,
+            change: 3.4907e-3,
+            standard_deviation: 1.2e-7,
+            interval_95: [3.4905e-3, 3.4909e-3],
+            alternatives: Vec::new(),
+            index: 1,
+        };
+        let reason = Some("it has no effect on the sensors");
+        let text = calibration(&Calibration {
+            scope: CalibrationScope::Smallest,
+            sensors: 4,
+            coordinates: 3,
+            samples: 2000,
+            noise: Vec::new(),
+            misfit_before: 492.73,
+            misfit_after: 1.0,
+            estimated: vec![offset],
+            held: vec![
+                held("base_x_leg1", Some(2.3e-7), None),
+                held("base_z_leg1", None, reason),
+                held("base_z_leg2", None, reason),
+            ],
+            converged: true,
+            remarks: vec!["angles fix no scale".to_owned()],
+            warnings: Vec::new(),
+        });
+        for line in [
+            "2000 samples; what is left is 493 times the sensors' noise as described, 1 as calibrated",
+            "  base_x_leg1 (2.3e-7 m)",
+            "not determined, since it has no effect on the sensors:",
+            "  base_z_leg1, base_z_leg2",
+            "- angles fix no scale",
+        ] {
+            assert!(text.lines().any(|own| own == line), "{line}\nin\n{text}");
+        }
+        assert!(
+            text.contains("offset_leg2") && text.contains("+3.4907e-3"),
+            "{text}"
+        );
+    }
+}

@@ -1,0 +1,256 @@
+//! The text of a calibrated description: the author's own, comments and order kept, with the changes as
+//! values of the placements.
+//!
+//! A leg is written once and placed several times, but no two legs are alike once they are calibrated. So a
+//! changed length becomes a sum of what stands there and a variable of the leg, `d = "l_ab + d_2_change"`, to
+//! which each placement gives its value. Offsets of encoders are `position_offset` of the table `[data]`.
+
+use super::length::{LegLength, Length};
+use crate::{
+    error::{Error, Problem},
+    robot::Robot,
+};
+use overact::Model;
+use overact_identification::{CalibratedParameter, Calibration};
+use std::collections::BTreeMap;
+use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value, value};
+
+/// Digits that are written below the first one of a deviation.
+const DIGITS_BELOW: i32 = 1;
+
+/// Decimals of a number, at most.
+const DECIMALS: i32 = 15;
+
+/// Writes the changes of a calibration into a robot's description. `length` tells what a parameter is.
+///
+/// # Errors
+/// A description that is not written as this function reads it, which does not happen.
+pub(super) fn calibrated(
+    robot: &Robot,
+    calibration: &Calibration,
+    length: &dyn Fn(usize) -> LegLength,
+) -> Result<String, Error> {
+    let source = robot.source();
+    let problem = |what: &str| -> Error {
+        let message = format!("the calibrated description can't be written: {what}");
+        Problem::new(message).file(source.name.as_str()).into()
+    };
+    let parsed = source.text.parse::<DocumentMut>();
+    let mut document = parsed.map_err(|error| problem(error.message()))?;
+    // Every length of a shape that changes in any of its legs, with the change in each.
+    let mut changed: BTreeMap<(String, String), Change> = BTreeMap::new();
+    for one in calibration.lengths() {
+        let own = length(one.index);
+        let leg = &robot.description().legs[own.leg];
+        let symbol = symbol(own.length, leg);
+        let entry = changed.entry((leg.shape_name.clone(), symbol));
+        let change = entry.or_insert_with(|| Change {
+            length: own.length,
+            of_legs: BTreeMap::new(),
+        });
+        let text = format!("{} m", rounded(one.change, one.standard_deviation));
+        change.of_legs.insert(leg.name.value.clone(), text);
+    }
+    for ((shape, symbol), change) in &changed {
+        change
+            .write(&mut document, shape, symbol)
+            .ok_or_else(|| problem(&format!("the leg `{shape}` has no {symbol}")))?;
+    }
+    if calibration.offsets().iter().any(|offset| *offset != 0.0) {
+        offsets(&mut document, robot, calibration)
+            .ok_or_else(|| problem("`[data]` is no table"))?;
+    }
+    Ok(heading(calibration) + &document.to_string())
+}
+
+/// What was changed, as comments.
+fn heading(calibration: &Calibration) -> String {
+    let line = |one: &CalibratedParameter| {
+        format!(
+            "#   {} {} {}, standard deviation {:.1e} {}\n",
+            one.name,
+            signed(one),
+            one.unit,
+            one.standard_deviation,
+            one.unit
+        )
+    };
+    let lines: String = calibration.estimated.iter().map(line).collect();
+    format!(
+        "# Calibrated from the closure of the loops; added to what was described before:\n{lines}\n"
+    )
+}
+
+fn signed(one: &CalibratedParameter) -> String {
+    let number = rounded(one.change, one.standard_deviation);
+    match one.change < 0.0 {
+        true => number,
+        false => format!("+{number}"),
+    }
+}
+
+/// A number with the digits that its deviation leaves a meaning.
+fn rounded(value: f64, deviation: f64) -> String {
+    let first = -deviation.log10().floor();
+    let decimals = if first.is_finite() { first as i32 } else { 0 };
+    let decimals = (decimals + DIGITS_BELOW).clamp(0, DECIMALS);
+    format!("{value:.*}", decimals as usize)
+}
+
+/// `d_2`, `base_x`: what is told of the variable's name.
+fn symbol(length: Length, leg: &overact_codegen::description::Leg) -> String {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    let joint = |joint: usize| leg.joints[joint].name.value.as_str();
+    match length {
+        Length::B(at) => format!("b_{}", joint(at)),
+        Length::D(at) => format!("d_{}", joint(at)),
+        Length::R(at) => format!("r_{}", joint(at)),
+        Length::Base(axis) => format!("base_{}", AXES[axis]),
+        Length::End(axis) => format!("end_{}", AXES[axis]),
+    }
+}
+
+/// The change of a length in the legs of a shape, as expressions.
+struct Change {
+    length: Length,
+    of_legs: BTreeMap<String, String>,
+}
+
+impl Change {
+    /// Writes it: the sum in the shape, the values in its placements. None where the shape is not what was
+    /// read.
+    fn write(&self, document: &mut DocumentMut, shape: &str, symbol: &str) -> Option<()> {
+        let taken = names(document, shape);
+        let plain = format!("{symbol}_change");
+        let numbered = (2..).map(|number| format!("{plain}_{number}"));
+        let mut free = std::iter::once(plain.clone()).chain(numbered);
+        let variable = free.find(|name| !taken.contains(name))?;
+        let leg = document
+            .get_mut("leg")?
+            .get_mut(shape)?
+            .as_table_like_mut()?;
+        leg.entry("variables")
+            .or_insert(value(Array::new()))
+            .as_array_mut()?
+            .push(variable.as_str());
+        let sum = |old: &Value| plus(old, &variable);
+        match self.length {
+            Length::B(at) | Length::D(at) | Length::R(at) => {
+                let key = symbol.get(..1)?;
+                let joint = nth(leg.get_mut("joint")?, at)?;
+                let old = joint.get_mut(key)?.as_value_mut()?;
+                *old = sum(old);
+            }
+            Length::Base(axis) => component(leg, "base", axis, &sum)?,
+            Length::End(axis) => component(leg, "end", axis, &sum)?,
+        }
+        let places = document.get_mut("place")?;
+        for at in 0..count(places) {
+            let place = nth(places, at)?;
+            let text = |key: &str| place.get(key)?.as_str().map(str::to_owned);
+            if text("shape")? == shape {
+                let own = self.of_legs.get(&text("name")?);
+                place.insert(&variable, value(own.map_or("0 m", String::as_str)));
+            }
+        }
+        Some(())
+    }
+}
+
+/// Names that a variable of a shape can't have.
+fn names(document: &DocumentMut, shape: &str) -> Vec<String> {
+    let constants = document.get("constants").and_then(Item::as_table_like);
+    let constants = constants.into_iter().flat_map(TableLike::iter);
+    let mut names: Vec<String> = constants.map(|(name, _)| name.to_owned()).collect();
+    let leg = document.get("leg").and_then(|legs| legs.get(shape));
+    let variables = leg.and_then(|leg| leg.get("variables")?.as_array());
+    let variables = variables.into_iter().flat_map(Array::iter);
+    names.extend(variables.filter_map(|one| one.as_str().map(str::to_owned)));
+    names
+}
+
+/// A value plus a variable, as an expression.
+fn plus(old: &Value, variable: &str) -> Value {
+    let written = match old {
+        Value::String(text) => text.value().trim().to_owned(),
+        other => other.clone().decorated("", "").to_string(),
+    };
+    let sum = match written.parse::<f64>() {
+        Ok(0.0) => variable.to_owned(),
+        _ => format!("{written} + {variable}"),
+    };
+    // What stands around it, a comment for instance, stays.
+    let mut new = Value::from(sum);
+    *new.decor_mut() = old.decor().clone();
+    new
+}
+
+/// Adds to a coordinate of the point `at` of a leg's table, which may be left out.
+fn component(
+    leg: &mut dyn TableLike,
+    table: &str,
+    axis: usize,
+    sum: &dyn Fn(&Value) -> Value,
+) -> Option<()> {
+    let table = leg.entry(table).or_insert(Item::Table(Table::new()));
+    let point = table.as_table_like_mut()?.entry("at");
+    let point = point
+        .or_insert(value(Array::from_iter([0, 0, 0])))
+        .as_array_mut()?;
+    let old = point.get_mut(axis)?;
+    *old = sum(old);
+    Some(())
+}
+
+/// The tables of a list, which may be written in one line or as tables.
+fn count(item: &Item) -> usize {
+    let tables = item.as_array_of_tables().map(ArrayOfTables::len);
+    tables
+        .or_else(|| item.as_array().map(Array::len))
+        .unwrap_or(0)
+}
+
+fn nth(item: &mut Item, at: usize) -> Option<&mut dyn TableLike> {
+    match item {
+        Item::ArrayOfTables(tables) => tables.get_mut(at).map(|table| table as &mut dyn TableLike),
+        Item::Value(Value::Array(list)) => list
+            .get_mut(at)?
+            .as_inline_table_mut()
+            .map(|table| table as &mut dyn TableLike),
+        _ => None,
+    }
+}
+
+/// Writes `position_offset`, with the columns that a log has without a table `[data]` where there is none.
+fn offsets(document: &mut DocumentMut, robot: &Robot, calibration: &Calibration) -> Option<()> {
+    let info = robot.model().info();
+    let mapping = robot.mapping();
+    let data = document.entry("data").or_insert(Item::Table(Table::new()));
+    let data = data.as_table_like_mut()?;
+    if data.is_empty() {
+        data.insert("time", value(mapping.time));
+        data.insert("positions", value(Array::from_iter(mapping.positions)));
+        data.insert("torques", value(Array::from_iter(mapping.torques)));
+    }
+    let before = mapping
+        .position_offset
+        .iter()
+        .copied()
+        .chain(std::iter::repeat(0.0));
+    let changes = calibration.offsets();
+    let smallest = calibration
+        .estimated
+        .iter()
+        .map(|one| one.standard_deviation);
+    let deviation = smallest.fold(f64::INFINITY, f64::min);
+    let each = changes.iter().zip(before).zip(info.actuator_is_revolute);
+    let text = each.map(|((change, before), revolute)| {
+        let unit = if *revolute { "rad" } else { "m" };
+        match change + before {
+            0.0 => format!("0 {unit}"),
+            sum => format!("{} {unit}", rounded(sum, deviation)),
+        }
+    });
+    data.insert("position_offset", value(Array::from_iter(text)));
+    Some(())
+}
