@@ -40,7 +40,16 @@ fn refused(bench: &Bench, arguments: &[&str], words: &str) {
 #[test]
 fn an_output_is_never_an_input() {
     let bench = bench();
-    let cases: [&[&str]; 16] = [
+    let cases: [&[&str]; 17] = [
+        &[
+            "identify",
+            "my.toml",
+            "--data",
+            "log.csv",
+            "--calibrate",
+            "--calibrated-robot",
+            "my.toml",
+        ],
         &["identify", "my.toml", "--data", "log.csv", "-o", "log.csv"],
         &[
             "identify", "my.toml", "--data", "log.csv", "--report", "log.csv",

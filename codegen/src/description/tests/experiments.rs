@@ -88,6 +88,10 @@ fn factors_are_numbers_expressions_or_variables() {
     let data = good(&single(tables, "")).data.unwrap();
     assert_eq!(data.position_scale, [1_f64.to_radians()]);
     assert_eq!(data.torque_gain, [Factor::Value(2.0)]);
+    assert_eq!(data.position_offset, [0.0]);
+    let offset = tables.replace("torque_gain", "position_offset = \"0.5 deg\"\ntorque_gain");
+    let data = good(&single(&offset, "")).data.unwrap();
+    assert_eq!(data.position_offset, [0.5_f64.to_radians()]);
     let variable = tables.replace("[\"k\"]", "\"gtau\"");
     let data = good(&single(&variable, "")).data.unwrap();
     assert_eq!(data.torque_gain, [Factor::Variable("gtau".to_owned())]);
