@@ -1,7 +1,8 @@
 //! Damaged descriptions are answered with located errors or a model, never with a panic.
 
-use overact_codegen::{Diagnostics, RobotModel, Source, compile};
+use overact_codegen::{Diagnostics, Effort, Request, RobotModel, Source, compile_with};
 use overact_tests::support::description;
+use overact_tier::by_tier;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::sync::mpsc;
@@ -119,14 +120,17 @@ fn text() -> String {
     source[..end].to_owned()
 }
 
-/// The answer of the generator; none if it panicked or takes too long.
+/// The answer of the generator; none if it panicked or takes too long. Where the damage did none, the
+/// default tier derives the model and does not search its operations.
 fn answer(source: &Source) -> Option<Result<Box<RobotModel>, Diagnostics>> {
     let (sender, receiver) = mpsc::channel();
     let source = source.clone();
     // A thread that never ends is left behind: the test fails then anyway.
     std::thread::spawn(move || {
         // Nobody may be waiting any more.
-        let _ = sender.send(compile(&source).map(|compiled| Box::new(compiled.model)));
+        let request = Request::with_effort(by_tier([Effort::None, Effort::Quick]));
+        let compiled = compile_with(&source, &request);
+        let _ = sender.send(compiled.map(|compiled| Box::new(compiled.model)));
     });
     receiver.recv_timeout(PATIENCE).ok()
 }

@@ -16,7 +16,8 @@ struct Binary {
     folder: PathBuf,
 }
 
-/// Builds all tests, runs one binary after the other and prints what each took, most first.
+/// Builds all tests, runs one binary after the other and says what each took, at once on stderr and then
+/// as a table, most first.
 pub(crate) fn table(most: Option<&str>) -> Result<(), Failure> {
     let most: f64 = most.map_or(Ok(f64::INFINITY), str::parse)?;
     let mut rows = Vec::new();
@@ -28,17 +29,20 @@ pub(crate) fn table(most: Option<&str>) -> Result<(), Failure> {
             .current_dir(&binary.folder)
             .env("CARGO_MANIFEST_DIR", &binary.folder);
         let output = command.stdin(Stdio::null()).output()?;
-        rows.push((children()? - before, binary.name.clone()));
+        let seconds = children()? - before;
+        eprintln!("{seconds:8.1} s  {}", binary.name);
+        rows.push((seconds, binary.name.clone()));
         if !output.status.success() {
             failed.push(binary.name);
         }
     }
     let before = children()?;
-    cargo(&["test", "--workspace", "--doc", "--quiet"])?;
-    rows.push((
-        children()? - before,
-        "examples in the documentation".to_owned(),
-    ));
+    let examples = "examples in the documentation".to_owned();
+    if let Err(failure) = cargo(&["test", "--workspace", "--doc", "--quiet"]) {
+        eprintln!("{failure}");
+        failed.push(examples.clone());
+    }
+    rows.push((children()? - before, examples));
     rows.sort_by(|(a, _), (b, _)| b.total_cmp(a));
     for (seconds, name) in &rows {
         println!("{seconds:8.1} s  {name}");

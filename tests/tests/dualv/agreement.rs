@@ -43,11 +43,15 @@ fn agree(
     kept: &[usize],
     backend: Option<&dyn Backend>,
     partitions: bool,
-    is_chosen: impl Fn(Function) -> bool,
+    is_chosen: impl Fn(Function) -> bool + Sync,
 ) -> Result<(), Failure> {
     let mut robot = dualv()?.mechanism.clone();
     robot.kept_actuators = kept.to_vec();
-    let model = model_with(robot, &Request::default()).map_err(|e| format!("{e:?}"))?;
+    let request = Request {
+        wanted: &|_, function, _| is_chosen(function),
+        ..Request::default()
+    };
+    let model = model_with(robot, &request).map_err(|e| format!("{e:?}"))?;
     let evaluated = Evaluated(&model);
     let expected = Expected::new(&model, mechanism.clone())?;
     let all = samples(
@@ -87,7 +91,7 @@ fn agree(
     Ok(())
 }
 
-fn case_1(is_chosen: impl Fn(Function) -> bool) -> Result<(), Failure> {
+fn case_1(is_chosen: impl Fn(Function) -> bool + Sync) -> Result<(), Failure> {
     let chosen = |function| is_chosen(function) && !is_partitioned(function);
     agree(
         &robots::dualv(),
