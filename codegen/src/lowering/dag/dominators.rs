@@ -68,7 +68,8 @@ impl Dominators {
         self.cones[node]
     }
 
-    /// The operations of `of`'s cone that stay if `kept` is needed by others, too.
+    /// Operations of `of`'s cone that stay if `kept` is needed by others, too: those of its own cone. What
+    /// it has in common with other nodes of `of`'s cone would stay as well.
     pub(crate) fn shared(&self, of: usize, kept: usize) -> i32 {
         let is_below = (self.first[of]..self.end[of]).contains(&self.first[kept]);
         if is_below { self.cones[kept] } else { 0 }

@@ -5,6 +5,7 @@ mod build;
 mod cases;
 mod damage;
 mod digits;
+mod dominators;
 mod language;
 mod listing;
 mod properties;
