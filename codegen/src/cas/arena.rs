@@ -11,6 +11,7 @@ use symbols::Symbol;
 use super::direction::{Direction, SymbolId};
 use super::expr::Expr;
 use super::field::{Element, canonical};
+use super::hasher::{ByValue, QuickMap};
 use super::number::Number;
 use super::ratio::Ratio;
 use super::sample::Sample;
@@ -86,11 +87,11 @@ struct Tables {
     symbols: Vec<Symbol>,
     symbol_ids: HashMap<String, SymbolId>,
     directions: Vec<Direction>,
-    direction_ids: HashMap<Direction, u32>,
+    direction_ids: QuickMap<Direction, u32>,
     sets: placeholders::Sets,
-    by_shape: HashMap<Op, Handle>,
-    by_fingerprint: HashMap<[Element; POINTS], Handle>,
-    by_ratio: HashMap<Element, u32>,
+    by_shape: QuickMap<Op, Handle>,
+    by_fingerprint: QuickMap<[Element; POINTS], Handle>,
+    by_ratio: ByValue<u32>,
     names: HashMap<usize, String>,
     scopes: Vec<String>,
     scope: u32,

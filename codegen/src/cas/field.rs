@@ -96,11 +96,12 @@ impl Element {
     /// The image of an integer.
     #[must_use]
     pub fn integer(value: i128) -> Self {
-        // A Euclidean remainder is never negative and below P.
-        Self {
-            re: value.rem_euclid(i128::from(P)) as u64,
-            im: 0,
-        }
+        // Small ones stand for themselves. A Euclidean remainder is never negative and below P.
+        let re = match u64::try_from(value) {
+            Ok(small) if small < P => small,
+            _ => value.rem_euclid(i128::from(P)) as u64,
+        };
+        Self { re, im: 0 }
     }
 
     /// A base-field element from any 64 bits.

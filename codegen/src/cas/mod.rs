@@ -20,6 +20,7 @@ pub mod calculus;
 pub mod direction;
 pub mod expr;
 pub mod field;
+pub(crate) mod hasher;
 pub mod number;
 pub mod print;
 pub mod ratio;

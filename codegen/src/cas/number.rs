@@ -40,8 +40,10 @@ impl Number {
     /// A fraction.
     #[must_use]
     pub fn ratio(ratio: Ratio) -> Self {
-        let image =
-            Element::integer(ratio.numerator()) * Element::integer(ratio.denominator()).inverse();
+        let mut image = Element::integer(ratio.numerator());
+        if ratio.denominator() != 1 {
+            image = image * Element::integer(ratio.denominator()).inverse();
+        }
         Self {
             value: ratio.value(),
             image,
@@ -182,7 +184,11 @@ fn close(a: f64, b: f64) -> bool {
 /// Combines two numbers: exactly as fractions if both are, else by value and image.
 fn combine(ratio: Option<Ratio>, value: f64, image: Element) -> Number {
     if let Some(ratio) = ratio {
-        return Number::ratio(ratio);
+        return Number {
+            value: ratio.value(),
+            image,
+            ratio: Some(ratio),
+        };
     }
     if image == Element::ZERO && value.abs() < 1e-9 {
         return Number::ZERO;

@@ -12,6 +12,13 @@ pub struct Ratio {
 
 fn gcd(a: i128, b: i128) -> i128 {
     let (mut a, mut b) = (a.unsigned_abs(), b.unsigned_abs());
+    // Nearly all parts have 64 bits, whose remainders are instructions and not calls.
+    if let (Ok(mut a), Ok(mut b)) = (u64::try_from(a), u64::try_from(b)) {
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        return a.into();
+    }
     while b != 0 {
         (a, b) = (b, a % b);
     }
@@ -38,6 +45,12 @@ impl Ratio {
         }
         let divisor = gcd(numerator, denominator).max(1);
         let sign = denominator.signum();
+        if divisor == 1 {
+            return Some(Self {
+                numerator: numerator.checked_mul(sign)?,
+                denominator: denominator.checked_mul(sign)?,
+            });
+        }
         Some(Self {
             numerator: (numerator / divisor).checked_mul(sign)?,
             denominator: (denominator / divisor).checked_mul(sign)?,
@@ -93,7 +106,13 @@ impl Ratio {
     /// The nearest float (to within the rounding of two conversions and a division).
     #[must_use]
     pub fn value(self) -> f64 {
-        self.numerator as f64 / self.denominator as f64
+        match (
+            i64::try_from(self.numerator),
+            i64::try_from(self.denominator),
+        ) {
+            (Ok(numerator), Ok(denominator)) => numerator as f64 / denominator as f64,
+            _ => self.numerator as f64 / self.denominator as f64,
+        }
     }
 
     /// Sum.

@@ -23,38 +23,15 @@ pub(crate) use node::{Angle, Constant, Definition, Edge};
 use super::program::Condition;
 use crate::cas::arena::{Fingerprint, negative_name};
 use crate::cas::field::{Element, canonical};
+use crate::cas::hasher::ByValue;
 use crate::cas::{Direction, InputElement};
 use digits::Digits;
 use forms::Forms;
 use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
 
 /// What a root and an arc tangent count, so that they are saved first.
 const EXPENSIVE: i32 = 10;
-
-/// The value by which nodes are looked up: that of a node or of its negative.
-pub(crate) type Key = Element;
-
-/// Field elements are random already.
-#[derive(Default)]
-pub(crate) struct FieldHasher(u64);
-
-impl Hasher for FieldHasher {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.write_u64(u64::from(*byte));
-        }
-    }
-    fn write_u64(&mut self, value: u64) {
-        self.0 = (self.0.rotate_left(23) ^ value).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    }
-}
-
-pub(crate) type ByValue<T> = HashMap<Key, T, BuildHasherDefault<FieldHasher>>;
 
 /// A symbol of the derivation.
 #[derive(Debug, Clone, Copy)]
@@ -107,7 +84,7 @@ pub(crate) struct Dag {
     uses: Vec<u32>,
     /// Longest way from an input to each node.
     depths: Vec<u32>,
-    /// Node of each value.
+    /// Node of each value: that of a node or of its negative.
     by_value: ByValue<Edge>,
     /// The derivation's definition of each node; new ones have none.
     own_forms: Vec<Option<Definition>>,

@@ -7,9 +7,10 @@
 
 use super::single_replacements::{LOSS, fits};
 use crate::cas::field::{Element, canonical};
+use crate::cas::hasher::ByValue;
 #[cfg(test)]
 use crate::lowering::SearchLimits;
-use crate::lowering::dag::{ByValue, Dag, Definition, Dominators, Edge};
+use crate::lowering::dag::{Dag, Definition, Dominators, Edge};
 
 /// More nodes than this are searched without pairs: the table of pairs grows with the square.
 const MOST: usize = 2500;
