@@ -32,54 +32,13 @@ pub(crate) fn schedule(
         }
     }
     let guards = schedule.guards()?;
-    Ok(without_idle_steps(Program {
+    Ok(Program {
         inputs: inputs.to_vec(),
         output: output.clone(),
         entries,
         steps: schedule.steps,
         guards,
-    }))
-}
-
-/// The program without the steps that no entry and no guard needs: what is computed together with a node
-/// that is needed, as the cosine beside a sine, need not be needed itself.
-fn without_idle_steps(mut program: Program) -> Program {
-    let mut needed = vec![false; program.steps.len()];
-    let entries = program.entries.iter().map(|entry| entry.operand);
-    let guards = program.guards.iter().map(|guard| guard.operand);
-    let mut stack: Vec<Operand> = entries.chain(guards).collect();
-    while let Some(operand) = stack.pop() {
-        if let Operand::Step(at) = operand
-            && !std::mem::replace(&mut needed[at], true)
-        {
-            stack.extend(program.steps[at].operation.operands());
-        }
-    }
-    if needed.iter().all(|&needed| needed) {
-        return program;
-    }
-    let mut places = Vec::with_capacity(needed.len());
-    let mut count = 0;
-    for &needed in &needed {
-        places.push(count);
-        count += usize::from(needed);
-    }
-    let moved = |operand: Operand| match operand {
-        Operand::Step(at) => Operand::Step(places[at]),
-        other => other,
-    };
-    let mut is_needed = needed.iter();
-    program.steps.retain(|_| is_needed.next() == Some(&true));
-    for step in &mut program.steps {
-        step.operation = step.operation.with_operands(moved);
-    }
-    for entry in &mut program.entries {
-        entry.operand = moved(entry.operand);
-    }
-    for guard in &mut program.guards {
-        guard.operand = moved(guard.operand);
-    }
-    program
+    })
 }
 
 fn broken(broken: String) -> InternalError {
@@ -102,7 +61,7 @@ struct Schedule<'d> {
 
 impl<'d> Schedule<'d> {
     fn new(dag: &'d Dag, inputs: &'d [Array]) -> Self {
-        let groups = dag.together.iter().enumerate();
+        let groups = dag.groups().iter().enumerate();
         let members = groups.flat_map(|(group, nodes)| nodes.iter().map(move |&n| (n, group)));
         Self {
             dag,
@@ -112,7 +71,7 @@ impl<'d> Schedule<'d> {
             done: vec![None; dag.len()],
             negatives: HashMap::new(),
             groups: members.collect(),
-            is_begun: vec![false; dag.together.len()],
+            is_begun: vec![false; dag.groups().len()],
         }
     }
 
@@ -153,7 +112,7 @@ impl<'d> Schedule<'d> {
         if let Some(&group) = self.groups.get(&node)
             && !std::mem::replace(&mut self.is_begun[group], true)
         {
-            for &member in &self.dag.together[group] {
+            for &member in &self.dag.groups()[group] {
                 if self.needed[member] {
                     self.single(member)?;
                 }
@@ -178,8 +137,10 @@ impl<'d> Schedule<'d> {
                 })
             }
         };
-        self.done[node] = Some(operand);
-        Ok(operand)
+        match self.done[node].replace(operand) {
+            None => Ok(operand),
+            Some(_) => Err(broken(format!("node {node} is computed from itself"))),
+        }
     }
 
     fn operation(&mut self, definition: Definition) -> Result<Operation, InternalError> {

@@ -95,8 +95,9 @@ pub(crate) struct Dag {
     /// Held like entries: a guard's value stays as long as something is divided by it or its root is
     /// taken, and keeps its own node, which means something to the reader.
     guards: Vec<GuardedEdge>,
-    /// Nodes that are computed one after the other, such as an angle's cosine and sine.
-    pub(crate) together: Vec<Vec<usize>>,
+    /// Nodes that are computed one after the other, such as an angle's cosine and sine; each stands in one
+    /// group at most.
+    together: Vec<Vec<usize>>,
     /// What replacements are held against.
     digits: Digits,
     /// What the search of single replacements knows of the nodes.
@@ -192,6 +193,19 @@ impl Dag {
         for guard in gone {
             self.release(guard.value.node());
         }
+    }
+
+    /// Lets nodes be computed one after the other, but those that belong to an earlier group: in two groups
+    /// they would be computed with the second while the first is not done.
+    pub(crate) fn compute_together(&mut self, nodes: &[usize]) {
+        let is_new = |node: &usize| !self.together.iter().flatten().any(|known| known == node);
+        let group = nodes.iter().copied().filter(is_new).collect();
+        self.together.push(group);
+    }
+
+    /// The groups of nodes that are computed one after the other.
+    pub(crate) fn groups(&self) -> &[Vec<usize>] {
+        &self.together
     }
 
     pub(crate) fn len(&self) -> usize {

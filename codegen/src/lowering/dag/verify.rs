@@ -11,6 +11,7 @@ impl Dag {
         self.verify_edges()?;
         self.verify_order()?;
         self.verify_uses()?;
+        self.verify_groups()?;
         self.verify_values()
     }
 
@@ -61,6 +62,16 @@ impl Dag {
                 "node {node} is used {} times and counted as used {} times",
                 uses[node], self.uses[node]
             )),
+            None => Ok(()),
+        }
+    }
+
+    /// A node is computed with one group of nodes at most.
+    fn verify_groups(&self) -> Result<(), String> {
+        let mut seen = vec![false; self.len()];
+        let mut nodes = self.together.iter().flatten();
+        match nodes.find(|&&node| std::mem::replace(&mut seen[node], true)) {
+            Some(node) => Err(format!("node {node} is computed with two groups")),
             None => Ok(()),
         }
     }

@@ -51,24 +51,6 @@ impl Operation {
         )
     }
 
-    /// The operation with its operands replaced.
-    #[must_use]
-    pub(crate) fn with_operands(self, mut by: impl FnMut(Operand) -> Operand) -> Self {
-        match self {
-            Self::Add(a, b) => Self::Add(by(a), by(b)),
-            Self::Sub(a, b) => Self::Sub(by(a), by(b)),
-            Self::Mul(a, b) => Self::Mul(by(a), by(b)),
-            Self::Div(a, b) => Self::Div(by(a), by(b)),
-            Self::Signed(a, b) => Self::Signed(by(a), by(b)),
-            Self::Atan2(a, b) => Self::Atan2(by(a), by(b)),
-            Self::Neg(a) => Self::Neg(by(a)),
-            Self::Sqrt(a) => Self::Sqrt(by(a)),
-            Self::Sign(a) => Self::Sign(by(a)),
-            Self::Sine(a) => Self::Sine(by(a)),
-            Self::Cosine(a) => Self::Cosine(by(a)),
-        }
-    }
-
     /// The operands.
     #[must_use]
     pub fn operands(&self) -> Vec<Operand> {

@@ -9,6 +9,7 @@ use super::language::parse;
 use super::listing::listing;
 use crate::lowering::SearchLimits;
 use crate::lowering::passes::{PARTS, PASSES, Pass};
+use crate::lowering::schedule::schedule;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -80,6 +81,12 @@ fn run(case: &Case) -> String {
         (pass.run)(&mut built.dag, &case.limits);
         let sound = built.dag.verify();
         sound.unwrap_or_else(|broken| panic!("after `{}`: {broken}", pass.name));
+    }
+    // Once the angles are written out the graph can be put in order.
+    if case.passes.iter().any(|pass| pass.name == "angles") {
+        let program = schedule(&built.dag, &built.inputs, &built.output);
+        let program = program.expect("an order of the nodes");
+        program.verify().expect("a sound program");
     }
     let text = listing(&built.dag);
     let indented: String = text.lines().map(|line| format!("    {line}\n")).collect();

@@ -117,7 +117,7 @@ impl<'d> Work<'d> {
         let (cosine, sine) = self.nodes(turn);
         self.dag.redefine(cosine, Definition::Cosine(angle));
         self.dag.redefine(sine, Definition::Sine(angle));
-        self.dag.together.push(vec![cosine, sine]);
+        self.dag.compute_together(&[cosine, sine]);
         (Edge::to(cosine), Edge::to(sine))
     }
 
@@ -126,11 +126,13 @@ impl<'d> Work<'d> {
         let (cosine, sine) = self.nodes(turn);
         let mut together = products;
         for (node, by) in [(cosine, by_cosine), (sine, by_sine)] {
-            // The sum's own node is not used: the angle's takes its definition.
-            self.dag.redefine(node, self.dag.definition(by.node()));
+            // The sum's own node is not used: the angle's takes its definition, for later angles as well.
+            let definition = self.dag.definition(by.node());
+            self.dag.redefine(node, definition);
+            self.known.insert(definition, node);
             together.push(node);
         }
-        self.dag.together.push(together);
+        self.dag.compute_together(&together);
         (Edge::to(cosine), Edge::to(sine))
     }
 

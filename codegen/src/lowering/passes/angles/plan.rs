@@ -43,41 +43,44 @@ pub(super) fn plan(angles: &[Direction]) -> Vec<(usize, Plan)> {
     planned
 }
 
+/// A known angle and a constant are preferred to two known ones, which take an addition theorem more.
 fn composed(angle: &Direction, known: &[&Direction]) -> Option<Plan> {
-    let less = |a: &Direction, b: &Direction, sign: i64| {
-        let part = b.times(Ratio::integer(sign))?;
-        a.plus(&part.negative())
-    };
-    for (first, direction) in known.iter().enumerate() {
-        for sign in [1, -1] {
-            let Some(rest) = less(angle, direction, sign) else {
-                continue;
-            };
-            if rest.is_constant() {
-                return Some(Plan::Sum {
-                    first,
-                    second: None,
-                    sign,
-                    rest,
-                });
-            }
-            for (second, other) in known.iter().enumerate() {
-                for other_sign in [1, -1] {
-                    let Some(last) = less(&rest, other, other_sign) else {
-                        continue;
-                    };
-                    if last.is_constant() {
-                        let second = Some((second, other_sign));
-                        return Some(Plan::Sum {
-                            first,
-                            second,
-                            sign,
-                            rest: last,
-                        });
-                    }
-                }
-            }
-        }
-    }
-    None
+    turned(angle, known).or_else(|| sum_of_two(angle, known))
+}
+
+/// What is left of an angle without ± a part.
+fn less(angle: &Direction, part: &Direction, sign: i64) -> Option<Direction> {
+    let part = part.times(Ratio::integer(sign))?;
+    angle.plus(&part.negative())
+}
+
+/// What is left of an angle without each of the known ones: which one, its sign, and the rest.
+fn rests(angle: &Direction, known: &[&Direction]) -> impl Iterator<Item = (usize, i64, Direction)> {
+    let signed = known.iter().enumerate();
+    let signed = signed.flat_map(|(at, part)| [1, -1].map(|sign| (at, sign, *part)));
+    signed.filter_map(|(at, sign, part)| Some((at, sign, less(angle, part, sign)?)))
+}
+
+/// The angle as ± a known one and a constant.
+fn turned(angle: &Direction, known: &[&Direction]) -> Option<Plan> {
+    let mut found = rests(angle, known).filter(|(_, _, rest)| rest.is_constant());
+    found.next().map(|(first, sign, rest)| Plan::Sum {
+        first,
+        second: None,
+        sign,
+        rest,
+    })
+}
+
+/// The angle as ± a known one ± another and a constant.
+fn sum_of_two(angle: &Direction, known: &[&Direction]) -> Option<Plan> {
+    rests(angle, known).find_map(|(first, sign, rest)| {
+        let mut found = rests(&rest, known).filter(|(_, _, last)| last.is_constant());
+        found.next().map(|(second, other_sign, rest)| Plan::Sum {
+            first,
+            second: Some((second, other_sign)),
+            sign,
+            rest,
+        })
+    })
 }
