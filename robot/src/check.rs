@@ -96,9 +96,9 @@ fn check_filters(
 ) {
     let frequency = experiment.sampling_hz;
     let settings = settings(description, info, frequency);
-    let at = |path: &str, message: String, help: &str| Diagnostic {
-        span: description::place(source, path),
-        ..Diagnostic::global(message).help(help)
+    let at = |path: &str, message: String, help: &str| {
+        let place = description::place(source, path);
+        Diagnostic::global(message).help(help).at(place)
     };
     let (cutoff, nyquist) = (settings.filter_cutoff_hz, frequency / 2.0);
     if cutoff >= nyquist {

@@ -78,6 +78,7 @@ impl Source {
 
 /// One error.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// What is wrong, in one sentence.
     pub message: String,
@@ -87,6 +88,20 @@ pub struct Diagnostic {
     pub label: String,
     /// A way out.
     pub help: Option<String>,
+    /// Which kind of error it is, for programs that have to tell it from others.
+    pub kind: DiagnosticKind,
+}
+
+/// Kinds of errors that programs tell from others without reading the message.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum DiagnosticKind {
+    /// An error that is told by its message alone.
+    #[default]
+    Plain,
+    /// The legs leave the platform more motions than the description gives it, and the actuators drive all
+    /// of them: a sound robot, but one with more degrees of freedom.
+    NotHeld,
 }
 
 impl Diagnostic {
@@ -98,6 +113,7 @@ impl Diagnostic {
             span: Some(span),
             label: String::new(),
             help: None,
+            kind: DiagnosticKind::Plain,
         }
     }
 
@@ -109,7 +125,14 @@ impl Diagnostic {
             span: None,
             label: String::new(),
             help: None,
+            kind: DiagnosticKind::Plain,
         }
+    }
+
+    /// At a place, if it is known.
+    #[must_use]
+    pub fn at(self, span: Option<Span>) -> Self {
+        Self { span, ..self }
     }
 
     /// With a text under the caret.
@@ -128,6 +151,12 @@ impl Diagnostic {
             help: Some(help.into()),
             ..self
         }
+    }
+
+    /// Of a kind that programs tell from others.
+    #[must_use]
+    pub fn kind(self, kind: DiagnosticKind) -> Self {
+        Self { kind, ..self }
     }
 
     /// With a way out, if there is one.

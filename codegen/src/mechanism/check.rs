@@ -154,9 +154,9 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
 }
 
 /// Legs that block some motions, but not all that the description leaves out, while the actuators drive
-/// what is left: then the platform moves in ways of which the model knows nothing. Legs that block
-/// nothing at all are rods that stand for parallelograms, which hold the platform in ways that are not
-/// described.
+/// what is left, at home and beside it: a robot with more degrees of freedom, see [`mobility`](super::mobility).
+/// Legs that block nothing at all are rods that stand for parallelograms, which hold the platform in ways
+/// that are not described.
 fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Diagnostics> {
     let beside = random_states(mechanism, 3, 5).into_iter().map(|state| {
         let home = Home::new(mechanism, state.pose, state.joints);

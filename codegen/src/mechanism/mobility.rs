@@ -5,6 +5,16 @@
 //! What no joint gives is blocked: Nᵀ E t = 0 with N the left null space of J. The legs together leave the
 //! null space of all these rows. Motions that none of the shared components feel, such as the rotation
 //! of a platform that is a point, are nobody's and count neither here nor there.
+//!
+//! Every leg follows the described motion, so what the legs leave contains it; the two are equal if their
+//! dimensions are. Where the legs leave L motions, more than the r described, and the actuators drive all L,
+//! the robot has L degrees of freedom, also if its controller keeps it to r of them: of its n torques
+//! n - L are internal, not n - r, so torques of least norm and preloads of the described robot would move
+//! the platform aside, and gravity and inertia on the L - r others need torques that its model does not
+//! know. Whether n > L makes no difference, for the actuators that hold the platform are those that move
+//! it. It is another robot, and refused. Where the actuators do not drive all L, the legs are
+//! rods that stand for parallelograms, or the platform hangs loose: the description can't tell which, and the
+//! first is the usual way to describe a Delta.
 
 use super::numeric::{platform_frame, target};
 use super::singular_values::{SingularValues, rank};

@@ -41,10 +41,7 @@ pub(crate) fn diagnostics(
             .for_each(|run| all.push(of_run(source, description, run))),
         other => {
             let span = description::place(source, "experiment");
-            all.push(Diagnostic {
-                span,
-                ..Diagnostic::global(other.to_string())
-            });
+            all.push(Diagnostic::global(other.to_string()).at(span));
         }
     }
     all
@@ -54,10 +51,8 @@ pub(crate) fn diagnostics(
 fn of_problem(source: &Source, problem: &Problem) -> Diagnostic {
     let path = path(&problem.field);
     let name = path.rsplit('.').next().unwrap_or(&path);
-    Diagnostic {
-        span: description::place(source, &format!("experiment.{path}")),
-        ..Diagnostic::global(format!("`{name}` {}", in_keys(&problem.message)))
-    }
+    let place = description::place(source, &format!("experiment.{path}"));
+    Diagnostic::global(format!("`{name}` {}", in_keys(&problem.message))).at(place)
 }
 
 /// A run that could not be finished, at its name.
@@ -65,12 +60,9 @@ fn of_run(source: &Source, description: &Description, error: &RunError) -> Diagn
     let runs = description.experiment.iter().flat_map(|table| &table.runs);
     let run = runs.into_iter().find(|run| run.name.value == error.run);
     let message = in_keys(&error.to_string());
-    Diagnostic {
-        span: run
-            .map(|run| run.name.span.clone())
-            .or_else(|| description::place(source, "experiment")),
-        ..Diagnostic::global(message)
-    }
+    let of_run = run.map(|run| run.name.span.clone());
+    let place = of_run.or_else(|| description::place(source, "experiment"));
+    Diagnostic::global(message).at(place)
 }
 
 /// The path of a value among the description's keys: `runs[1].trajectory.terms[0].phase_rad` is

@@ -1,10 +1,17 @@
 //! What is said where the legs leave other motions than those that are described.
 
 use super::{assert_said, said};
+use crate::description;
+use crate::diagnostic::{DiagnosticKind, Source};
 
 /// Three legs of a revolute joint with a horizontal axis, a linear motor and a ball joint. They leave
 /// the platform the motion along z and the rotations about x and y.
 fn three_rps(motion: &str) -> String {
+    rps(motion, &[0, 120, 240])
+}
+
+/// Legs of this kind at some angles around z, deg.
+fn rps(motion: &str, angles: &[i32]) -> String {
     let mut text = format!(
         r#"name = "Tripod"
 [constants]
@@ -27,9 +34,9 @@ type = "point"
 at = ["r * cos(psi)", "r * sin(psi)", 0]
 "#
     );
-    for (leg, psi) in ["0 deg", "120 deg", "240 deg"].iter().enumerate() {
+    for (leg, psi) in angles.iter().enumerate() {
         text += &format!(
-            "[[place]]\nname = \"leg{}\"\nshape = \"rps\"\npsi = \"{psi}\"\nhome = {{ 2 = \"0.5 m\" }}\n",
+            "[[place]]\nname = \"leg{}\"\nshape = \"rps\"\npsi = \"{psi} deg\"\nhome = {{ 2 = \"0.5 m\" }}\n",
             leg + 1
         );
     }
@@ -62,6 +69,20 @@ fn a_motion_that_the_legs_do_not_enforce_is_refused() {
             "they leave it 3 motions, along z, and about x and y, and the actuators drive all of them",
         ],
     );
+}
+
+/// Four actuators drive the three motions that the legs leave: one torque is internal, and not three.
+#[test]
+fn redundant_actuators_do_not_hold_the_platform_instead_of_the_legs() {
+    let text = rps("fixed axis", &[0, 120, 240, 180]);
+    let what = [
+        "they leave it 3 motions, along z, and about x and y, and the actuators drive all of them",
+    ];
+    assert_said(&text, "5:10", &what);
+    let description = description::parse(&Source::new("rps.toml", text)).expect("a description");
+    let errors = super::super::check(&description).expect_err("another robot");
+    let kinds: Vec<DiagnosticKind> = errors.iter().map(|error| error.kind).collect();
+    assert_eq!(kinds, [DiagnosticKind::NotHeld]);
 }
 
 #[test]

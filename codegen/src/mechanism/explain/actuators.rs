@@ -1,0 +1,134 @@
+//! Errors of actuators that are too few, drive too much, or do not determine the platform's motion.
+
+use super::motions::Motions;
+use crate::description::Description;
+use crate::diagnostic::{Diagnostic, DiagnosticKind};
+use crate::mechanism::mobility::Mobility;
+use crate::mechanism::singular_values::SingularValues;
+use crate::mechanism::states::random_states;
+use crate::mechanism::{Home, Leg, Mechanism};
+use nalgebra::DMatrix;
+
+/// Fewer actuators than coordinates, with what the legs leave where they close.
+pub(in crate::mechanism) fn too_few_actuators(
+    description: &Description,
+    mechanism: &Mechanism,
+    mobility: Option<Mobility>,
+) -> Diagnostic {
+    let (dof, count) = (mechanism.dof(), mechanism.actuated().len());
+    let motion = description.platform.as_ref().map(|p| &p.motion);
+    let span = motion.map_or(description.name.span.clone(), |m| m.span.clone());
+    let actuators = if count == 1 { "actuator" } else { "actuators" };
+    let message =
+        format!("the platform has {dof} degrees of freedom, but the robot has {count} {actuators}");
+    let left = mobility.and_then(|m| Some((m.of(motion?.value), m.parts())));
+    let help = match left {
+        Some((left, parts)) if left < dof => format!(
+            "the legs leave the platform only {left} of these {dof} motions ({}), so more actuators are no way out: choose a `motion` that the legs allow, or give the legs more passive joints",
+            Motions::of_directions(&parts).words("along", "about")
+        ),
+        _ => "mark more joints with actuated = true".to_owned(),
+    };
+    Diagnostic::new(message, span)
+        .label(legs_without_actuator(mechanism))
+        .help(help)
+}
+
+/// The legs whose joints are all passive, where the missing actuator may have its place.
+fn legs_without_actuator(mechanism: &Mechanism) -> String {
+    let passive = |leg: &&Leg| leg.joints.iter().all(|joint| !joint.actuated);
+    let names = mechanism.legs.iter().filter(passive);
+    let names: Vec<&str> = names.map(|leg| leg.name.as_str()).collect();
+    if names.is_empty() {
+        "every leg has an actuator".to_owned()
+    } else {
+        format!("without an actuator: {}", names.join(", "))
+    }
+}
+
+/// Legs that leave the platform motions which are not described, and actuators that drive them.
+pub(in crate::mechanism) fn not_held(description: &Description, mobility: &Mobility) -> Diagnostic {
+    let span = description.platform.as_ref().map(|p| p.motion.span.clone());
+    let span = span.unwrap_or(description.name.span.clone());
+    let words = Motions::of_directions(&mobility.parts()).words("along", "about");
+    Diagnostic::new("the legs do not hold the platform to this motion", span)
+        .label(format!(
+            "they leave it {} motions, {words}, and the actuators drive all of them",
+            mobility.count()
+        ))
+        .help("choose a `motion` with all of these coordinates: actuators may keep the platform to fewer, but what its model takes for internal torques then moves it; a platform that moves aside while it turns, as that of a 3-RPS, has no word here: its legs need another passive joint to be described")
+        .kind(DiagnosticKind::NotHeld)
+}
+
+/// Actuators that do not determine the platform's motion.
+pub(in crate::mechanism) fn underactuated(
+    description: &Description,
+    mechanism: &Mechanism,
+) -> Diagnostic {
+    let span = description.platform.as_ref().map(|p| p.motion.span.clone());
+    let span = span.unwrap_or(description.name.span.clone());
+    let jacobian = |mechanism: &Mechanism| {
+        let rates = mechanism.rates_at_home()?;
+        Some(rates.select_rows(&mechanism.actuated()))
+    };
+    // At poses beside home the robot shows whether home alone is singular.
+    let everywhere = random_states(mechanism, 4, 3).into_iter().all(|state| {
+        let mut beside = mechanism.clone();
+        beside.home = Home::new(mechanism, state.pose, state.joints);
+        beside.independent_actuators().len() < beside.dof()
+    });
+    let label = jacobian(mechanism).map_or_else(String::new, |j| free_motions(mechanism, &j));
+    let twins = jacobian(mechanism).map_or_else(Vec::new, |j| twins(mechanism, &j));
+    let (message, help) = if everywhere {
+        let help = match twins.first() {
+            Some((a, b)) => format!(
+                "the motors `{a}` and `{b}` do the same, as those of legs do that stand at the same place: move or turn one of the legs, or actuate another joint"
+            ),
+            None => "actuate another joint, or attach the legs at other points".to_owned(),
+        };
+        ("the actuators never determine the platform's motion", help)
+    } else {
+        let help = "home is a singular pose: choose another one in `home` of [platform]";
+        (
+            "the actuators do not determine the platform's motion at the home configuration",
+            help.to_owned(),
+        )
+    };
+    Diagnostic::new(message, span).label(label).help(help)
+}
+
+/// How the platform can move while no actuator does.
+fn free_motions(mechanism: &Mechanism, jacobian: &DMatrix<f64>) -> String {
+    let start = "with all motors locked the platform can still";
+    let Some(found) = SingularValues::new(jacobian) else {
+        return format!("{start} move");
+    };
+    let free = found.null_space(1e-5 * jacobian.amax());
+    // The part of each coordinate that lies among the free motions.
+    let parts: Vec<f64> = free.row_iter().map(|row| row.norm()).collect();
+    let moves = Motions::new(mechanism, &parts, 1e-3);
+    let together = if free.ncols() == moves.count() {
+        ""
+    } else {
+        " at once"
+    };
+    format!(
+        "{start} {}{together}",
+        moves.words("move along", "turn about")
+    )
+}
+
+/// Pairs of actuators whose rates are proportional.
+fn twins(mechanism: &Mechanism, jacobian: &DMatrix<f64>) -> Vec<(String, String)> {
+    let names = mechanism.actuator_names();
+    let mut pairs = Vec::new();
+    for (a, first) in jacobian.row_iter().enumerate() {
+        for (b, second) in jacobian.row_iter().enumerate().skip(a + 1) {
+            let along = first.dot(&second) / first.norm_squared();
+            if (second - first * along).norm() < 1e-9 * second.norm() {
+                pairs.push((names[a].clone(), names[b].clone()));
+            }
+        }
+    }
+    pairs
+}

@@ -1,0 +1,179 @@
+//! Errors of mechanisms in words: what is wrong, where it is written, and a way out. `actuators` has those of
+//! the robot's actuators against its motion, here are those of legs.
+
+mod actuators;
+mod motions;
+
+pub(super) use actuators::{not_held, too_few_actuators, underactuated};
+
+use super::home::HomeError;
+use super::numeric::{platform_frame, target};
+use super::reach::{Reach, look, wrapped};
+use super::structure::Defect;
+use super::{Home, JointKind, Leg, Mechanism};
+use crate::description::{self, Description};
+use crate::diagnostic::Diagnostic;
+use motions::{Motions, listed};
+use nalgebra::DMatrix;
+
+/// A leg that is wrong in every configuration. The error stands at the leg's shape, where it is made.
+pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
+    let name = |joint: usize| format!("`{}`", leg.joints[joint].name.value);
+    let names = |joints: &[usize]| {
+        let all: Vec<String> = joints.iter().map(|&joint| name(joint)).collect();
+        match joints {
+            [_] => format!("joint {}", all.concat()),
+            _ => format!("joints {}", listed(&all)),
+        }
+    };
+    let shape = &leg.shape_name;
+    let at = |joint: usize| leg.joints[joint].d.span.clone();
+    let verb = |joints: &[usize], one: &'static str, more: &'static str| match joints {
+        [_] => one,
+        _ => more,
+    };
+    match defect {
+        Defect::Branch(joints) => Diagnostic::new(
+            format!(
+                "{} of leg `{shape}` {} on a branch that does not lead to the leg's end",
+                names(joints),
+                verb(joints, "is", "are")
+            ),
+            leg.joints[joints[0]].span.clone(),
+        )
+        .label("nothing determines its position")
+        .help("let it follow other joints, such as theta = \"-q2\", or put the joint that carries the leg's end last"),
+        Defect::Idle(joints) => Diagnostic::new(
+            format!(
+                "{} of leg `{shape}` never {} the leg's end",
+                names(joints),
+                verb(joints, "moves", "move")
+            ),
+            at(joints[joints.len() - 1]),
+        )
+        .label("the axis passes through the end, whatever the position")
+        .help("a rod of zero length? give it a length; an end of type \"point\" turns freely, so it needs no joints of its own there"),
+        Defect::Twins(first, second) => {
+            let slides = leg.joints[*second].kind.value == JointKind::Prismatic;
+            let (what, way) = if slides {
+                ("slide in the same direction", "turn one of the axes by `alpha`, or leave one of the joints out")
+            } else {
+                ("turn about the same axis", "the link between them has no length: give the second a `d`, or turn its axis by `alpha`")
+            };
+            Diagnostic::new(
+                format!("joints {} and {} of leg `{shape}` always {what}", name(*first), name(*second)),
+                at(*second),
+            )
+            .label("together they move nothing, so their positions are never determined")
+            .help(way)
+        }
+        Defect::Stiff { motions, needed } => Diagnostic::new(
+            format!("leg `{shape}` has too few joints to follow the platform's motion"),
+            leg.joints[leg.joints.len() - 1].span.clone(),
+        )
+        .label(format!("its joints give its end {motions} of the {needed} motions that the platform has there"))
+        .help("add a passive joint, choose a platform motion with fewer coordinates, or an end that leaves more free (`type`, `along`)"),
+        Defect::Loose { joints, motions } => Diagnostic::new(
+            format!("leg `{shape}` can move while the platform stands still"),
+            leg.joints[leg.joints.len() - 1].span.clone(),
+        )
+        .label(format!("{joints} joints move an end that has only {motions} motions"))
+        .help("leave out a joint, let one follow others such as theta = \"-q2\", or fix the leg's end with type = \"rigid\""),
+    }
+}
+
+/// A leg that does not close, or only where it is singular.
+pub(super) fn home_error(
+    description: &Description,
+    mechanism: &Mechanism,
+    rough: &Home,
+    error: &HomeError,
+) -> Diagnostic {
+    match error {
+        HomeError::Open { leg, .. } => open(description, mechanism, rough, *leg),
+        HomeError::Singular { leg, condition } => {
+            let leg = &description.legs[*leg];
+            Diagnostic::new(
+                format!("leg `{}` is singular at the home configuration", leg.name.value),
+                leg.span.clone(),
+            )
+            .label(match condition.is_finite() {
+                true => format!("its Jacobian has the condition number {condition:.1e}"),
+                false => "its Jacobian has no inverse".to_owned(),
+            })
+            .help("choose a home pose where the leg is neither stretched nor folded, and joints whose motions are independent")
+        }
+    }
+}
+
+/// A leg that does not close from its rough home.
+fn open(
+    description: &Description,
+    mechanism: &Mechanism,
+    rough: &Home,
+    index: usize,
+) -> Diagnostic {
+    let place = &description.legs[index];
+    let leg = &mechanism.legs[index];
+    let name = &place.name.value;
+    let error = |message: String| Diagnostic::new(message, place.span.clone());
+    let (Some(platform), Some(end)) = (&mechanism.platform, &leg.end) else {
+        return error(format!("leg `{name}` has no end"));
+    };
+    let target = target(end, &platform_frame(platform.motion, &rough.pose));
+    match look(leg, &rough.joints[mechanism.leg_range(index)], &target) {
+        Reach::Elsewhere(joints) => error(format!("leg `{name}` does not close from its rough home"))
+            .label("it closes elsewhere")
+            .help(format!("give home = {}, or another place near the wanted working mode", home(leg, &joints))),
+        Reach::Turned => error(format!("leg `{name}` cannot take the platform's orientation at the home pose"))
+            .label("its end gets there, but stays turned")
+            .help("check `alpha`, `base` and `end.rotation`; an end that is a spherical or universal joint has type = \"point\""),
+        Reach::Away(distance) => error(format!("leg `{name}` never reaches its place on the platform at the home pose"))
+            .label(format!("its end stays at least {} away", length(distance)))
+            .help("check the lengths of its links, its `base` and `end`, and the platform's `home`"),
+    }
+}
+
+/// A distance for people.
+fn length(distance: f64) -> String {
+    match distance {
+        d if !d.is_finite() => "any distance".to_owned(),
+        d if d < 0.1 => format!("{:.3} mm", 1e3 * d),
+        d => format!("{d:.3} m"),
+    }
+}
+
+/// Joint positions as a description gives them.
+fn home(leg: &Leg, joints: &[f64]) -> String {
+    let one = |(index, value): (usize, &f64)| {
+        let joint = &leg.joints[index];
+        match joint.kind {
+            JointKind::Prismatic => format!("{} = \"{:.3} m\"", joint.name, value),
+            _ => format!(
+                "{} = \"{:.0} deg\"",
+                joint.name,
+                wrapped(*value).to_degrees()
+            ),
+        }
+    };
+    let all: Vec<String> = leg.independent().zip(joints).map(one).collect();
+    format!("{{ {} }}", all.join(", "))
+}
+
+/// A leg that blocks motions of the platform: those of the twist for which its joints have no rates.
+pub(super) fn blocked(
+    description: &Description,
+    mechanism: &Mechanism,
+    index: usize,
+    missed: &DMatrix<f64>,
+) -> Diagnostic {
+    let place = &description.legs[index];
+    let columns = missed.column_iter().map(|column| column.amax());
+    let blocked: Vec<f64> = columns.collect();
+    Diagnostic::new(
+        format!("leg `{}` cannot follow the platform's motion", place.name.value),
+        place.span.clone(),
+    )
+    .label(format!("it blocks {}", Motions::new(mechanism, &blocked, 1e-6).words("motion along", "rotation about")))
+    .help("add a passive joint, choose a platform motion without it, or an end that leaves it free (`type`, `along`)")
+}
