@@ -3,6 +3,10 @@
 use core::fmt;
 
 /// Why a robot's model has no value at a state.
+///
+/// Where several conditions fail at once, the first leg of the description is told, its reach before its
+/// singularity, and the actuators only where all legs are regular. Compiled and interpreted models say the
+/// same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
@@ -22,8 +26,8 @@ pub enum Error {
     /// The actuators do not determine the platform's motion (parallel singularity), or the kept
     /// actuators of case 2 do not (partition singularity).
     SingularPlatform {
-        /// What is singular: `"actuators"` or `"kept actuators"`.
-        actuators: &'static str,
+        /// Which actuators they are.
+        actuators: ActuatorGroup,
         /// How many times smaller the determinant is than at the home configuration.
         condition: f64,
     },
@@ -134,6 +138,25 @@ impl fmt::Display for Error {
 }
 
 impl core::error::Error for Error {}
+
+/// The actuators that are to determine the platform's motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ActuatorGroup {
+    /// All of them: case 1.
+    All,
+    /// Those that case 2 keeps.
+    Kept,
+}
+
+impl fmt::Display for ActuatorGroup {
+    /// `actuators` or `kept actuators`
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::All => "actuators",
+            Self::Kept => "kept actuators",
+        })
+    }
+}
 
 /// A set of actuators, by their numbers in the order of q and τ, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -15,7 +15,7 @@ pub mod singular;
 pub mod size;
 pub mod trigonometry;
 
-pub use error::{Actuators, Error, SampleError};
+pub use error::{ActuatorGroup, Actuators, Error, SampleError};
 pub use function::{Columns, Condition, Function};
 pub use parameter::StandardParameter;
 pub use singular::SINGULAR;

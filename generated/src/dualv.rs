@@ -824,7 +824,11 @@ impl DualV {
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
@@ -842,7 +846,11 @@ impl DualV {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let g1_vy_minus_g1_vx_l_2_1_leg1 = g1_vy_leg1 - g1_vx_leg1 * l_2_1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
@@ -861,7 +869,11 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_3 = 1.0 / pivot_3;
         let t1 = inv_pivot_3
             * (minus_g1_wz_leg1 + g1_vx_leg1 * l_3_1
@@ -1492,7 +1504,11 @@ impl DualV {
             - minus_g1_vx_leg4 * actuator_velocities[3];
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
@@ -1510,7 +1526,11 @@ impl DualV {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
@@ -1536,7 +1556,11 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
@@ -1712,7 +1736,11 @@ impl DualV {
             - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
@@ -1720,7 +1748,11 @@ impl DualV {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t2 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
@@ -1747,7 +1779,11 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
@@ -2602,8 +2638,11 @@ impl DualV {
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let l_3_1 = s_1_3 / s_1_1;
         let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
@@ -2615,8 +2654,11 @@ impl DualV {
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 / s_1_1;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let l_3_2 = schur_2_3 / pivot_2;
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
@@ -2629,8 +2671,26 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let wz = t3 / pivot_3;
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * wz;
@@ -3093,9 +3153,6 @@ impl DualV {
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
         let det_ja = g1_wz_leg3 * t1;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
         let half_per_det_ja = 0.5 / det_ja;
         let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
             * half_per_det_ja;
@@ -3241,6 +3298,21 @@ impl DualV {
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
@@ -3503,9 +3575,21 @@ impl DualV {
         let t2 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
         let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
         let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
-        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            7.075383197161306,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            7.075383197161306,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            7.075383197161306,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vy_by_a1 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3)
             * inv_det_ja;
@@ -3895,8 +3979,6 @@ impl DualV {
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
         let inv_pivot_1 = 1.0 / s_1_1;
         // --- leg1
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -3936,13 +4018,9 @@ impl DualV {
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let l_3_2 = schur_2_3 * inv_pivot_2;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
         let inv_pivot_3 = 1.0 / pivot_3;
         let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -4057,9 +4135,51 @@ impl DualV {
         let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
         let t7 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
         let det_ja = g1_wz_leg3 * t7;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let half_per_det_ja = 0.5 / det_ja;
         let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
             * half_per_det_ja;
@@ -4979,12 +5099,10 @@ impl DualV {
         // --- leg2
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
@@ -5001,6 +5119,8 @@ impl DualV {
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -5049,8 +5169,11 @@ impl DualV {
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let l_3_1 = s_1_3 / s_1_1;
         let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
@@ -5062,8 +5185,11 @@ impl DualV {
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 / s_1_1;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let l_3_2 = schur_2_3 / pivot_2;
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
@@ -5076,8 +5202,26 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let wz = t3 / pivot_3;
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * wz;
@@ -5383,12 +5527,10 @@ impl DualV {
         // --- leg2
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
@@ -5399,12 +5541,10 @@ impl DualV {
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -5425,6 +5565,10 @@ impl DualV {
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
@@ -5432,9 +5576,6 @@ impl DualV {
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
         let det_ja = g1_wz_leg3 * t1;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
         let half_per_det_ja = 0.5 / det_ja;
         let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
             * half_per_det_ja;
@@ -5519,6 +5660,21 @@ impl DualV {
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
@@ -5816,9 +5972,9 @@ impl DualV {
             joints[3], joints[4], joints[6], joints[7], joints[0], joints[1], pose[2], joints[9],
             joints[10],
         ]);
+        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
-        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
@@ -5847,9 +6003,21 @@ impl DualV {
         let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
         let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
         let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
-        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 7.075383197161306, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            7.075383197161306,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            7.075383197161306,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            7.075383197161306,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let wz_by_a1 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3) * inv_det_ja;
         let wz_by_a2 = t3 * inv_det_ja;
@@ -6218,12 +6386,10 @@ impl DualV {
         // --- leg2
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
@@ -6234,12 +6400,10 @@ impl DualV {
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -6259,6 +6423,10 @@ impl DualV {
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
@@ -6268,9 +6436,6 @@ impl DualV {
         let t2 = p_y_leg1 * t1;
         let t3 = p_x_leg3 * t1;
         let det_ja = g1_vx_leg3 * t2 + g1_vy_leg3 * t3;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
         let half_per_det_ja = 0.5 / det_ja;
         let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
             * half_per_det_ja;
@@ -6287,6 +6452,21 @@ impl DualV {
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
@@ -6300,8 +6480,11 @@ impl DualV {
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let l_3_1 = s_1_3 * inv_pivot_1;
         let s_2_3 = g1_vy_leg3 * g1_wz_leg3
@@ -6314,13 +6497,34 @@ impl DualV {
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let l_3_2 = schur_2_3 * inv_pivot_2;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_3 = 1.0 / pivot_3;
         let t4 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -6916,8 +7120,11 @@ impl DualV {
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let l_3_1 = s_1_3 * inv_pivot_1;
         let s_2_3 = g1_vy_leg3 * g1_wz_leg3
@@ -6930,13 +7137,34 @@ impl DualV {
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let l_3_2 = schur_2_3 * inv_pivot_2;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_3 = 1.0 / pivot_3;
         let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -7090,11 +7318,9 @@ impl DualV {
         // --- leg2
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
@@ -7102,11 +7328,9 @@ impl DualV {
         let d_x_leg3 = pose[0] + p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -7124,15 +7348,31 @@ impl DualV {
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
         let det_ja = g1_wz_leg3 * t1;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let half_per_det_ja = 0.5 / det_ja;
         let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
             * half_per_det_ja;
@@ -7318,11 +7558,9 @@ impl DualV {
         // --- leg4
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
         let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
@@ -7333,11 +7571,9 @@ impl DualV {
         // --- leg2
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
@@ -7347,11 +7583,9 @@ impl DualV {
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
@@ -7366,6 +7600,12 @@ impl DualV {
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
@@ -7374,9 +7614,21 @@ impl DualV {
         let t1 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
         let t2 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
         let det_ja = g1_vx_leg3 * t1 - g1_vy_leg3 * t2;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let half_per_det_ja = 0.5 / det_ja;
         let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
             * half_per_det_ja;
@@ -7708,7 +7960,11 @@ impl DualV {
             + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
@@ -7716,7 +7972,11 @@ impl DualV {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
@@ -7761,7 +8021,11 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t7 = t6 / pivot_3;
         let t8 = inv_pivot_2 * t4 - l_3_2 * t7;
         let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
@@ -8037,7 +8301,11 @@ impl DualV {
             + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076041257, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076041257,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
@@ -8045,7 +8313,11 @@ impl DualV {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368900079006, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368900079006,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g1_vy_leg2 * force_on_u1_leg2 - minus_g2_vy_leg2 * force_on_u2_leg2
@@ -8091,7 +8363,11 @@ impl DualV {
             + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
             + g1_wz_leg4 * g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.30769284902009914, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.30769284902009914,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t7 = t6 / pivot_3;
         let t8 = inv_pivot_2 * t4 - l_3_2 * t7;
         let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
@@ -8201,9 +8477,11 @@ impl DualV {
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         // --- leg1
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -8243,15 +8521,49 @@ impl DualV {
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let l_3_2 = schur_2_3 * inv_pivot_2;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_3 = 1.0 / pivot_3;
         let t1 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -9471,8 +9783,11 @@ impl DualV {
             + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
@@ -9480,8 +9795,11 @@ impl DualV {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
@@ -9509,8 +9827,26 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_3 = 1.0 / pivot_3;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
@@ -9636,7 +9972,11 @@ impl DualV {
             + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
@@ -9654,7 +9994,11 @@ impl DualV {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
             + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - t1 * l_2_1;
@@ -9677,7 +10021,11 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
         let t6 = t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4;
@@ -9776,11 +10124,19 @@ impl DualV {
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let l_2_1 = s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let g1_vy_minus_g1_vx_l_2_1_leg4 = minus_g1_vx_leg4 * l_2_1 - minus_g1_vy_leg4;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
@@ -9799,7 +10155,11 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t1 = (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
             - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4) / pivot_3;
         let t2 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t1;

@@ -491,7 +491,11 @@ impl FiveBar {
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
@@ -503,7 +507,11 @@ impl FiveBar {
         let l_2_1 = s_1_2 * inv_pivot_1;
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t1 = inv_pivot_2 * (minus_g1_vx_left * l_2_1 - minus_g1_vy_left);
         let t2 = inv_pivot_2 * (g1_vy_right - g1_vx_right * l_2_1);
@@ -837,12 +845,10 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         // --- left
@@ -857,12 +863,18 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let t1 = g1_vx_right * actuator_velocities[1]
             - minus_g1_vx_left * actuator_velocities[0];
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
@@ -874,7 +886,11 @@ impl FiveBar {
         let l_2_1 = s_1_2 * inv_pivot_1;
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t2 = (g1_vy_right * actuator_velocities[1]
             - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1) / pivot_2;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
@@ -918,12 +934,10 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         let minus_g2_vx_right = l1_x_right * k_right;
@@ -954,6 +968,8 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let g2_vx_left = l1_x_left * k_left;
@@ -975,13 +991,21 @@ impl FiveBar {
         let t1 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
             - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
         let l_2_1 = s_1_2 * inv_pivot_1;
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t2 = (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
             - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - t1 * l_2_1) / pivot_2;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
@@ -1471,8 +1495,11 @@ impl FiveBar {
         let fv_1_right_on_vx = g1_vx_right * actuator_velocities[1];
         let t1 = fv_1_right_on_vx - minus_fv_1_left_on_vx;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let minus_g2_vy_right = l1_y_right / det_right;
         let minus_gq2_vy_right = pose[1] / det_right;
@@ -1482,8 +1509,21 @@ impl FiveBar {
         let fv_1_right_on_vy = g1_vy_right * actuator_velocities[1];
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
         let vy = (fv_1_right_on_vy - minus_fv_1_left_on_vy - t1 * l_2_1) / pivot_2;
         let vx = t1 / s_1_1 - l_2_1 * vy;
         let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
@@ -1716,8 +1756,16 @@ impl FiveBar {
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
         let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let vy_by_a1 = g1_vx_right * inv_det_ja;
         let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
@@ -1896,8 +1944,16 @@ impl FiveBar {
         let g1_vy_right = s12_right * k1_right;
         let g1_vx_right = c12_right * k1_right;
         let det_ja = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-        ::overact::guard::platform(det_ja, 22.615508735629227, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 22.615508735629227, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629227,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629227,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
         let vy_by_a1 = g1_vx_right * inv_det_ja;
@@ -2084,16 +2140,27 @@ impl FiveBar {
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
         let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let vy_by_a1 = g1_vx_right * inv_det_ja;
         let g2_vx_left = l1_x_left * k_left;
         let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
         let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_g2_vx_right = l1_x_right * k_right;
         let t1 = g1_vx_right * actuator_velocities[1]
@@ -2102,8 +2169,21 @@ impl FiveBar {
         let l_2_1 = s_1_2 * inv_pivot_1;
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let vy = inv_pivot_2
             * (g1_vy_right * actuator_velocities[1]
@@ -2568,11 +2648,9 @@ impl FiveBar {
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let minus_g2_vx_right = l1_x_right * k_right;
         let minus_gq2_vx_right = d_x_right * k_right;
@@ -2588,6 +2666,8 @@ impl FiveBar {
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let g2_vx_left = l1_x_left * k_left;
         let gq2_vx_left = d_x_left * k_left;
@@ -2595,8 +2675,11 @@ impl FiveBar {
         let minus_fv_1_left_on_vx = minus_g1_vx_left * actuator_velocities[0];
         let t1 = fv_1_right_on_vx - minus_fv_1_left_on_vx;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let g2_vy_left = l1_y_left * k_left;
         let gq2_vy_left = pose[1] * k_left;
@@ -2612,8 +2695,21 @@ impl FiveBar {
         let minus_fv_1_left_on_vy = minus_g1_vy_left * actuator_velocities[0];
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
         let vy = (fv_1_right_on_vy - minus_fv_1_left_on_vy - t1 * l_2_1) / pivot_2;
         let vx = t1 / s_1_1 - l_2_1 * vy;
         let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
@@ -2747,12 +2843,10 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         // --- left
@@ -2767,6 +2861,8 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -2776,8 +2872,16 @@ impl FiveBar {
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
         let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let vy_by_a1 = g1_vx_right * inv_det_ja;
         let t1_platform = acceleration[1] + 9.81;
@@ -2901,8 +3005,8 @@ impl FiveBar {
         (s2_left, c2_left)] = ::overact::math::sin_cos_all([
             joints[2], joints[3], joints[0], joints[1],
         ]);
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
@@ -2918,8 +3022,16 @@ impl FiveBar {
         let g1_vx_left = c12_left * k1_left;
         let g1_vy_right = s12_right * k1_right;
         let det_ja = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-        ::overact::guard::platform(det_ja, 22.615508735629227, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 22.615508735629227, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629227,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629227,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let vy_by_a1 = g1_vx_right * inv_det_ja;
         let t1_platform = acceleration[1] + 9.81;
@@ -3053,12 +3165,10 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         // --- left
@@ -3073,6 +3183,8 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -3082,20 +3194,44 @@ impl FiveBar {
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
         let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 22.615508735629323, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let vy_by_a1 = g1_vx_right * inv_det_ja;
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let l_2_1 = s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let minus_g2_vx_right = l1_x_right * k_right;
         let t1 = g1_vx_right * actuator_velocities[1]
@@ -3219,12 +3355,10 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         // --- left
@@ -3239,6 +3373,8 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -3449,7 +3585,11 @@ impl FiveBar {
             + g1_vx_right * force_on_u1_right - minus_g2_vx_right * force_on_u2_right
             + force_x_platform;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
         let l_2_1 = s_1_2 * inv_pivot_1;
@@ -3459,7 +3599,11 @@ impl FiveBar {
             + force_y_platform - t1 * l_2_1;
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t3 = t2 / pivot_2;
         let t4 = t1 * inv_pivot_1 - l_2_1 * t3;
         ::core::result::Result::Ok([
@@ -3620,7 +3764,11 @@ impl FiveBar {
             + g1_vx_right * force_on_u1_right - minus_g2_vx_right * force_on_u2_right
             + force_x_platform;
         let s_1_1 = g1_vx_left * g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.70772285878917, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.70772285878917,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_left * g1_vy_left + g1_vx_right * g1_vy_right;
         let l_2_1 = s_1_2 * inv_pivot_1;
@@ -3630,7 +3778,11 @@ impl FiveBar {
             + force_y_platform - t1 * l_2_1;
         let s_2_2 = g1_vy_left * g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.32354668467552, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.32354668467552,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t3 = t2 / pivot_2;
         let t4 = t1 * inv_pivot_1 - l_2_1 * t3;
         ::core::result::Result::Ok([
@@ -3715,9 +3867,11 @@ impl FiveBar {
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(s_1_1, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let g2_vx_left = l1_x_left * k_left;
         let minus_g2_vx_right = l1_x_right * k_right;
@@ -3733,9 +3887,31 @@ impl FiveBar {
         let l_2_1 = s_1_2 * inv_pivot_1;
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(pivot_2, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let vy = inv_pivot_2
             * (g1_vy_right * actuator_velocities[1]

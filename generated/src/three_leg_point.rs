@@ -596,13 +596,21 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t1 = inv_pivot_2 * (g1_vy_leg1 - minus_g1_vx_leg1 * minus_l_2_1);
         let t2 = inv_pivot_2 * (g1_vx_leg2 * minus_l_2_1 - minus_g1_vy_leg2);
@@ -1050,14 +1058,12 @@ impl ThreeLegPoint {
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg1
@@ -1069,6 +1075,8 @@ impl ThreeLegPoint {
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
@@ -1089,7 +1097,11 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * actuator_velocities[2];
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
@@ -1105,7 +1117,11 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t2 = (g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
@@ -1155,7 +1171,6 @@ impl ThreeLegPoint {
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -1164,7 +1179,6 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -1195,6 +1209,8 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
@@ -1251,7 +1267,11 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
@@ -1259,7 +1279,11 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t2 = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + t1 * minus_l_2_1)
@@ -1780,14 +1804,30 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let minus_l_2_1 = minus_s_1_2 / s_1_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let vy = (g1_vy_leg1 * actuator_velocities[0]
             + g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
@@ -2034,8 +2074,6 @@ impl ThreeLegPoint {
             + 2.0833333333333335 * l2_y_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
@@ -2096,6 +2134,16 @@ impl ThreeLegPoint {
             - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
@@ -2233,8 +2281,16 @@ impl ThreeLegPoint {
         let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(det_ja, 15.095780524666612, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 15.095780524666612, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            15.095780524666612,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            15.095780524666612,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
         let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
@@ -2442,8 +2498,6 @@ impl ThreeLegPoint {
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
@@ -2463,8 +2517,6 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -2529,8 +2581,36 @@ impl ThreeLegPoint {
         let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
         let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
@@ -3025,7 +3105,6 @@ impl ThreeLegPoint {
         let d_y_leg2 = half_x - t1_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -3034,7 +3113,6 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -3050,6 +3128,8 @@ impl ThreeLegPoint {
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let t2_leg3 = y_plus_half_radius * INV_L_1;
@@ -3083,14 +3163,30 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let minus_l_2_1 = minus_s_1_2 / s_1_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let vy = (g1_vy_leg1 * actuator_velocities[0]
             + g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
@@ -3262,7 +3358,6 @@ impl ThreeLegPoint {
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
@@ -3271,7 +3366,6 @@ impl ThreeLegPoint {
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
             - 2.0833333333333335 * minus_l2_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         // --- leg1
@@ -3284,6 +3378,8 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -3293,8 +3389,6 @@ impl ThreeLegPoint {
             + 2.0833333333333335 * l2_y_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
@@ -3342,6 +3436,16 @@ impl ThreeLegPoint {
             - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
@@ -3451,8 +3555,8 @@ impl ThreeLegPoint {
         (s2_leg1, c2_leg1), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[2], joints[3], joints[0], joints[1], joints[4], joints[5],
         ]);
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         // --- leg2
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
@@ -3469,8 +3573,16 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(det_ja, 15.095780524666612, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 15.095780524666612, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            15.095780524666612,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            15.095780524666612,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
@@ -3626,7 +3738,6 @@ impl ThreeLegPoint {
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
@@ -3635,7 +3746,6 @@ impl ThreeLegPoint {
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
             - 2.0833333333333335 * minus_l2_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         // --- leg1
@@ -3648,6 +3758,8 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -3657,8 +3769,6 @@ impl ThreeLegPoint {
             + 2.0833333333333335 * l2_y_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
         // --- leg3
@@ -3674,12 +3784,25 @@ impl ThreeLegPoint {
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
@@ -3693,8 +3816,21 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -3859,14 +3995,12 @@ impl ThreeLegPoint {
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg1
@@ -3878,6 +4012,8 @@ impl ThreeLegPoint {
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
@@ -3943,28 +4079,24 @@ impl ThreeLegPoint {
         let d_y_leg3 = pose[0] - d_y_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
             - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         // --- leg2
         let minus_d_x_leg2 = 0.8660254037844386 * t2_leg2 + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg1
@@ -3976,6 +4108,10 @@ impl ThreeLegPoint {
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
@@ -3984,8 +4120,16 @@ impl ThreeLegPoint {
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(det_ja, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
@@ -4223,13 +4367,21 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
         let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
         ::core::result::Result::Ok([
@@ -4424,13 +4576,21 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848631333, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848631333,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848631322, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848631322,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
         let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
         ::core::result::Result::Ok([
@@ -4544,15 +4704,39 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -4758,7 +4942,6 @@ impl ThreeLegPoint {
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -4767,7 +4950,6 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
@@ -4791,6 +4973,8 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
@@ -4941,7 +5125,6 @@ impl ThreeLegPoint {
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -4950,7 +5133,6 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -5003,6 +5185,8 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
@@ -5211,13 +5395,29 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         // --- leg1
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
@@ -5447,13 +5647,21 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
             - minus_g1_vy_leg3 * torques[2] + t1 * minus_l_2_1) / pivot_2;
         let t3 = t1 * inv_pivot_1 + minus_l_2_1 * t2;
@@ -5504,13 +5712,11 @@ impl ThreeLegPoint {
         let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
@@ -5529,6 +5735,8 @@ impl ThreeLegPoint {
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
@@ -5541,13 +5749,21 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t1 = (g1_vx_leg3 * minus_l_2_1 - minus_g1_vy_leg3) / pivot_2;
         let t2 = g1_vx_leg3 * inv_pivot_1 + minus_l_2_1 * t1;
         let minus_normal_1_1 = g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2;

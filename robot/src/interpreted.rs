@@ -256,7 +256,7 @@ impl InterpretedRobot {
                 condition: times(*home),
             },
             Some(Condition::Platform { actuators, home }) => Error::SingularPlatform {
-                actuators,
+                actuators: *actuators,
                 condition: times(*home),
             },
             None => Error::Overflow,

@@ -5,7 +5,7 @@
 //! redundant actuators average the noise of the others, and starting near keeps the assembly mode.
 
 use crate::{
-    Error,
+    ActuatorGroup, Error,
     math::{sin_cos, sqrt, wrap_angle},
 };
 
@@ -146,7 +146,7 @@ fn eliminate(matrix: &mut [f64], vector: &mut [f64]) -> Result<(), Error> {
         let pivot = row.get(k).copied().unwrap_or_default();
         if pivot.is_nan() || pivot <= 1e-15 * largest {
             return Err(Error::SingularPlatform {
-                actuators: "actuators",
+                actuators: ActuatorGroup::All,
                 condition: largest / pivot.abs(),
             });
         }

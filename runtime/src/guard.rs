@@ -3,7 +3,7 @@
 //! that names the input or the leg, not a NaN.
 
 use crate::math::sqrt;
-use crate::{Error, SINGULAR};
+use crate::{ActuatorGroup, Error, SINGULAR};
 
 /// How far from 1 the square of a quaternion's length may be for its inverse root to be linear: the error
 /// is 3/8 of the square of this.
@@ -132,7 +132,7 @@ pub fn leg(determinant: f64, home: f64, leg: &'static str) -> Result<(), Error> 
 /// # Errors
 /// [`Error::SingularPlatform`]; also for NaN.
 #[inline]
-pub fn platform(determinant: f64, home: f64, actuators: &'static str) -> Result<(), Error> {
+pub fn platform(determinant: f64, home: f64, actuators: ActuatorGroup) -> Result<(), Error> {
     if determinant.abs() > SINGULAR * home {
         Ok(())
     } else {

@@ -20,12 +20,11 @@ pub mod inverse;
 pub mod math;
 pub mod model;
 pub mod partition;
-mod trigonometry;
 
 pub use model::{BaseParameter, Body, Info, Model, Parameter};
 pub use overact_core::{
-    Actuators, Columns, Condition, Error, Extent, Function, Input, SINGULAR, SampleError, Sizes,
-    StandardParameter,
+    ActuatorGroup, Actuators, Columns, Condition, Error, Extent, Function, Input, SINGULAR,
+    SampleError, Sizes, StandardParameter,
 };
 #[cfg(feature = "macro")]
 pub use overact_macros::redundant_robot;

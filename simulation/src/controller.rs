@@ -153,7 +153,7 @@ pub(crate) fn effective_inertia<'p>(
     let (jacobian, mass) = jacobian_and_mass(model, parameters, info.home_pose)?;
     let normal = jacobian.tr_mul(&jacobian).cholesky().ok_or(Cause::Model(
         overact::Error::SingularPlatform {
-            actuators: "actuators",
+            actuators: overact::ActuatorGroup::All,
             condition: f64::INFINITY,
         },
     ))?;

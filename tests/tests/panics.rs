@@ -5,8 +5,10 @@
 //! does it refuses to link, and names the function. Only the full tier does this: optimising all modules
 //! takes minutes of processor time.
 
-use overact_codegen::{Effort, Request, compile_with, emission};
+use overact_codegen::derivation::JointsBy;
+use overact_codegen::{Effort, Request, RobotModel, Source, compile_with, emission};
 use overact_tests::support::library::stems;
+use overact_tests::support::random::Sketch;
 use overact_tests::support::{Failure, description, repository};
 use std::fmt::Write as _;
 use std::fs;
@@ -23,7 +25,8 @@ fn optimised_modules_have_no_way_to_a_panic() -> Result<(), Failure> {
     }
     let robots = stems()?;
     let modules = robots.iter().map(|stem| Ok((stem.clone(), module(stem)?)));
-    let modules = modules.collect::<Result<Vec<_>, Failure>>()?;
+    let mut modules = modules.collect::<Result<Vec<_>, Failure>>()?;
+    modules.push(("newton".to_owned(), with_newtons_method()?));
     let said = link("robots", &modules)?;
     assert!(said.is_none(), "{}", said.unwrap_or_default());
     Ok(())
@@ -46,9 +49,24 @@ fn a_way_to_a_panic_is_found() -> Result<(), Failure> {
 /// A robot's generated module.
 fn module(stem: &str) -> Result<String, Failure> {
     let source = description(stem)?;
+    Ok(emission::file(&model(&source)?, &source.name))
+}
+
+/// The module of a robot whose joints are found by Newton's method, which no robot of the library needs: the
+/// first such mechanism that is drawn.
+fn with_newtons_method() -> Result<String, Failure> {
+    let drawn = (0..100).map(|seed| Sketch::draw(seed).source());
+    let mut models = drawn.filter_map(|source| Some((model(&source).ok()?, source)));
+    let needs = |model: &RobotModel| model.selection.joints == JointsBy::Newton;
+    let found = models.find(|(model, _)| needs(model));
+    let (model, source) = found.ok_or("no mechanism needs Newton's method")?;
+    Ok(emission::file(&model, &source.name))
+}
+
+fn model(source: &Source) -> Result<RobotModel, Failure> {
     let request = Request::with_effort(Effort::None);
-    let compiled = compile_with(&source, &request).map_err(|e| e.render_plain(&source))?;
-    Ok(emission::file(&compiled.model, &source.name))
+    let compiled = compile_with(source, &request).map_err(|e| e.render_plain(source))?;
+    Ok(compiled.model)
 }
 
 /// Builds a shared object of modules; what the linker says if it refuses.

@@ -1,7 +1,7 @@
 //! Symbols of joints.
 
-use super::paint::{Sheet, flat, n};
 use super::scene::{Part, Point};
+use super::sheet::{Sheet, flat, n};
 use super::view::View;
 
 /// The symbol of a joint; `carries` tells of a slider whether another joint sits on its middle.

@@ -1,8 +1,8 @@
 //! Letters: title, names of legs or joints, frames and the legend.
 
 use super::joints::{ball, block, disc, universal};
-use super::paint::{Sheet, WIDTH, flat, n};
 use super::scene::{Part, Scene};
+use super::sheet::{Sheet, WIDTH, flat, n};
 use super::style::COLOURS;
 use super::view::View;
 use crate::output::counted;
@@ -246,72 +246,22 @@ fn triad(at: [f64; 2], axes: &[[f64; 3]; 3], size: f64, letters: bool) -> String
 
 /// What the symbols mean, those that occur.
 pub(super) fn legend(scene: &Scene, sheet: &Sheet) -> String {
-    let parts = || scene.parts.iter().map(|(_, part)| part);
-    let slides = |p: &Part| matches!(p, Part::Slider { .. } | Part::Telescope { .. });
     let y = sheet.height - 22.0;
-    let swatch = |x: f64| {
-        format!(
-            "<rect class=\"ov-plate\" x=\"{}\" y=\"{}\" width=\"20\" height=\"14\" rx=\"3\" stroke-width=\"2\"/>\n",
-            n(x - 10.0),
-            n(y - 7.0)
-        )
-    };
-    let scaled = |x: f64, symbol: String| {
-        format!(
-            "<g transform=\"translate({} {}) scale(.72)\">{symbol}</g>\n",
-            n(x),
-            n(y)
-        )
-    };
-    type StandardParameter<'a> = Box<dyn Fn(f64) -> String + 'a>;
-    let mut entries: Vec<(StandardParameter<'_>, &str)> = Vec::new();
-    let driven = |p: &Part| {
-        matches!(
-            p,
-            Part::Revolute { actuated: true, .. }
-                | Part::Slider { actuated: true, .. }
-                | Part::Telescope { actuated: true, .. }
-        )
-    };
-    if parts().any(|p| matches!(p, Part::Revolute { actuated: true, .. })) {
-        let symbol = move |x| scaled(x, disc([0.0, 0.0], 7, true));
-        entries.push((Box::new(symbol), "revolute motor"));
-    }
-    if parts().any(|p| driven(p) && slides(p)) {
-        let symbol = move |x| scaled(x, block([0.0, 0.0], [1.0, 0.0, 0.0], 7, true, false));
-        entries.push((Box::new(symbol), "linear motor"));
-    }
-    if parts().any(|p| {
-        matches!(
-            p,
-            Part::Revolute {
-                actuated: false,
-                ..
-            }
-        )
-    }) {
-        let symbol = move |x| scaled(x, disc([0.0, 0.0], 7, false));
-        entries.push((Box::new(symbol), "passive revolute joint"));
-    }
-    if parts().any(|p| matches!(p, Part::Universal { .. })) {
-        let symbol = move |x| scaled(x, universal([0.0, 0.0]));
-        entries.push((Box::new(symbol), "universal joint"));
-    }
-    if parts().any(|p| slides(p) && !driven(p)) {
-        let symbol = move |x| scaled(x, block([0.0, 0.0], [1.0, 0.0, 0.0], 7, false, false));
-        entries.push((Box::new(symbol), "passive slide"));
-    }
-    if parts().any(|p| matches!(p, Part::Ball { .. })) {
-        let symbol = move |x| scaled(x, ball([0.0, 0.0], 7));
-        entries.push((Box::new(symbol), "point end"));
-    }
-    if scene.platform.is_some() {
-        entries.push((Box::new(swatch), "platform"));
-    }
     let mut text = String::new();
     let mut x = 40.0;
-    for (symbol, meaning) in entries {
-        text.push_str(&symbol(x));
+    for (symbol, meaning) in symbols(scene) {
+        text.push_str(&match symbol {
+            Symbol::Joint(symbol) => format!(
+                "<g transform=\"translate({} {}) scale(.72)\">{symbol}</g>\n",
+                n(x),
+                n(y)
+            ),
+            Symbol::Plate => format!(
+                "<rect class=\"ov-plate\" x=\"{}\" y=\"{}\" width=\"20\" height=\"14\" rx=\"3\" stroke-width=\"2\"/>\n",
+                n(x - 10.0),
+                n(y - 7.0)
+            ),
+        });
         text.push_str(&format!(
             "<text class=\"ov-text\" x=\"{}\" y=\"{}\">{meaning}</text>\n",
             n(x + 17.0),
@@ -320,4 +270,59 @@ pub(super) fn legend(scene: &Scene, sheet: &Sheet) -> String {
         x += 17.0 + meaning.chars().count() as f64 * 6.6 + 28.0;
     }
     text
+}
+
+/// A symbol of the legend.
+enum Symbol {
+    /// A joint around the origin.
+    Joint(String),
+    /// The platform's plate.
+    Plate,
+}
+
+/// The symbols of a scene, each with its meaning.
+fn symbols(scene: &Scene) -> Vec<(Symbol, &'static str)> {
+    let has = |is: fn(&Part) -> bool| scene.parts.iter().any(|(_, part)| is(part));
+    let slide = |actuated| block([0.0, 0.0], [1.0, 0.0, 0.0], 7, actuated, false);
+    let turns = |part: &Part, driven: bool| matches!(part, Part::Revolute { actuated, .. } if *actuated == driven);
+    let slides = |part: &Part, driven: bool| {
+        matches!(
+            part,
+            Part::Slider { actuated, .. } | Part::Telescope { actuated, .. } if *actuated == driven
+        )
+    };
+    let any = |is: &dyn Fn(&Part, bool) -> bool, driven| {
+        scene.parts.iter().any(|(_, part)| is(part, driven))
+    };
+    let joints = [
+        (
+            any(&turns, true),
+            disc([0.0, 0.0], 7, true),
+            "revolute motor",
+        ),
+        (any(&slides, true), slide(true), "linear motor"),
+        (
+            any(&turns, false),
+            disc([0.0, 0.0], 7, false),
+            "passive revolute joint",
+        ),
+        (
+            has(|p| matches!(p, Part::Universal { .. })),
+            universal([0.0, 0.0]),
+            "universal joint",
+        ),
+        (any(&slides, false), slide(false), "passive slide"),
+        (
+            has(|p| matches!(p, Part::Ball { .. })),
+            ball([0.0, 0.0], 7),
+            "point end",
+        ),
+    ];
+    let joints = joints.into_iter().filter(|(occurs, ..)| *occurs);
+    let joints = joints.map(|(_, symbol, meaning)| (Symbol::Joint(symbol), meaning));
+    let plate = scene
+        .platform
+        .is_some()
+        .then_some((Symbol::Plate, "platform"));
+    joints.chain(plate).collect()
 }

@@ -1,89 +1,19 @@
-//! The sheet: from the scene to SVG elements, from far to near.
+//! From the scene to SVG elements, from far to near.
 
+use super::ground::grounds;
 use super::joints;
 use super::labels;
 use super::scene::{NOTHING, Part, Point, Scene};
+use super::sheet::{Sheet, WIDTH, flat, hull, n, path, polygon};
 use super::style::{COLOURS, css};
 use super::view::View;
 use overact_codegen::mechanism::Mechanism;
 use std::collections::BTreeMap;
-use std::fmt::Write;
-
-/// Width of the sheet, pixels.
-pub(super) const WIDTH: f64 = 720.0;
-/// Space at the left and right for names, and at the top and bottom for title and legend.
-const MARGIN: [f64; 3] = [92.0, 104.0, 96.0];
-/// Largest height of the robot.
-const TALLEST: f64 = 400.0;
-/// Smallest height, for robots that lie flat.
-const LOWEST: f64 = 130.0;
-
-/// Scale and place of the robot on paper.
-pub(super) struct Sheet {
-    scale: f64,
-    /// What is at the middle of the robot's box, m.
-    middle: [f64; 2],
-    /// Height of the sheet, pixels.
-    pub(super) height: f64,
-}
 
 /// A piece of the drawing and how near it is.
 struct Piece {
     near: f64,
     text: String,
-}
-
-impl Sheet {
-    /// The largest scale at which a scene fits; never larger than at the first fit.
-    pub(super) fn fitted(scene: &Scene, view: &View) -> Self {
-        let mut places: Vec<[f64; 3]> = scene.points().iter().map(|p| view.project(p)).collect();
-        let globe = scene.sphere.unwrap_or(0.0);
-        if globe > 0.0 {
-            places.extend([[-globe, -globe, 0.0], [globe, globe, 0.0]]);
-        }
-        let range = |axis: usize| {
-            let low = places.iter().map(|p| p[axis]).fold(f64::MAX, f64::min);
-            let high = places.iter().map(|p| p[axis]).fold(f64::MIN, f64::max);
-            if low > high { (0.0, 0.0) } else { (low, high) }
-        };
-        let ((left, right), (bottom, top)) = (range(0), range(1));
-        let (width, height) = (right - left, top - bottom);
-        // A robot without extent, a single joint for instance, has any scale.
-        let scale = if width.max(height) < NOTHING {
-            400.0
-        } else {
-            let wide = (WIDTH - 2.0 * MARGIN[0]) / width.max(NOTHING);
-            wide.min(TALLEST / height.max(NOTHING))
-        };
-        Self {
-            scale,
-            middle: [(left + right) / 2.0, (bottom + top) / 2.0],
-            height: ((height * scale).max(LOWEST) + MARGIN[1] + MARGIN[2]).round(),
-        }
-    }
-
-    /// Length of a pixel, m.
-    pub(super) fn pixel(&self) -> f64 {
-        1.0 / self.scale
-    }
-
-    /// A point on paper, pixels from the top left, and its nearness, pixels.
-    pub(super) fn place(&self, view: &View, point: &Point) -> [f64; 3] {
-        let [right, up, near] = view.project(point);
-        let middle = (self.height - MARGIN[2] + MARGIN[1]) / 2.0;
-        [
-            WIDTH / 2.0 + (right - self.middle[0]) * self.scale,
-            middle - (up - self.middle[1]) * self.scale,
-            near * self.scale,
-        ]
-    }
-}
-
-/// A number with one decimal; rounding leaves no minus zero.
-pub(super) fn n(value: f64) -> String {
-    let rounded = (value * 10.0).round() / 10.0;
-    let rounded = if rounded == 0.0 { 0.0 } else { rounded };
-    format!("{rounded}")
 }
 
 /// The whole SVG text.
@@ -235,18 +165,6 @@ fn shades(scene: &Scene) -> BTreeMap<(usize, usize), usize> {
     shades
 }
 
-/// Path data through points.
-pub(super) fn path(points: &[Point], view: &View, sheet: &Sheet) -> String {
-    let mut text = String::new();
-    for (index, point) in points.iter().enumerate() {
-        let [x, y, _] = sheet.place(view, point);
-        let command = if index == 0 { 'M' } else { 'L' };
-        // Writing to a text cannot fail.
-        let _ = write!(text, "{command}{} {}", n(x), n(y));
-    }
-    text
-}
-
 /// A body, on a wider line in the colour of the sheet that sets it off from what it passes.
 fn link(path: &str, colour: usize, shade: usize, planar: bool) -> String {
     let class = ["a", "b"][shade];
@@ -261,74 +179,6 @@ fn link(path: &str, colour: usize, shade: usize, planar: bool) -> String {
          <path class=\"ov-{class}{colour}\" d=\"{path}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-linejoin=\"round\"/>\n",
         n(width + 4.0),
         n(width)
-    )
-}
-
-/// What does not move: a plate through the legs' bases in space, a hatched pivot below each in a
-/// plane, a foot below a serial robot.
-fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
-    let places: Vec<[f64; 2]> = scene.bases.iter().map(|p| flat(p, view, sheet)).collect();
-    if let Some(radius) = scene.sphere {
-        let [x, y] = flat(&Point::zeros(), view, sheet);
-        let radius = radius / sheet.pixel();
-        return format!(
-            "<circle class=\"ov-globe\" cx=\"{}\" cy=\"{}\" r=\"{}\" stroke-width=\"1\"/>\n",
-            n(x),
-            n(y),
-            n(radius)
-        );
-    }
-    let mut text = String::new();
-    let rails = scene
-        .parts
-        .iter()
-        .any(|(_, part)| matches!(part, Part::Rail { .. }));
-    if !view.planar && places.len() > 2 && !rails {
-        text = polygon("base", &hull(places));
-    } else {
-        for (leg, place) in places.iter().enumerate() {
-            let slides = scene
-                .parts
-                .iter()
-                .any(|(l, part)| *l == leg && matches!(part, Part::Rail { .. }));
-            let serial = mechanism.platform.is_none() && !view.planar;
-            match (slides, serial) {
-                (true, _) => {}
-                (false, true) => text.push_str(&foot(place)),
-                (false, false) => text.push_str(&pivot(place)),
-            }
-        }
-    }
-    text
-}
-
-/// The foot of a serial robot: a disc on the ground.
-fn foot([x, y]: &[f64; 2]) -> String {
-    format!(
-        "<ellipse class=\"ov-base\" cx=\"{}\" cy=\"{}\" rx=\"40\" ry=\"15\" stroke-width=\"1.5\"/>\n",
-        n(*x),
-        n(y + 14.0)
-    )
-}
-
-/// A fixed pivot: a triangle on hatched ground.
-fn pivot([x, y]: &[f64; 2]) -> String {
-    let bottom = y + 26.0;
-    let mut hatch = String::new();
-    for step in 0..5 {
-        let at = x - 15.0 + 8.0 * f64::from(step);
-        let _ = write!(hatch, "M{} {}l-6 7", n(at), n(bottom));
-    }
-    format!(
-        "<path class=\"ov-base\" d=\"M{0} {1}L{2} {3}H{4}Z\" stroke-width=\"1.5\" stroke-linejoin=\"round\"/>\
-         <path class=\"ov-rail\" d=\"M{5} {3}H{6}{hatch}\" stroke-width=\"1.5\" stroke-linecap=\"round\"/>\n",
-        n(*x),
-        n(*y),
-        n(x - 14.0),
-        n(bottom),
-        n(x + 14.0),
-        n(x - 21.0),
-        n(x + 21.0)
     )
 }
 
@@ -366,50 +216,4 @@ fn platform(scene: &Scene, view: &View, sheet: &Sheet) -> Piece {
     };
     let near = if view.planar { 6.0 } else { mean };
     Piece { near, text }
-}
-
-fn polygon(class: &str, places: &[[f64; 2]]) -> String {
-    let points: Vec<String> = places
-        .iter()
-        .map(|[x, y]| format!("{},{}", n(*x), n(*y)))
-        .collect();
-    let points = points.join(" ");
-    format!(
-        "<polygon class=\"ov-{class}\" points=\"{points}\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n"
-    )
-}
-
-/// A point on paper.
-pub(super) fn flat(point: &Point, view: &View, sheet: &Sheet) -> [f64; 2] {
-    let [x, y, _] = sheet.place(view, point);
-    [x, y]
-}
-
-/// The convex hull, points that coincide taken once.
-pub(super) fn hull(mut places: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    let rounded = |p: &[f64; 2]| p.map(|v| (v * 10.0).round() as i64);
-    places.sort_by_key(rounded);
-    places.dedup_by_key(|p| rounded(p));
-    if places.len() < 3 {
-        return places;
-    }
-    let turn = |a: &[f64; 2], b: &[f64; 2], c: &[f64; 2]| {
-        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    };
-    let half = |order: &mut dyn Iterator<Item = &[f64; 2]>| {
-        let mut chain: Vec<[f64; 2]> = Vec::new();
-        for place in order {
-            while chain.len() > 1
-                && turn(&chain[chain.len() - 2], &chain[chain.len() - 1], place) <= 1.0
-            {
-                chain.pop();
-            }
-            chain.push(*place);
-        }
-        chain.pop();
-        chain
-    };
-    let mut outline = half(&mut places.iter());
-    outline.extend(half(&mut places.iter().rev()));
-    outline
 }

@@ -1,6 +1,6 @@
 //! The acceleration of a leg's end that is left when all quasi-accelerations u̇ are zero.
 
-use super::leg::{LegFrames, path_to_end};
+use super::frames::{LegFrames, path_to_end};
 use super::rates::Rates;
 use crate::cas::{Arena, Expr, Vector3};
 use crate::mechanism::{JointKind, Leg};

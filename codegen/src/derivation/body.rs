@@ -7,10 +7,10 @@
 //! product with the wrench that p alone produces.
 
 use super::configuration::Configuration;
-use super::leg::{joint_turn, link_vector};
+use super::joint::{joint_turn, link_vector};
+use super::leg::LegState;
 use super::platform::{centripetal, constant_rotation};
 use super::rates::parallel;
-use super::robot::LegState;
 use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};
 use crate::description::StandardParameter;
 use crate::mechanism::{JointKind, Leg};
@@ -187,14 +187,7 @@ pub fn leg_bodies<'a>(
             axes: l.axes.clone(),
         };
         let mut levers: Vec<Lever<'a>> = from.levers.iter().map(carried).collect();
-        let starts = state
-            .centres
-            .iter()
-            .filter(|c| c.joints.first() == Some(&index));
-        levers.extend(starts.map(|centre| Lever {
-            vector: axis.scaled(arena.number(-centre.offset)),
-            axes: rates.own(&centre.joints),
-        }));
+        levers.extend(first_levers(arena, state, index));
         bodies.push(BodyMotion::new(
             omega,
             alpha,
@@ -204,6 +197,20 @@ pub fn leg_bodies<'a>(
         ));
     }
     Some(bodies)
+}
+
+/// The levers of those centres whose axes begin with a joint, in the joint's frame.
+fn first_levers<'a>(
+    arena: &'a Arena,
+    state: &LegState<'a>,
+    joint: usize,
+) -> impl Iterator<Item = Lever<'a>> {
+    let centres = state.centres.iter();
+    let first = centres.filter(move |centre| centre.joints.first() == Some(&joint));
+    first.map(move |centre| Lever {
+        vector: Vector3::unit(arena, 2).scaled(arena.number(-centre.offset)),
+        axes: state.rates.own(&centre.joints),
+    })
 }
 
 /// The rotation from the antecedent frame into a joint's frame.

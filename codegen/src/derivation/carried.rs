@@ -7,7 +7,7 @@
 //! U r_k, which the acceleration of every platform point is made of too, and the moment r_k × a.
 
 use super::body::second_moment;
-use super::platform::{PlatformMotion, PlatformPose, centripetal, constant_rotation};
+use super::platform::{PlatformMotion, PlatformPose, centripetal, constant_rotation, on_twist};
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::description::StandardParameter;
 use crate::mechanism::{End, Leg, TwistCoordinate};
@@ -117,16 +117,7 @@ impl<'a> CarriedBody<'a> {
 
     /// The generalised forces on the twist coordinates of a wrench at the body frame's origin.
     #[must_use]
-    pub fn project(
-        &self,
-        twist: &[TwistCoordinate],
-        [force, moment]: [Vector3<'a>; 2],
-    ) -> Vec<Expr<'a>> {
-        let turned = self.arm.cross(force) + moment;
-        let entry = |c: &TwistCoordinate| match c {
-            TwistCoordinate::Linear(axis) => force.0[*axis],
-            TwistCoordinate::Angular(axis) => turned.0[*axis],
-        };
-        twist.iter().map(entry).collect()
+    pub fn project(&self, twist: &[TwistCoordinate], wrench: [Vector3<'a>; 2]) -> Vec<Expr<'a>> {
+        on_twist(twist, self.arm, wrench)
     }
 }

@@ -1,6 +1,7 @@
 //! Conditions for a function to have a value.
 
 use crate::cas::Expr;
+use overact_core::ActuatorGroup;
 
 /// A quantity that must stay away from a bound for the model to have a value.
 #[derive(Debug, Clone)]
@@ -25,7 +26,7 @@ pub enum GuardKind {
     Platform {
         /// The magnitude at home.
         home: f64,
-        /// `actuators` or `kept actuators`.
-        actuators: &'static str,
+        /// Which actuators they are.
+        actuators: ActuatorGroup,
     },
 }

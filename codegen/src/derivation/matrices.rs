@@ -1,8 +1,8 @@
 //! The matrices of the paper's closure equations: A_p, B_p, J_k, J_tk, and the closure error itself.
 
 use super::elimination::Rows;
-use super::functions::{Sheet, column};
-use super::leg::independent_columns;
+use super::frames::independent_columns;
+use super::sheet::{Sheet, column};
 use crate::cas::{Expr, Number, Ratio, Vector3};
 use crate::mechanism::End;
 

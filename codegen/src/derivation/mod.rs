@@ -1,12 +1,14 @@
 //! From the mechanism to symbolic kinematics, Jacobians and regressors.
 //!
-//! `leg` opens the robot at its platform and closes it again, eqs. (9) to (13): quasi-velocities
-//! (`rates`), frames in the axes that suit the leg (`orientation`), and the wrenches that feel one joint alone (`elimination`, `bias`). `body`
-//! runs the recursion of Newton and Euler in the bodies' own frames, `carried` has those that move with the
-//! platform, `centres` finds axes that meet in a point. `regressor` projects what each
-//! standard parameter produces on the platform, eq. (30), or on kept actuators, eq. (36). `robot` holds
-//! one derivation together. `inverse_kinematics` finds joints from a pose and `forward_kinematics` a
-//! pose from actuators, in closed form where there is one, and `functions` names what comes out of it.
+//! `closure` opens the robot at its platform and closes it again, eqs. (9) to (13): quasi-velocities
+//! (`rates`), joints and `frames` in the axes that suit the leg (`orientation`), and the wrenches that feel
+//! one joint alone (`elimination`, `bias`). `body` runs the recursion of Newton and Euler in the bodies' own
+//! frames, `carried` has those that move with the platform, `centres` finds axes that meet in a point.
+//! `regressor` projects what each standard parameter produces on the platform, eq. (30), or on kept
+//! actuators, eq. (36). `robot` holds one derivation together. `inverse_kinematics` finds joints from a pose
+//! and `forward_kinematics` a pose from actuators, in closed form where there is one. `functions` says what
+//! each function is made of, on a `sheet`: its `kinematics`, its `dynamics`, and the `matrices` of the
+//! closure equations.
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
 
@@ -16,19 +18,26 @@ mod carried;
 mod centres;
 #[cfg(test)]
 mod closed_forms;
+mod closure;
 mod configuration;
 mod derivable;
+mod dynamics;
 mod elimination;
 mod forward_kinematics;
+mod frames;
 mod functions;
 mod guard;
 mod inventory;
 mod inverse_kinematics;
+mod joint;
+mod kinematics;
 mod leg;
 mod linear;
 mod matrices;
+mod motion;
 mod motion_input;
 mod names;
+mod naming;
 mod orientation;
 mod parameter;
 mod platform;
@@ -36,6 +45,7 @@ mod rates;
 mod regressor;
 mod robot;
 mod selection;
+mod sheet;
 mod underivable;
 
 pub(crate) use derivable::derivable;

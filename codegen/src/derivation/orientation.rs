@@ -2,7 +2,7 @@
 //! in another is multiplied out between the two alone, wherever the legs start.
 
 use super::configuration::Configuration;
-use super::leg::joint_turn;
+use super::joint::joint_turn;
 use super::motion_input::MotionInput;
 use super::platform::constant_rotation;
 use super::rates::parallel;

@@ -30,6 +30,21 @@ pub struct PlatformMotion<'a> {
     pub centripetal: Option<Matrix3<'a>>,
 }
 
+/// The components of a force that acts at `arm` from the platform's origin, with a moment, on the twist
+/// coordinates.
+pub(super) fn on_twist<'a>(
+    twist: &[TwistCoordinate],
+    arm: Vector3<'a>,
+    [force, moment]: [Vector3<'a>; 2],
+) -> Vec<Expr<'a>> {
+    let turned = arm.cross(force) + moment;
+    let entry = |c: &TwistCoordinate| match c {
+        TwistCoordinate::Linear(axis) => force.0[*axis],
+        TwistCoordinate::Angular(axis) => turned.0[*axis],
+    };
+    twist.iter().map(entry).collect()
+}
+
 impl<'a> PlatformPose<'a> {
     /// The pose as inputs `pose[i]`.
     #[must_use]

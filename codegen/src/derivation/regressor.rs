@@ -8,9 +8,10 @@
 use super::carried::CarriedBody;
 use super::elimination::{Rows, inverse};
 use super::linear::{dot, product, transposed};
+use super::motion::RobotMotion;
 use super::names::{coordinate_label, joined};
 use super::parameter::BodyParameter;
-use super::robot::{Robot, RobotMotion};
+use super::robot::Robot;
 use super::selection::Combination;
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr, Number, Vector3};
@@ -213,43 +214,10 @@ impl<'a> Robot<'a> {
         // Forces on the twist coordinates, of all that moves with the platform.
         let mut on_twist = vec![self.arena.zero(); self.twist.len()];
         for (l, leg) in self.mechanism.legs.iter().enumerate() {
-            let mut forces = vec![self.arena.zero(); self.legs[l].rows.len()];
-            for j in 0..leg.joints.len() {
-                let own = |p: BodyParameter| match p {
-                    BodyParameter::Leg { leg, joint, symbol } if (leg, joint) == (l, j) => {
-                        Some(symbol)
-                    }
-                    _ => None,
-                };
-                match &motion.carried[l][j] {
-                    Some(body) => {
-                        let wrench =
-                            self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
-                        add(&mut on_twist, body.project(&self.twist, wrench));
-                    }
-                    None => {
-                        let body = &motion.bodies[l][j];
-                        let wrench =
-                            self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
-                        self.name_wrench(wrench, &leg.joints[j].name, &leg.name);
-                        add(&mut forces, body.project(wrench));
-                    }
-                }
-                let on_joint = values.iter().filter_map(|(p, value)| {
-                    let symbol = own(*p).filter(|s| !s.is_inertial())?;
-                    Some(self.joint_force(motion, l, j, symbol) * *value)
-                });
-                let on_joint = on_joint.fold(self.arena.zero(), |sum, force| sum + force);
-                let on_joint = on_joint.named(&joined(&["tau", &leg.joints[j].name, &leg.name]));
-                let form = &self.legs[l].rates.joint[j];
-                let shares = (0..forces.len()).map(|i| on_joint * form.coefficient(i));
-                add(&mut forces, shares.collect());
-            }
+            let forces = self.leg_forces(motion, values, l, &mut on_twist);
             for (joint, force) in leg.independent().zip(&forces) {
-                let _ = force.named(&joined(&[
-                    &format!("force_on_u{}", leg.joints[joint].name),
-                    &leg.name,
-                ]));
+                let what = format!("force_on_u{}", leg.joints[joint].name);
+                let _ = force.named(&joined(&[&what, &leg.name]));
             }
             add(&mut total, self.combine(&projection.legs[l], &forces));
         }
@@ -270,6 +238,47 @@ impl<'a> Robot<'a> {
         }
         add(&mut total, self.combine(&projection.platform, &on_twist));
         total
+    }
+
+    /// The forces on the quasi-velocities of a leg; those of its bodies that move with the platform are added
+    /// to `on_twist`.
+    fn leg_forces(
+        &self,
+        motion: &RobotMotion<'a>,
+        values: &[(BodyParameter, Expr<'a>)],
+        l: usize,
+        on_twist: &mut [Expr<'a>],
+    ) -> Vec<Expr<'a>> {
+        let leg = &self.mechanism.legs[l];
+        let mut forces = vec![self.arena.zero(); self.legs[l].rows.len()];
+        for j in 0..leg.joints.len() {
+            let own = |p: BodyParameter| match p {
+                BodyParameter::Leg { leg, joint, symbol } if (leg, joint) == (l, j) => Some(symbol),
+                _ => None,
+            };
+            match &motion.carried[l][j] {
+                Some(body) => {
+                    let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
+                    add(on_twist, body.project(&self.twist, wrench));
+                }
+                None => {
+                    let body = &motion.bodies[l][j];
+                    let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
+                    self.name_wrench(wrench, &leg.joints[j].name, &leg.name);
+                    add(&mut forces, body.project(wrench));
+                }
+            }
+            let on_joint = values.iter().filter_map(|(p, value)| {
+                let symbol = own(*p).filter(|s| !s.is_inertial())?;
+                Some(self.joint_force(motion, l, j, symbol) * *value)
+            });
+            let on_joint = on_joint.fold(self.arena.zero(), |sum, force| sum + force);
+            let on_joint = on_joint.named(&joined(&["tau", &leg.joints[j].name, &leg.name]));
+            let form = &self.legs[l].rates.joint[j];
+            let shares = (0..forces.len()).map(|i| on_joint * form.coefficient(i));
+            add(&mut forces, shares.collect());
+        }
+        forces
     }
 
     /// The wrench of those inertial parameters that are a body's own.

@@ -2,16 +2,19 @@
 //! function is made of.
 
 use super::bias::end_bias;
-use super::body::{BodyMotion, leg_bodies};
+use super::body::leg_bodies;
 use super::carried::{CarriedBody, Mount};
-use super::centres::{Centre, centres};
+use super::centres::centres;
+use super::closure::LegClosure;
 use super::configuration::Configuration;
 use super::elimination::Rows;
+use super::frames::LegFrames;
 use super::guard::{Guard, GuardKind};
 use super::inverse_kinematics::{Task, solve_leg};
-use super::leg::{LegClosure, LegFrames};
+use super::leg::LegState;
+use super::motion::{Moved, RobotMotion};
 use super::motion_input::MotionInput;
-use super::names::{Accelerations, Moved, coordinate_label, joined};
+use super::names::{Accelerations, coordinate_label, joined};
 use super::platform::PlatformPose;
 use super::rates::Rates;
 use super::selection::Formulation;
@@ -19,38 +22,6 @@ use super::underivable::Underivable;
 use crate::cas::{Arena, Expr, Vector3};
 use crate::mechanism::{Mechanism, TwistCoordinate};
 use std::cell::RefCell;
-
-/// A leg in a derivation.
-#[derive(Debug)]
-pub struct LegState<'a> {
-    /// Index of the leg's first joint in q_t.
-    pub first_joint: usize,
-    /// Frames in the base frame.
-    pub frames: LegFrames<'a>,
-    /// Joint rates as forms of the quasi-velocities.
-    pub rates: Rates,
-    /// Axes that share the moment about the point in which they meet.
-    pub centres: Vec<Centre>,
-    /// The closure; `None` for a tree.
-    pub closure: Option<LegClosure<'a>>,
-    /// ∂u/∂v, r numbers per u.
-    pub rows: Rows<'a>,
-}
-
-/// Velocities and accelerations of the whole robot.
-#[derive(Debug, Clone)]
-pub struct RobotMotion<'a> {
-    /// Quasi-velocities of every leg.
-    pub u: Vec<Vec<Expr<'a>>>,
-    /// Their derivatives.
-    pub u_dot: Vec<Vec<Expr<'a>>>,
-    /// Bodies of every leg.
-    pub bodies: Vec<Vec<BodyMotion<'a>>>,
-    /// Those bodies of every leg that move with the platform.
-    pub carried: Vec<Vec<Option<CarriedBody<'a>>>>,
-    /// The platform.
-    pub platform: Option<CarriedBody<'a>>,
-}
 
 /// The derivation of a robot.
 #[derive(Debug)]

@@ -1,9 +1,9 @@
 //! The table `[experiment.drives]`: drives that are not ideal.
 
 use super::dimension::Dimension;
-use super::experiment::{effort, per_actuator};
 use super::inventory::Inventory;
 use super::model::JointKind;
+use super::per_actuator::{effort, per_actuator};
 use super::reader::Item;
 
 /// What the drives make of the controller's torques; lists have one value for each actuator.

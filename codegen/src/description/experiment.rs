@@ -2,10 +2,10 @@
 
 use super::dimension::Dimension;
 use super::drives::{self, Drives};
-use super::inventory::Inventory;
+use super::inventory::{Body, Inventory};
 use super::joint;
 use super::model::{JointKind, Spanned};
-use super::parameter::dimension;
+use super::per_actuator::{effort, per_actuator};
 use super::reader::{Item, Table};
 use super::scope::Scope;
 use crate::diagnostic::{Diagnostic, Span, did_you_mean};
@@ -46,22 +46,6 @@ pub struct Experiment {
     pub runs: Vec<Run>,
     /// Place of the table.
     pub span: Span,
-}
-
-/// A body that has parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Body {
-    /// A joint and the body behind it.
-    Joint {
-        /// Index of the leg.
-        leg: usize,
-        /// Index of the joint in its leg.
-        joint: usize,
-    },
-    /// The platform.
-    Platform,
-    /// The payload.
-    Payload,
 }
 
 /// The true value of a standard parameter.
@@ -167,39 +151,6 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Experim
 /// Of an actuator's position.
 pub(super) fn position(kind: JointKind) -> Dimension {
     joint::dimension(kind).unwrap_or(Dimension::NONE)
-}
-
-pub(super) fn effort(kind: JointKind) -> Dimension {
-    dimension(StandardParameter::Fs, kind)
-}
-
-/// One value for all actuators, or a list with one for each.
-pub(super) fn per_actuator(
-    item: &Item<'_, '_>,
-    kinds: &[JointKind],
-    dimension: fn(JointKind) -> Dimension,
-    scope: &Scope,
-) -> Option<Vec<f64>> {
-    let items = if item.value.is_array() {
-        item.list()?
-    } else {
-        vec![item.clone(); kinds.len()]
-    };
-    if items.len() != kinds.len() {
-        let message = format!(
-            "`{}`: expected one value or {}, one for each actuator, found {}",
-            item.key.value,
-            kinds.len(),
-            items.len()
-        );
-        item.context.report(item.error(message));
-        return None;
-    }
-    let pairs = items.iter().zip(kinds);
-    let values: Vec<_> = pairs
-        .map(|(item, kind)| item.not_negative(dimension(*kind), scope))
-        .collect();
-    values.into_iter().collect()
 }
 
 fn parameters(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> {

@@ -3,12 +3,27 @@
 
 use super::actuator_names::ActuatorNames;
 use super::dimension::Dimension;
-use super::experiment::Body;
 use super::joint;
 use super::model::{JointKind, Leg, Motion, Platform, actuators};
 use super::parameter::dimension;
 use super::scope::Scope;
 use overact_core::StandardParameter;
+
+/// A body that has parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Body {
+    /// A joint and the body behind it.
+    Joint {
+        /// Index of the leg.
+        leg: usize,
+        /// Index of the joint in its leg.
+        joint: usize,
+    },
+    /// The platform.
+    Platform,
+    /// The payload.
+    Payload,
+}
 
 /// What the tables that follow the legs need to know of the robot.
 pub(super) struct Inventory<'r> {

@@ -1,7 +1,6 @@
 //! The joints of a placed leg: geometry, and which joint follows which.
 
 use super::dimension::Dimension;
-use super::leg::home;
 use super::model::{Joint, JointKind, Spanned};
 use super::reader::{Item, Table};
 use super::scalar::Scalar;
@@ -218,4 +217,11 @@ fn substitute(given: &[Combination], variable: &Combination) -> Option<Combinati
     result.retain(|(_, factor)| !factor.is_zero());
     result.sort_unstable_by_key(|(joint, _)| *joint);
     Some(result)
+}
+
+/// The rough position of a joint at home.
+fn home(homes: Option<&Table<'_, '_>>, joint: &str, dimension: Dimension, scope: &Scope) -> Number {
+    let item = homes.and_then(|table| table.get(joint));
+    let value = item.and_then(|item| item.number(dimension, scope));
+    value.map_or(Number::ZERO, |number| number.value)
 }

@@ -1,13 +1,11 @@
 //! The tables `[[place]]`: a shape evaluated with the values of one placement.
 
-use super::dimension::Dimension;
 use super::geometry::placement;
 use super::joint;
 use super::model::{End, Leg, Spanned};
 use super::reader::Table;
 use super::scope::{Scope, is_word};
 use super::shape::Shape;
-use crate::cas::Number;
 use crate::diagnostic::{Diagnostic, did_you_mean};
 
 /// Reads all placements in order.
@@ -113,16 +111,4 @@ fn find<'s, 'c, 't>(
             .report(Diagnostic::new(message, name.span.clone()).help(help));
     }
     found
-}
-
-/// The rough position of a joint at home.
-pub(super) fn home(
-    homes: Option<&Table<'_, '_>>,
-    joint: &str,
-    dimension: Dimension,
-    scope: &Scope,
-) -> Number {
-    let item = homes.and_then(|table| table.get(joint));
-    let value = item.and_then(|item| item.number(dimension, scope));
-    value.map_or(Number::ZERO, |number| number.value)
 }

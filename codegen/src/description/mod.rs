@@ -10,6 +10,7 @@
 
 mod actuator_names;
 mod dimension;
+mod document;
 mod drives;
 mod experiment;
 mod expression;
@@ -21,6 +22,7 @@ mod leg;
 mod model;
 mod parameter;
 mod parameters;
+mod per_actuator;
 mod place;
 mod platform;
 mod reader;
@@ -35,12 +37,11 @@ mod token;
 mod value;
 
 pub use actuator_names::ActuatorNames;
+pub use document::{BaseColumns, Description};
 pub use drives::Drives;
-pub use experiment::{Body, Experiment, Run, Term, TrueParameter};
-pub use model::{
-    BaseColumns, Description, End, Joint, JointKind, Leg, Motion, Placement, Platform,
-    PlatformHome, Spanned,
-};
+pub use experiment::{Experiment, Run, Term, TrueParameter};
+pub use inventory::Body;
+pub use model::{End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned};
 pub use overact_core::StandardParameter;
 pub use place::place;
 pub use settings::{Data, Factor, Friction, Identification, Instruments, Normalisation, Reversals};

@@ -1,8 +1,9 @@
 //! The description as a whole.
 
 use super::dimension::Dimension;
+use super::document::{BaseColumns, Description, type_name};
 use super::inventory::Inventory;
-use super::model::{BaseColumns, Description, Leg, Platform, Spanned, actuators, type_name};
+use super::model::{Leg, Platform, Spanned, actuators};
 use super::reader::{Context, Item, Table};
 use super::scope::Scope;
 use super::shape::Shape;

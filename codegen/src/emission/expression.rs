@@ -7,6 +7,7 @@ use super::angles;
 use super::labels::Labels;
 use super::names::Names;
 use crate::lowering::{Condition, Operand, Operation, Program};
+use overact_core::ActuatorGroup;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 use std::collections::{BTreeMap, HashSet};
@@ -75,6 +76,8 @@ pub struct Body<'p> {
     taken: HashSet<String>,
     /// Steps that are written before their turn.
     written: Vec<bool>,
+    /// How many guards are written.
+    guarded: usize,
 }
 
 impl<'p> Body<'p> {
@@ -95,6 +98,7 @@ impl<'p> Body<'p> {
             statements: TokenStream::new(),
             taken,
             written: vec![false; count],
+            guarded: 0,
         };
         let mut at = 0;
         body.angles(&angles::early(program));
@@ -143,8 +147,7 @@ impl<'p> Body<'p> {
         for (_, section) in &mut self.sections[first..] {
             "sines and cosines".clone_into(section);
         }
-        let steps = early.pairs.iter().flat_map(|p| [p.sine, p.cosine]);
-        steps.flatten().for_each(|at| self.guards(at));
+        self.guards();
     }
 
     /// Writes step `at`; returns how many steps were written.
@@ -169,7 +172,7 @@ impl<'p> Body<'p> {
             let tokens = text.tokens;
             self.statements.extend(quote!(let #name = #tokens;));
         }
-        self.guards(at);
+        self.guards();
         1
     }
 
@@ -198,18 +201,21 @@ impl<'p> Body<'p> {
         };
         self.statements
             .extend(quote!(let (#sine, #cosine) = ::overact::math::sin_cos(#angle);));
-        self.guards(at);
-        self.guards(at + 1);
+        self.guards();
         2
     }
 
-    fn guards(&mut self, at: usize) {
-        for guard in self
-            .program
-            .guards
-            .iter()
-            .filter(|g| g.operand == Operand::Step(at))
-        {
+    /// Writes the guards whose values are there, each behind those before it: of several legs that fail at
+    /// once the first is told, in whichever order their values come.
+    fn guards(&mut self) {
+        let program = self.program;
+        while let Some(guard) = program.guards.get(self.guarded) {
+            if let Operand::Step(at) = guard.operand
+                && self.names[at].is_none()
+            {
+                return;
+            }
+            self.guarded += 1;
             let value = self.operand(guard.operand).tokens;
             self.statements.extend(match &guard.condition {
                 Condition::Reach { leg } => quote!(::overact::guard::reach(#value, #leg)?;),
@@ -219,6 +225,10 @@ impl<'p> Body<'p> {
                 }
                 Condition::Platform { actuators, home } => {
                     let home = number(*home);
+                    let actuators = match actuators {
+                        ActuatorGroup::All => quote!(::overact::ActuatorGroup::All),
+                        ActuatorGroup::Kept => quote!(::overact::ActuatorGroup::Kept),
+                    };
                     quote!(::overact::guard::platform(#value, #home, #actuators)?;)
                 }
             });

@@ -1,6 +1,6 @@
 //! Inverse kinematics of robots whose legs no rule solves: Newton's method on the generated closure.
 
-use super::function::boundary;
+use super::boundary::boundary;
 use crate::lowering::Array;
 use crate::mechanism::Motion;
 use crate::model::RobotModel;

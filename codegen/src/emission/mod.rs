@@ -5,24 +5,27 @@
 //! nothing is unsafe; a singular configuration is an error that names the leg. Paths are absolute, for the
 //! code stands in scopes that are not ours.
 //!
-//! The code is to be read beside the paper: values have [`names`], constants of the description theirs
-//! ([`dimensions`]), the [`legend`] in the type's documentation says what they mean, and [`layout`] puts
+//! The code is to be read beside the paper: values have `names`, constants of the description theirs
+//! (`dimensions`), the `legend` in the type's documentation says what they mean, and `layout` puts
 //! headings over the sections of a body.
 
-pub mod angles;
-pub mod constants;
-pub mod dimensions;
-pub mod expression;
-pub mod function;
-pub mod inverse;
-pub mod labels;
-pub mod layout;
-pub mod legend;
-pub mod model_impl;
-pub mod names;
+#![allow(unreachable_pub, reason = "public to the files of this folder")]
+
+mod angles;
+mod boundary;
+mod constants;
+mod dimensions;
+mod expression;
+mod function;
+mod inverse;
+mod labels;
+mod layout;
+mod legend;
+mod model_impl;
+mod names;
 #[cfg(test)]
 mod tests;
-pub mod text;
+mod text;
 
 use crate::model::RobotModel;
 use function::Item;

@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-10;
 
 /// Velocity components that a leg's end shares with the platform, per twist coordinate.
 #[must_use]
-pub fn shared_velocities(motion: Motion, pose: &[f64], end: &End) -> DMatrix<f64> {
+pub(super) fn shared_velocities(motion: Motion, pose: &[f64], end: &End) -> DMatrix<f64> {
     let frame = platform_frame(motion, pose);
     let arm = target(end, &frame).translation.vector - frame.translation.vector;
     let twist = motion.twist();
@@ -43,7 +43,7 @@ pub fn shared_velocities(motion: Motion, pose: &[f64], end: &End) -> DMatrix<f64
 /// The joint rates of a leg per velocity of its end, by least squares; `None` if its Jacobian is
 /// not finite.
 #[must_use]
-pub fn rates_per_velocity(leg: &Leg, joints: &[f64]) -> Option<DMatrix<f64>> {
+pub(super) fn rates_per_velocity(leg: &Leg, joints: &[f64]) -> Option<DMatrix<f64>> {
     let found = SingularValues::new(&leg.closure_jacobian(joints))?;
     Some(found.pseudo_inverse(SINGULAR * found.largest()))
 }

@@ -205,7 +205,11 @@ pub(super) fn nearest(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64
 /// Joint positions that close a leg, near `start`; `None` if the iteration does not get there or the
 /// leg is nearly singular where it does.
 #[must_use]
-pub fn close_from(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Option<Vec<f64>> {
+pub(super) fn close_from(
+    leg: &Leg,
+    start: &[f64],
+    target: &nalgebra::Isometry3<f64>,
+) -> Option<Vec<f64>> {
     let q = close(leg, start, target).ok()?;
     (condition(&leg.closure_jacobian(&q)) < 50.0).then_some(q)
 }

@@ -6,16 +6,16 @@
 //! ends on the platform: its last frame is fixed on the platform (`Rigid`), or its origin coincides
 //! with a platform point (`Point`). A robot without platform is a tree: one leg without an end.
 
-pub mod actuation;
-pub mod check;
+mod actuation;
+mod check;
 mod explain;
-pub mod home;
+mod home;
 mod mobility;
-pub mod motion;
+mod motion;
 pub mod numeric;
 mod reach;
 mod singular_values;
-pub mod states;
+pub(crate) mod states;
 mod structure;
 #[cfg(test)]
 mod tests;

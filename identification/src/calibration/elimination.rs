@@ -170,7 +170,7 @@ fn orthonormalised(columns: &mut DMatrix<f64>) -> Result<DMatrix<f64>, overact::
         let regular = left > SINGULAR * size;
         if !regular {
             return Err(overact::Error::SingularPlatform {
-                actuators: "actuators",
+                actuators: overact::ActuatorGroup::All,
                 condition: size / left,
             });
         }

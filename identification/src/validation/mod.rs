@@ -268,7 +268,7 @@ fn rows(
         let jacobian = slice(&jacobians, n * r, sample, 1);
         let Some(distribution) = least_norm(jacobian, r) else {
             let error = overact::Error::SingularPlatform {
-                actuators: "actuators",
+                actuators: overact::ActuatorGroup::All,
                 condition: f64::INFINITY,
             };
             return Err(motion.outside(first + sample, error).into());

@@ -6,6 +6,7 @@ pub mod backend;
 pub mod comparison;
 pub mod conversion;
 pub mod expected;
+pub mod imports;
 pub mod library;
 pub mod precise;
 pub mod random;

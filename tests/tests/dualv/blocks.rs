@@ -1,6 +1,6 @@
 //! Programs evaluated over blocks of samples, and what they say where they have no value.
 
-use overact::{Columns, Function};
+use overact::{ActuatorGroup, Columns, Function};
 use overact_codegen::derivation::MotionInput;
 use overact_codegen::evaluation::{BLOCK, Rows};
 use overact_codegen::internals::{random_states, sample};
@@ -184,7 +184,7 @@ fn a_singular_partition_is_an_error_and_case_1_is_not() {
     }
     let pose = [-0.10, 0.16, low];
     let found = DualV::idm_red_actuators(&pose, &still, &still);
-    let expected = "kept actuators";
+    let expected = ActuatorGroup::Kept;
     assert!(
         matches!(found, Err(Error::SingularPlatform { actuators, .. }) if actuators == expected),
         "{found:?}"

@@ -387,13 +387,12 @@ fn is_length(answer: &Answer) -> bool {
     matches!(answer, Err(error) if matches!(error.error, Error::Length { .. }) && error.sample == 0)
 }
 
-/// Whether two errors say the same. Of several legs that fail at once each backend names the one whose
-/// condition its program computes first, and by how much may differ by rounding.
+/// Whether two errors say the same, of the same leg; by how much a condition fails may differ by rounding.
 fn is_alike(one: &SampleError, other: &SampleError) -> bool {
     let error = match (one.error, other.error) {
-        (Error::OutOfReach { .. }, Error::OutOfReach { .. })
-        | (Error::SingularLeg { .. }, Error::SingularLeg { .. })
-        | (Error::SingularPlatform { .. }, Error::SingularPlatform { .. })
+        (Error::OutOfReach { leg }, Error::OutOfReach { leg: other })
+        | (Error::SingularLeg { leg, .. }, Error::SingularLeg { leg: other, .. }) => leg == other,
+        (Error::SingularPlatform { .. }, Error::SingularPlatform { .. })
         | (Error::NoConvergence { .. }, Error::NoConvergence { .. }) => true,
         (one, other) => one == other,
     };

@@ -151,7 +151,7 @@ impl<'a> Robot<'a> {
                     condition: home / failed.value.abs(),
                 },
                 Condition::Platform { actuators, home } => Refusal {
-                    what: (*actuators).to_owned(),
+                    what: actuators.to_string(),
                     condition: home / failed.value.abs(),
                 },
             }),
@@ -219,18 +219,15 @@ impl<'a> Robot<'a> {
 fn compiled_refusal(failure: Failure) -> Result<Refusal, Failure> {
     let error = *failure.downcast::<Error>()?;
     let (what, condition) = match error {
-        Error::OutOfReach { leg } => (leg, 0.0),
-        Error::SingularLeg { leg, condition } => (leg, condition),
+        Error::OutOfReach { leg } => (leg.to_owned(), 0.0),
+        Error::SingularLeg { leg, condition } => (leg.to_owned(), condition),
         Error::SingularPlatform {
             actuators,
             condition,
-        } => (actuators, condition),
+        } => (actuators.to_string(), condition),
         other => return Err(other.into()),
     };
-    Ok(Refusal {
-        what: what.to_owned(),
-        condition,
-    })
+    Ok(Refusal { what, condition })
 }
 
 /// A leg's joint goes to where the leg is singular: within 1e-10 rad that is an error with the leg's

@@ -7,7 +7,8 @@
 //! last frame g_i, and (X - O_F) · e_i = Q · g_i.
 
 use super::super::configuration::Configuration;
-use super::super::leg::{joint_slide, joint_turn, path_to_end};
+use super::super::frames::path_to_end;
+use super::super::joint::{joint_slide, joint_turn};
 use super::super::platform::constant_rotation;
 use super::super::rates::parallel;
 use super::Task;

@@ -6,7 +6,7 @@
 //! position does not depend on follows from the platform's orientation.
 
 use super::super::configuration::Configuration;
-use super::super::leg::joint_turn;
+use super::super::joint::joint_turn;
 use super::super::platform::constant_rotation;
 use super::super::rates::parallel;
 use super::{Reach, Task};

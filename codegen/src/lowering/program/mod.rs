@@ -5,6 +5,8 @@ mod verify;
 
 pub use cost::Cost;
 
+use overact_core::ActuatorGroup;
+
 /// Where an operand comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operand {
@@ -148,8 +150,8 @@ pub enum Condition {
     },
     /// The value is not small against `home`, else the actuators do not determine the platform.
     Platform {
-        /// `actuators` or `kept actuators`.
-        actuators: &'static str,
+        /// Which actuators they are.
+        actuators: ActuatorGroup,
         /// The value's magnitude at the home configuration.
         home: f64,
     },

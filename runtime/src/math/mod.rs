@@ -2,7 +2,9 @@
 //! the feature `std`, those of `libm` with the feature of that name alone. The angles of a whole function have their sines and
 //! cosines from [`sin_cos_all`].
 
-pub use crate::trigonometry::sin_cos_all;
+mod trigonometry;
+
+pub use trigonometry::sin_cos_all;
 
 /// Sine and cosine of an angle in radians.
 #[inline]

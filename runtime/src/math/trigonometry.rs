@@ -3,7 +3,7 @@
 //! The method and its numbers are those of [`overact_core::trigonometry`]. Without a branch, four angles
 //! cost little more than one.
 
-use crate::math::sin_cos;
+use super::sin_cos;
 use overact_core::trigonometry::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
 use wide::{f64x2, f64x4, u64x2, u64x4};
 
@@ -139,9 +139,9 @@ mod tests {
     #[test]
     fn large_angles_and_those_that_are_no_numbers_are_the_library_s() {
         let found = sin_cos_all([1e300, 0.5, f64::NAN, f64::INFINITY, -0.0]);
-        assert_eq!(found[0], crate::math::sin_cos(1e300));
+        assert_eq!(found[0], super::super::sin_cos(1e300));
         assert!(found[2].0.is_nan() && found[3].1.is_nan());
-        assert_eq!(found[1], crate::math::sin_cos(0.5));
+        assert_eq!(found[1], super::super::sin_cos(0.5));
         assert_eq!(sin_cos_all([-0.0, 0.0])[0], (0.0, 1.0));
     }
 }

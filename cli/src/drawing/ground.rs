@@ -1,0 +1,75 @@
+//! What does not move: plates, pivots and feet below the legs.
+
+use super::scene::{Part, Point, Scene};
+use super::sheet::{Sheet, flat, hull, n, polygon};
+use super::view::View;
+use overact_codegen::mechanism::Mechanism;
+use std::fmt::Write;
+
+/// A plate through the legs' bases in space, a hatched pivot below each in a
+/// plane, a foot below a serial robot.
+pub(super) fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
+    let places: Vec<[f64; 2]> = scene.bases.iter().map(|p| flat(p, view, sheet)).collect();
+    if let Some(radius) = scene.sphere {
+        let [x, y] = flat(&Point::zeros(), view, sheet);
+        let radius = radius / sheet.pixel();
+        return format!(
+            "<circle class=\"ov-globe\" cx=\"{}\" cy=\"{}\" r=\"{}\" stroke-width=\"1\"/>\n",
+            n(x),
+            n(y),
+            n(radius)
+        );
+    }
+    let mut text = String::new();
+    let rails = scene
+        .parts
+        .iter()
+        .any(|(_, part)| matches!(part, Part::Rail { .. }));
+    if !view.planar && places.len() > 2 && !rails {
+        text = polygon("base", &hull(places));
+    } else {
+        for (leg, place) in places.iter().enumerate() {
+            let slides = scene
+                .parts
+                .iter()
+                .any(|(l, part)| *l == leg && matches!(part, Part::Rail { .. }));
+            let serial = mechanism.platform.is_none() && !view.planar;
+            match (slides, serial) {
+                (true, _) => {}
+                (false, true) => text.push_str(&foot(place)),
+                (false, false) => text.push_str(&pivot(place)),
+            }
+        }
+    }
+    text
+}
+
+/// The foot of a serial robot: a disc on the ground.
+fn foot([x, y]: &[f64; 2]) -> String {
+    format!(
+        "<ellipse class=\"ov-base\" cx=\"{}\" cy=\"{}\" rx=\"40\" ry=\"15\" stroke-width=\"1.5\"/>\n",
+        n(*x),
+        n(y + 14.0)
+    )
+}
+
+/// A fixed pivot: a triangle on hatched ground.
+fn pivot([x, y]: &[f64; 2]) -> String {
+    let bottom = y + 26.0;
+    let mut hatch = String::new();
+    for step in 0..5 {
+        let at = x - 15.0 + 8.0 * f64::from(step);
+        let _ = write!(hatch, "M{} {}l-6 7", n(at), n(bottom));
+    }
+    format!(
+        "<path class=\"ov-base\" d=\"M{0} {1}L{2} {3}H{4}Z\" stroke-width=\"1.5\" stroke-linejoin=\"round\"/>\
+         <path class=\"ov-rail\" d=\"M{5} {3}H{6}{hatch}\" stroke-width=\"1.5\" stroke-linecap=\"round\"/>\n",
+        n(*x),
+        n(*y),
+        n(x - 14.0),
+        n(bottom),
+        n(x + 14.0),
+        n(x - 21.0),
+        n(x + 21.0)
+    )
+}

@@ -1,0 +1,93 @@
+//! From a mechanism to its scene: every leg's parts at the home configuration, sliders side by side.
+
+use super::scene::{NOTHING, Part, Point, Scene};
+use super::{sphere, walk};
+use nalgebra::Vector3;
+use overact_codegen::mechanism::{
+    End, Mechanism,
+    numeric::{platform_frame, target},
+};
+
+/// The scene of a mechanism; `pixel` is the length of one pixel, m, where it is known.
+pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
+    let pose = &mechanism.home.pose;
+    let frame = mechanism
+        .platform
+        .as_ref()
+        .map(|p| platform_frame(p.motion, pose));
+    if sphere::has_no_lengths(mechanism) {
+        return sphere::scene(mechanism, frame);
+    }
+    let mut scene = Scene {
+        parts: Vec::new(),
+        bases: Vec::new(),
+        attachments: Vec::new(),
+        platform: frame,
+        sphere: None,
+    };
+    for (index, leg) in mechanism.legs.iter().enumerate() {
+        let positions = &mechanism.home.joints[mechanism.leg_range(index)];
+        let (parts, base) = walk::parts(leg, positions, pixel, frame.is_none());
+        scene
+            .parts
+            .extend(parts.into_iter().map(|part| (index, part)));
+        scene.bases.push(base);
+        if let (Some(end), Some(frame)) = (&leg.end, &frame) {
+            let target = target(end, frame);
+            let at = target.translation.vector;
+            scene.attachments.push(at);
+            if matches!(end, End::Point { .. }) {
+                scene.parts.push((index, Part::Ball { at }));
+            }
+        }
+    }
+    part_sliders(&mut scene, pixel);
+    scene
+}
+
+/// Sliders of several legs at one place are drawn side by side.
+fn part_sliders(scene: &mut Scene, pixel: f64) {
+    let sliders: Vec<(usize, Point, Point)> = scene
+        .parts
+        .iter()
+        .filter_map(|(leg, part)| match part {
+            Part::Slider { at, axis, .. } => Some((*leg, *at, *axis)),
+            _ => None,
+        })
+        .collect();
+    for (leg, at, axis) in &sliders {
+        let together = |(_, other, _): &&(usize, Point, Point)| (other - at).norm() < NOTHING;
+        let crowd: Vec<usize> = sliders.iter().filter(together).map(|s| s.0).collect();
+        let rank = crowd.iter().position(|l| l == leg).unwrap_or(0);
+        let place = (crowd.len() as f64 - 1.0) / 2.0 - rank as f64;
+        if place == 0.0 {
+            continue;
+        }
+        let upright = Vector3::z() - axis * axis.z;
+        let across = upright
+            .try_normalize(1e-6)
+            .unwrap_or_else(|| (Vector3::x() - axis * axis.x).normalize());
+        shift(scene, *leg, &(across * (place * 72.0 * pixel)));
+    }
+}
+
+/// Moves what belongs to a leg.
+fn shift(scene: &mut Scene, leg: usize, by: &Point) {
+    for (_, part) in scene.parts.iter_mut().filter(|(l, _)| *l == leg) {
+        match part {
+            Part::Link { path, .. } | Part::Stub { path, .. } => {
+                path.iter_mut().for_each(|p| *p += by);
+            }
+            Part::Revolute { at, .. }
+            | Part::Slider { at, .. }
+            | Part::Universal { at }
+            | Part::Ball { at } => *at += by,
+            Part::Rail { from, to } | Part::Telescope { from, to, .. } => {
+                *from += by;
+                *to += by;
+            }
+        }
+    }
+    let places = [scene.bases.get_mut(leg), scene.attachments.get_mut(leg)];
+    places.into_iter().flatten().for_each(|p| *p += by);
+}

@@ -1,0 +1,135 @@
+//! The sheet: where points in space lie on paper, and the texts of numbers, paths and outlines.
+
+use super::scene::{NOTHING, Point, Scene};
+use super::view::View;
+use std::fmt::Write;
+
+/// Width of the sheet, pixels.
+pub(super) const WIDTH: f64 = 720.0;
+/// Space at the left and right for names, and at the top and bottom for title and legend.
+const MARGIN: [f64; 3] = [92.0, 104.0, 96.0];
+/// Largest height of the robot.
+const TALLEST: f64 = 400.0;
+/// Smallest height, for robots that lie flat.
+const LOWEST: f64 = 130.0;
+
+/// Scale and place of the robot on paper.
+pub(super) struct Sheet {
+    scale: f64,
+    /// What is at the middle of the robot's box, m.
+    middle: [f64; 2],
+    /// Height of the sheet, pixels.
+    pub(super) height: f64,
+}
+
+impl Sheet {
+    /// The largest scale at which a scene fits; never larger than at the first fit.
+    pub(super) fn fitted(scene: &Scene, view: &View) -> Self {
+        let mut places: Vec<[f64; 3]> = scene.points().iter().map(|p| view.project(p)).collect();
+        let globe = scene.sphere.unwrap_or(0.0);
+        if globe > 0.0 {
+            places.extend([[-globe, -globe, 0.0], [globe, globe, 0.0]]);
+        }
+        let range = |axis: usize| {
+            let low = places.iter().map(|p| p[axis]).fold(f64::MAX, f64::min);
+            let high = places.iter().map(|p| p[axis]).fold(f64::MIN, f64::max);
+            if low > high { (0.0, 0.0) } else { (low, high) }
+        };
+        let ((left, right), (bottom, top)) = (range(0), range(1));
+        let (width, height) = (right - left, top - bottom);
+        // A robot without extent, a single joint for instance, has any scale.
+        let scale = if width.max(height) < NOTHING {
+            400.0
+        } else {
+            let wide = (WIDTH - 2.0 * MARGIN[0]) / width.max(NOTHING);
+            wide.min(TALLEST / height.max(NOTHING))
+        };
+        Self {
+            scale,
+            middle: [(left + right) / 2.0, (bottom + top) / 2.0],
+            height: ((height * scale).max(LOWEST) + MARGIN[1] + MARGIN[2]).round(),
+        }
+    }
+
+    /// Length of a pixel, m.
+    pub(super) fn pixel(&self) -> f64 {
+        1.0 / self.scale
+    }
+
+    /// A point on paper, pixels from the top left, and its nearness, pixels.
+    pub(super) fn place(&self, view: &View, point: &Point) -> [f64; 3] {
+        let [right, up, near] = view.project(point);
+        let middle = (self.height - MARGIN[2] + MARGIN[1]) / 2.0;
+        [
+            WIDTH / 2.0 + (right - self.middle[0]) * self.scale,
+            middle - (up - self.middle[1]) * self.scale,
+            near * self.scale,
+        ]
+    }
+}
+
+/// A number with one decimal; rounding leaves no minus zero.
+pub(super) fn n(value: f64) -> String {
+    let rounded = (value * 10.0).round() / 10.0;
+    let rounded = if rounded == 0.0 { 0.0 } else { rounded };
+    format!("{rounded}")
+}
+
+/// Path data through points.
+pub(super) fn path(points: &[Point], view: &View, sheet: &Sheet) -> String {
+    let mut text = String::new();
+    for (index, point) in points.iter().enumerate() {
+        let [x, y, _] = sheet.place(view, point);
+        let command = if index == 0 { 'M' } else { 'L' };
+        // Writing to a text cannot fail.
+        let _ = write!(text, "{command}{} {}", n(x), n(y));
+    }
+    text
+}
+
+/// A plate with the outline of some points.
+pub(super) fn polygon(class: &str, places: &[[f64; 2]]) -> String {
+    let points: Vec<String> = places
+        .iter()
+        .map(|[x, y]| format!("{},{}", n(*x), n(*y)))
+        .collect();
+    let points = points.join(" ");
+    format!(
+        "<polygon class=\"ov-{class}\" points=\"{points}\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n"
+    )
+}
+
+/// A point on paper.
+pub(super) fn flat(point: &Point, view: &View, sheet: &Sheet) -> [f64; 2] {
+    let [x, y, _] = sheet.place(view, point);
+    [x, y]
+}
+
+/// The convex hull, points that coincide taken once.
+pub(super) fn hull(mut places: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let rounded = |p: &[f64; 2]| p.map(|v| (v * 10.0).round() as i64);
+    places.sort_by_key(rounded);
+    places.dedup_by_key(|p| rounded(p));
+    if places.len() < 3 {
+        return places;
+    }
+    let turn = |a: &[f64; 2], b: &[f64; 2], c: &[f64; 2]| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    let half = |order: &mut dyn Iterator<Item = &[f64; 2]>| {
+        let mut chain: Vec<[f64; 2]> = Vec::new();
+        for place in order {
+            while chain.len() > 1
+                && turn(&chain[chain.len() - 2], &chain[chain.len() - 1], place) <= 1.0
+            {
+                chain.pop();
+            }
+            chain.push(*place);
+        }
+        chain.pop();
+        chain
+    };
+    let mut outline = half(&mut places.iter());
+    outline.extend(half(&mut places.iter().rev()));
+    outline
+}

@@ -1,0 +1,33 @@
+//! The motion of the whole robot: quasi-velocities, bodies, platform.
+
+use super::body::BodyMotion;
+use super::carried::CarriedBody;
+use super::names::Accelerations;
+use super::platform::PlatformMotion;
+use crate::cas::Expr;
+
+/// Velocities and accelerations of the whole robot.
+#[derive(Debug, Clone)]
+pub struct RobotMotion<'a> {
+    /// Quasi-velocities of every leg.
+    pub u: Vec<Vec<Expr<'a>>>,
+    /// Their derivatives.
+    pub u_dot: Vec<Vec<Expr<'a>>>,
+    /// Bodies of every leg.
+    pub bodies: Vec<Vec<BodyMotion<'a>>>,
+    /// Those bodies of every leg that move with the platform.
+    pub carried: Vec<Vec<Option<CarriedBody<'a>>>>,
+    /// The platform.
+    pub platform: Option<CarriedBody<'a>>,
+}
+
+/// A motion that was derived.
+#[derive(Debug)]
+pub(super) struct Moved<'a> {
+    /// Of legs and bodies.
+    pub(super) motion: RobotMotion<'a>,
+    /// Of the platform.
+    pub(super) platform: Option<PlatformMotion<'a>>,
+    /// Which accelerations it has.
+    pub(super) accelerations: Accelerations,
+}

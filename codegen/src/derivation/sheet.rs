@@ -1,0 +1,95 @@
+//! The sheet on which a function is derived: the robot, the function's inputs as they are asked for, and
+//! the conditions that come up on the way.
+
+use super::elimination::Rows;
+use super::guard::{Guard, GuardKind};
+use super::motion_input::MotionInput;
+use super::robot::Robot;
+use super::selection::{JointsBy, Selection};
+use super::underivable::Underivable;
+use crate::cas::{Arena, Expr};
+use crate::mechanism::Mechanism;
+use overact_core::ActuatorGroup;
+
+/// A function being derived.
+pub(super) struct Sheet<'a, 's> {
+    pub(super) robot: Robot<'a>,
+    pub(super) selection: &'s Selection,
+    pub(super) from: MotionInput,
+    /// The independent velocities that follow from the actuators'.
+    pub(super) twist: Vec<Expr<'a>>,
+    pub(super) inputs: Vec<(&'static str, usize)>,
+    pub(super) guards: Vec<Guard<'a>>,
+}
+
+impl<'a, 's> Sheet<'a, 's> {
+    /// A sheet with the configuration's inputs.
+    ///
+    /// # Errors
+    /// See [`Robot::new`].
+    pub(super) fn new(
+        arena: &'a Arena,
+        mechanism: &'a Mechanism,
+        selection: &'s Selection,
+        from: MotionInput,
+    ) -> Result<Self, Underivable> {
+        let configuration = match (from, selection.joints) {
+            (MotionInput::Pose | MotionInput::Actuators, JointsBy::Rule) => MotionInput::Pose,
+            _ => MotionInput::Joints,
+        };
+        let robot = Robot::new(arena, mechanism, configuration, &selection.formulation)?;
+        Ok(Self {
+            inputs: configuration_inputs(&robot, configuration),
+            robot,
+            selection,
+            from,
+            twist: Vec::new(),
+            guards: Vec::new(),
+        })
+    }
+
+    /// A further input of the function.
+    pub(super) fn input(&mut self, name: &'static str, count: usize) -> Vec<Expr<'a>> {
+        self.inputs.push((name, count));
+        self.robot.inputs(name, count)
+    }
+
+    /// The twist or acceleration zero.
+    pub(super) fn zeros(&self) -> Vec<Expr<'a>> {
+        vec![self.robot.arena.zero(); self.robot.mechanism.dof()]
+    }
+
+    /// The determinants of the actuators' rows, which decide whether they determine the platform's motion.
+    pub(super) fn guard_platform(&mut self, values: &[Expr<'a>], actuators: ActuatorGroup) {
+        for value in values {
+            let (_, base) = value.factor_and_base();
+            if base.as_number().is_none() {
+                let kind = GuardKind::Platform {
+                    home: self.robot.at_home(base).abs(),
+                    actuators,
+                };
+                self.guards.push(Guard {
+                    value: base,
+                    kind,
+                    leg: String::new(),
+                });
+            }
+        }
+    }
+}
+
+/// The inputs from which sines and cosines of the configuration are had.
+fn configuration_inputs(robot: &Robot<'_>, from: MotionInput) -> Vec<(&'static str, usize)> {
+    let joints = ("joints", robot.mechanism.joints().len());
+    let pose = ("pose", robot.mechanism.pose_len());
+    match (&robot.platform, from) {
+        (None, _) => vec![joints],
+        (Some(_), MotionInput::Pose | MotionInput::Actuators) => vec![pose],
+        (Some(_), MotionInput::Joints) => vec![pose, joints],
+    }
+}
+
+/// A vector as a matrix of one column.
+pub(super) fn column(values: Vec<Expr<'_>>) -> Rows<'_> {
+    values.into_iter().map(|v| vec![v]).collect()
+}

@@ -1,0 +1,82 @@
+//! The whole of a description, evaluated.
+
+use super::experiment::Experiment;
+use super::model::{Leg, Platform, Spanned, actuators};
+use super::settings::{Data, Identification};
+use crate::cas::Number;
+use crate::effort::Effort;
+
+/// A robot as its author describes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Description {
+    /// Name; letters, digits and underscores.
+    pub name: Spanned<String>,
+    /// One sentence.
+    pub summary: String,
+    /// Where the numbers come from.
+    pub source: String,
+    /// How hard the generator searches for fewer operations; `None` leaves it to whoever generates.
+    pub effort: Option<Effort>,
+    /// Which columns stand for the base parameters; `None` leaves it to the kind of robot.
+    pub base_columns: Option<BaseColumns>,
+    /// Acceleration of gravity in the base frame, m/s².
+    pub gravity: [Number; 3],
+    /// The named constants that are no angles, in SI units.
+    pub constants: Vec<(String, f64)>,
+    /// The platform; `None` for a serial or tree robot.
+    pub platform: Option<Platform>,
+    /// The legs in the order of their placement.
+    pub legs: Vec<Leg>,
+    /// The virtual experiment.
+    pub experiment: Option<Experiment>,
+    /// How a measured log maps on the robot.
+    pub data: Option<Data>,
+    /// Settings of the identification.
+    pub identification: Identification,
+}
+
+/// Which independent columns stand for the base parameters, among choices of equal rank.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BaseColumns {
+    /// The platform's first, then each parameter of all legs together, eq. (43): the same ones in legs
+    /// that are alike.
+    Symmetric,
+    /// Those that take the fewest operations.
+    Cheapest,
+}
+
+impl BaseColumns {
+    /// All, with their names in descriptions.
+    pub const ALL: [(&'static str, Self); 2] =
+        [("symmetric", Self::Symmetric), ("cheapest", Self::Cheapest)];
+}
+
+impl Description {
+    /// The name as a Rust type: `dual_v` becomes `DualV`.
+    #[must_use]
+    pub fn type_name(&self) -> String {
+        type_name(&self.name.value)
+    }
+
+    /// All actuators, as leg and joint, leg by leg: the order of q and τ.
+    #[must_use]
+    pub fn actuators(&self) -> Vec<(usize, usize)> {
+        actuators(&self.legs)
+    }
+
+    /// Whether parameter and actuator names do without the leg's: one leg and no platform.
+    #[must_use]
+    pub fn is_single_leg(&self) -> bool {
+        self.platform.is_none() && self.legs.len() == 1
+    }
+}
+
+/// A name as a Rust type.
+pub(super) fn type_name(name: &str) -> String {
+    let word = |word: &str| {
+        let mut letters = word.chars();
+        let first = letters.next().map(|c| c.to_ascii_uppercase());
+        first.into_iter().chain(letters).collect::<String>()
+    };
+    name.split('_').map(word).collect()
+}
