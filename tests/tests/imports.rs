@@ -128,10 +128,7 @@ const CIRCLES: [(&str, &[&str]); 4] = [
         "identification/estimation",
         &["instruments", "total_least_squares"],
     ),
-    (
-        "identification/regression",
-        &["instruments", "observation"],
-    ),
+    ("identification/regression", &["instruments", "observation"]),
 ];
 
 fn crate_of(folder: &str) -> Vec<Module> {
