@@ -125,9 +125,10 @@ mod tests {
     use nalgebra::DMatrix;
 
     /// Row by row; without pivots, the digits of each are lost, or its first step divides by zero.
-    const NEEDS_PIVOTS: [[f64; 9]; 4] = [
+    const NEEDS_PIVOTS: [[f64; 9]; 5] = [
         [0.0, 2.0, 1.0, 1.0, 0.0, 3.0, 4.0, 1.0, 0.0],
         [1e-17, 1.0, 2.0, 1.0, 1.0, 1.0, 2.0, -1.0, 1.0],
+        [1e-17, 1.0, 2.0, 1.0, 0.0, 0.0, 2.0, -1.0, 1.0],
         [1.0, 2.0, 3.0, 1.0, 2.0, -1.0, 0.5, 3.0, 1.0],
         [3.0, 1.0, -2.0, 3.0, 1.0 + 1e-17, 4.0, 1.0, 5.0, 9.0],
     ];

@@ -50,3 +50,33 @@ fn peaks_of_a_quantised_torque_are_not_clipped() {
     let found = suspicions(5000, |time| (swing(time) / 0.05).round() * 0.05);
     assert_eq!(found, []);
 }
+
+#[test]
+fn of_several_rests_the_one_in_which_others_move_most_is_told() {
+    // The second actuator turns round at 0.7 s and hardly moves then.
+    let others = |time: f64| (TAU * 2.0 / 3.0 * (time - 0.7)).cos();
+    let held = |time: f64| match time {
+        0.6..0.8 => 0.6,
+        2.1..2.4 => 2.1,
+        _ => time,
+    };
+    let row = |sample: usize| {
+        let time = sample as f64 / FREQUENCY;
+        [(TAU / 3.0 * held(time)).sin(), others(time)]
+    };
+    let mut monitor = Monitor::new(2, FREQUENCY);
+    monitor.take(&Samples {
+        positions: (0..2000).flat_map(row).collect(),
+        torques: (0..2000)
+            .flat_map(|k| [swing(k as f64), swing(k as f64 + 0.3)])
+            .collect(),
+    });
+    let found = monitor.suspicions(&["first", "second"], true);
+    let [stuck] = &found[..] else {
+        panic!("one suspicion, not {found:?}");
+    };
+    assert_eq!(stuck.trouble, Trouble::Stuck);
+    assert_eq!(stuck.actuator.as_deref(), Some("first"));
+    let told = "from t = 2.100 s on for 0.300 s, while other actuators move";
+    assert!(stuck.message.contains(told), "{}", stuck.message);
+}
