@@ -8,6 +8,7 @@
 //! - `assumptions`: what no data can show;
 //! - `positions`: positions that contradict the loops, and what would make them close;
 //! - `torques`: torques that contradict the model, and which fault would explain them;
+//! - `suspects`: what the model may lack, held against what it leaves unexplained;
 //! - `explained`: what may have led to an error.
 
 pub(crate) mod assumptions;
@@ -16,6 +17,7 @@ pub(crate) mod checks;
 pub(crate) mod evidence;
 mod explained;
 mod positions;
+pub(crate) mod suspects;
 pub(crate) mod torques;
 pub(crate) mod verdict;
 

@@ -30,13 +30,14 @@ use prepare::{check_runs, prepared_warnings};
 
 use crate::{
     assessment::{
-        self, Context, Watched, assumptions::assumptions, check::Check, verdict::verdicts,
+        self, Context, Watched, assumptions::assumptions, check::Check, suspects::scores,
+        verdict::verdicts,
     },
     data::Dataset,
     error::Error,
     estimation::instruments::regressor::ErrorsInRegressor,
     regression::projection::{ModelKind, Projection},
-    result::Estimate,
+    result::{Estimate, Stage},
     settings::Settings,
     thresholds::Thresholds,
 };
@@ -75,6 +76,12 @@ pub fn identify(
         closure_residual: seen.closure_residual,
     });
     let watched: Vec<Watched> = identified.chain(held_out.watched).collect();
+    let base = estimates.iter().find(|(_, one)| one.stage == Stage::Base);
+    let scores = base.map(|(_, base)| {
+        let columns = (&prepared.columns, prepared.base.columns.as_slice());
+        scores(model, dataset.runs, columns, base, settings)
+    });
+    let scores = scores.transpose()?;
     let checks = assessment::checks(&Context {
         model,
         dataset,
@@ -84,6 +91,7 @@ pub fn identify(
         systems: &prepared.systems,
         watched: &watched,
         estimates: &estimates,
+        scores: scores.as_ref(),
         cross_validation: &cross_validation,
         errors_in_regressor: &errors_in_regressor,
     })?;

@@ -26,7 +26,7 @@ pub(super) fn conditions(
 }
 
 /// Rows of Γ² = J_a^-T Γ¹ from rows of Γ¹, line by line, and the first sample at which J_a is singular.
-pub(super) fn projected(
+pub(crate) fn projected(
     platform: &[Vec<f64>],
     choice: &mut KeptActuators,
     jacobians: &[f64],

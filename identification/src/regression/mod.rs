@@ -10,7 +10,7 @@
 //! - `system`: the system (39)-(41) of one projection;
 //! - `elimination`: columns that depend on others.
 
-mod chunk;
+pub(crate) mod chunk;
 pub(crate) mod columns;
 pub(crate) mod elimination;
 pub(crate) mod factor;

@@ -2,17 +2,23 @@
 //! [`CHECKS`] lists them.
 
 mod closure;
+mod delay;
+mod gains;
 mod held_out;
+pub(crate) mod level;
+mod missing_parameters;
 mod negative_parameters;
 mod partition;
+mod payload_labels;
 pub(super) mod raw_numbers;
 mod regressor_errors;
 mod relative_error;
+mod suspected;
 mod torque_faults;
 
 use overact::Model;
 
-use super::check::Check;
+use super::{check::Check, suspects::Scores};
 use crate::{
     data::{Dataset, Log},
     error::Error,
@@ -37,6 +43,8 @@ pub(crate) struct Context<'a> {
     pub(crate) watched: &'a [Watched],
     /// All estimates, each with the number of its projection.
     pub(crate) estimates: &'a [(usize, Estimate)],
+    /// What the residual of the first base estimate says of faults that the model lacks.
+    pub(crate) scores: Option<&'a Scores>,
     /// Every estimate on every run that was held out.
     pub(crate) cross_validation: &'a [CrossValidation],
     /// For each model, the estimates by instruments beside those by least squares.
@@ -76,10 +84,14 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 8] = [
+const CHECKS: [Function; 12] = [
     raw_numbers::check,
     closure::check,
     torque_faults::check,
+    delay::check,
+    gains::check,
+    payload_labels::check,
+    missing_parameters::check,
     negative_parameters::check,
     relative_error::check,
     regressor_errors::check,

@@ -1,0 +1,64 @@
+//! Whether torques and motion are of the same time.
+
+use super::{
+    Context,
+    level::{level, origin},
+    suspected::{harm, parabola, tested},
+};
+use crate::{
+    assessment::{
+        check::{About, Check, CheckKind},
+        suspects::{Group, Suspect},
+    },
+    error::Error,
+    significant,
+};
+
+/// Looks for one delay of all torques.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let Some(scores) = context.scores else {
+        return Ok(Vec::new());
+    };
+    let place = scores
+        .suspects
+        .iter()
+        .position(|one| *one == Suspect::Delay);
+    let found = tested(scores, place.into_iter().map(Group::suspect));
+    let level = level(1);
+    let checks = found.iter().map(|one| {
+        let accused = &one.accused;
+        let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);
+        let number = |value: f64| significant(value, 3);
+        let visible = 1e3 * accused.visible(level);
+        let check = Check::new(CheckKind::Delay, About::Model, "")
+            .measured(size.abs() / deviation, "standard deviations")
+            .against(accused.quantile(level), origin(1))
+            .shown_by(parabola(
+                accused,
+                "Residual for torques that are shifted in time",
+                ("delay of the torques", "ms", 1e3),
+            ));
+        if accused.probability >= level {
+            let words = format!(
+                "torques and motion are of the same time: {} ± {} ms; a delay of {} ms would have been seen",
+                number(size),
+                number(deviation),
+                number(visible)
+            );
+            return Check { words, ..check };
+        }
+        let harm = harm(context, scores, one);
+        let words = format!(
+            "the torques come {} ms {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder, and shift the columns against each other",
+            number(size.abs()),
+            if size > 0.0 { "behind" } else { "before" },
+            number(deviation),
+            harm.words()
+        );
+        Check { words, ..check }
+            .found()
+            .allowing(harm.grade)
+            .spoiling(harm.spoiled)
+    });
+    Ok(checks.collect())
+}

@@ -1,0 +1,110 @@
+//! Whether the residual depends on velocity, acceleration, position or time in a way that the model
+//! lacks.
+
+use super::{
+    Context,
+    level::{level, origin},
+    suspected::{Tested, guilty, harm, tested},
+};
+use crate::{
+    assessment::{
+        check::{About, Check, CheckKind},
+        evidence::{Axis, Curve, Evidence},
+        suspects::{Group, Shape, Suspect},
+    },
+    error::Error,
+    significant,
+};
+
+/// Tests all torques and forces that the model may lack.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let Some(scores) = context.scores else {
+        return Ok(Vec::new());
+    };
+    let mut suspects = Vec::new();
+    let mut found: Vec<Tested> = Vec::new();
+    for (place, suspect) in scores.suspects.iter().enumerate() {
+        if let Suspect::Torque(_, shape) | Suspect::Force(_, shape) = *suspect {
+            for one in tested(scores, std::iter::once(Group::suspect(place))) {
+                suspects.push((*suspect, shape));
+                found.push(one);
+            }
+        }
+    }
+    if found.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (tests, level) = (found.len(), level(found.len()));
+    let check = Check::new(CheckKind::MissingParameter, About::Model, "")
+        .shown_by(evidence(&suspects, &found, level));
+    let ratio = |one: &Tested| one.accused.size().abs() / one.accused.deviation;
+    let Some(worst) = guilty(&found, level) else {
+        let largest = found.iter().map(ratio).fold(0.0, f64::max);
+        let words = format!(
+            "what is left unexplained depends on no velocity, acceleration, position or time that the model lacks ({tests} columns tried)"
+        );
+        return Ok(vec![
+            Check { words, ..check }
+                .measured(largest, "standard deviations")
+                .against(found[0].accused.quantile(level), origin(tests)),
+        ]);
+    };
+    let info = context.model.info();
+    let place = found
+        .iter()
+        .position(|one| std::ptr::eq(one, worst))
+        .unwrap_or(0);
+    let (suspect, shape) = suspects[place];
+    let (what, name) = match suspect {
+        Suspect::Force(line, _) => ("force on", info.coordinates.get(line)),
+        Suspect::Torque(actuator, _) => ("torque of", info.actuators.get(actuator)),
+        Suspect::Delay | Suspect::Gain(_) => ("", None),
+    };
+    let name = name.copied().unwrap_or_default();
+    let harm = harm(context, scores, worst);
+    let words = format!(
+        "the {what} `{name}` depends on {} beyond the model, by {} ({:.1} standard deviations), which explains {} % of the residual's square; {}. Add what is missing to the description, or look for what else differs from it",
+        shape.words(),
+        significant(worst.accused.size(), 3),
+        ratio(worst),
+        significant(100.0 * worst.accused.explained, 2),
+        harm.words()
+    );
+    let check = Check { words, ..check }
+        .measured(ratio(worst), "standard deviations")
+        .against(worst.accused.quantile(level), origin(tests))
+        .found()
+        .allowing(harm.grade)
+        .spoiling(harm.spoiled);
+    Ok(vec![match suspect {
+        Suspect::Torque(..) => check.of_actuator(name),
+        _ => check,
+    }])
+}
+
+/// Size by deviation of all that was tried, shape by shape.
+fn evidence(suspects: &[(Suspect, Shape)], found: &[Tested], level: f64) -> Evidence {
+    let mut points: Vec<(Shape, Curve)> = Vec::new();
+    for ((suspect, shape), one) in suspects.iter().zip(found) {
+        let (Suspect::Torque(number, _) | Suspect::Force(number, _)) = *suspect else {
+            continue;
+        };
+        let place = points.iter().position(|(own, _)| own == shape);
+        let place = place.unwrap_or_else(|| {
+            points.push((*shape, Curve::new(shape.words(), &[], &[])));
+            points.len() - 1
+        });
+        let curve = &mut points[place].1;
+        curve.x.push((number + 1) as f64);
+        curve.y.push(one.accused.size() / one.accused.deviation);
+    }
+    let limit = found.first().map_or(0.0, |one| one.accused.quantile(level));
+    Evidence {
+        title: String::from("What the model may lack"),
+        x: Axis::new("number of the actuator or coordinate", ""),
+        y: Axis::new("size by standard deviation", ""),
+        points: points.into_iter().map(|(_, curve)| curve).collect(),
+        limits: vec![-limit, limit],
+        ..Evidence::default()
+    }
+}

@@ -1,0 +1,73 @@
+//! Whether each run carries what its label says.
+
+use super::{
+    Context,
+    level::{level, origin},
+    suspected::{Tested, harm, tested},
+};
+use crate::{
+    assessment::{
+        check::{About, Check, CheckKind},
+        suspects::{Group, Scores},
+    },
+    data::Log,
+    error::Error,
+    significant,
+};
+
+/// Tests the payload's parameters in each run on its own.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let Some(scores) = context.scores else {
+        return Ok(Vec::new());
+    };
+    let runs = context.dataset.runs;
+    if scores.payload.is_empty() || runs.len() < 2 {
+        return Ok(Vec::new());
+    }
+    let level = level(runs.len());
+    let mut checks = Vec::new();
+    for (number, log) in runs.iter().enumerate() {
+        let group = Group::payload(scores, number);
+        for one in tested(scores, std::iter::once(group)) {
+            checks.push(of_run(context, scores, (log, runs.len()), &one, level));
+        }
+    }
+    Ok(checks)
+}
+
+fn of_run(
+    context: &Context<'_>,
+    scores: &Scores,
+    (log, runs): (&Log, usize),
+    one: &Tested,
+    level: f64,
+) -> Check {
+    let accused = &one.accused;
+    let check = Check::new(CheckKind::PayloadLabel, About::Model, "")
+        .in_run(log.name())
+        .measured(accused.probability, "probability")
+        .against(level, origin(runs));
+    let label = if log.payload() { "with" } else { "without" };
+    if accused.probability >= level {
+        let words = format!("the run is one {label} the payload, as its label says");
+        return Check { words, ..check };
+    }
+    let harm = harm(context, scores, one);
+    let differences: Vec<String> = accused
+        .sizes
+        .iter()
+        .filter_map(|(place, size)| {
+            let name = scores.payload.get(*place)?;
+            Some(format!("{name} {}", significant(*size, 3)))
+        })
+        .collect();
+    let words = format!(
+        "the run does not carry what the other runs {label} the payload carry (differences of the payload in SI units: {}); {}. Check the label, and what was mounted",
+        differences.join(", "),
+        harm.words()
+    );
+    Check { words, ..check }
+        .found()
+        .allowing(harm.grade)
+        .spoiling(harm.spoiled)
+}

@@ -1,0 +1,166 @@
+//! What follows from a suspect: whether chance explains it, and which parameters it spoils.
+
+use super::Context;
+use crate::{
+    assessment::{
+        check::Grade,
+        evidence::{Axis, Curve, Evidence},
+        suspects::{Accused, Group, Scores},
+    },
+    result::{Estimate, ParameterEstimate, Stage},
+};
+
+/// A fault that moves no parameter by so many of its deviations does no harm.
+const HARMFUL: f64 = 3.0;
+
+/// Where a fault does harm, parameters are spoiled that it moves by more than so many.
+const SPOILING: f64 = 1.0;
+
+/// By how much the half width of a 95 % interval exceeds a deviation.
+const HALF_WIDTH: f64 = 1.96;
+
+/// A suspect that was tested.
+pub(super) struct Tested {
+    pub(super) group: Group,
+    pub(super) accused: Accused,
+}
+
+/// What a suspect does to the parameters.
+pub(super) struct Harm {
+    /// The largest move of a parameter by its deviation, and the parameter.
+    pub(super) worst: f64,
+    pub(super) parameter: String,
+    /// Parameters that are not to be used.
+    pub(super) spoiled: Vec<String>,
+    pub(super) grade: Grade,
+}
+
+/// Tests groups beside the base parameters; those that the data can't tell are left out.
+pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Vec<Tested> {
+    groups
+        .filter_map(|group| {
+            let accused = scores.test(&group, scores.selected())?;
+            Some(Tested { group, accused })
+        })
+        .collect()
+}
+
+/// The one that explains most of the residual, of those that chance explains less often than `level`.
+pub(super) fn guilty(all: &[Tested], level: f64) -> Option<&Tested> {
+    let beyond = all.iter().filter(|one| one.accused.probability < level);
+    beyond.max_by(|a, b| a.accused.explained.total_cmp(&b.accused.explained))
+}
+
+/// What a suspect does to the base and the recommended parameters of the first model.
+pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> Harm {
+    let Some(base) = context.estimates_of(Stage::Base).next() else {
+        return Harm::none();
+    };
+    let deviation = |column: usize| {
+        let own = base.parameters.iter().find(|one| one.column == column);
+        let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
+        half.map_or(f64::INFINITY, |half| half / HALF_WIDTH)
+    };
+    let mut recommended = context.estimates_of(Stage::Recommended);
+    let smaller = recommended
+        .find(|one| one.model == base.model)
+        .and_then(|one| {
+            let beside = scores.test(&tested.group, &one.columns())?;
+            Some(beside.moves)
+        });
+    let moves = tested
+        .accused
+        .moves
+        .iter()
+        .copied()
+        .chain(smaller.into_iter().flatten());
+    let mut all: Vec<(f64, usize)> = moves
+        .map(|(column, by)| (by.abs() / deviation(column), column))
+        .collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let Some(&(worst, column)) = all.first() else {
+        return Harm::none();
+    };
+    let name = |column: usize| name(base, column);
+    let mut harm = Harm {
+        worst,
+        parameter: name(column),
+        ..Harm::none()
+    };
+    if worst <= HARMFUL {
+        return harm;
+    }
+    for (by, column) in all {
+        let name = name(column);
+        if by > SPOILING && !harm.spoiled.contains(&name) {
+            harm.spoiled.push(name);
+        }
+    }
+    harm.grade = if 2 * harm.spoiled.len() > base.parameters.len() {
+        Grade::DoNotUse
+    } else {
+        Grade::UseListed
+    };
+    harm
+}
+
+impl Harm {
+    /// That of nothing.
+    fn none() -> Self {
+        Self {
+            worst: 0.0,
+            parameter: String::new(),
+            spoiled: Vec::new(),
+            grade: Grade::Use,
+        }
+    }
+
+    /// What it means, as the end of a sentence.
+    pub(super) fn words(&self) -> String {
+        if self.grade == Grade::Use {
+            return format!(
+                "it moves no parameter by more than {:.1} of its standard deviations",
+                self.worst
+            );
+        }
+        format!(
+            "it moves `{}` by {:.0} of its standard deviations",
+            self.parameter, self.worst
+        )
+    }
+}
+
+fn name(estimate: &Estimate, column: usize) -> String {
+    let own = estimate.parameters.iter().find(|one| one.column == column);
+    own.map_or_else(String::new, |one: &ParameterEstimate| one.name.clone())
+}
+
+/// How the residual depends on the size of a suspect: a parabola with its lowest point at the size that
+/// fits best.
+pub(super) fn parabola(accused: &Accused, title: &str, axis: (&str, &str, f64)) -> Evidence {
+    const POINTS: usize = 41;
+    let (label, unit, scale) = axis;
+    let (size, reach) = (
+        accused.size(),
+        2.0 * accused.size().abs() + 6.0 * accused.deviation,
+    );
+    let x: Vec<f64> = (0..POINTS)
+        .map(|i| reach * (2.0 * i as f64 / (POINTS - 1) as f64 - 1.0))
+        .collect();
+    let remaining = |at: f64| {
+        let off = if size == 0.0 { 0.0 } else { 1.0 - at / size };
+        100.0
+            * (1.0 - accused.explained * (1.0 - off * off))
+                .max(0.0)
+                .sqrt()
+    };
+    let y: Vec<f64> = x.iter().map(|at| remaining(*at)).collect();
+    let x: Vec<f64> = x.iter().map(|at| scale * at).collect();
+    Evidence {
+        title: title.to_owned(),
+        x: Axis::new(label, unit),
+        y: Axis::new("residual that is left", "%"),
+        lines: vec![Curve::new("", &x, &y)],
+        ..Evidence::default()
+    }
+}

@@ -1,0 +1,28 @@
+//! What the model may lack, held against what it leaves unexplained.
+//!
+//! A suspect is a fault with one unknown size δ: the torques come by δ seconds late, the gain of a drive
+//! is wrong by a part δ, a joint has a spring of stiffness δ. To first order it adds a column z δ to
+//! Y = W χ. Whether δ is zero is a score test: z is freed of what the columns W explain,
+//! z⊥ = z - W B with B = (Wᵀ W)^-1 Wᵀ z, and held against the residual ρ,
+//!
+//! ```text
+//! δ = z⊥ᵀ ρ/(z⊥ᵀ z⊥),   χ is off by B δ.
+//! ```
+//!
+//! The second equation says what the suspect does to the parameters: a fault that is there for sure and
+//! moves none of them is a remark, one that moves them by several of their deviations spoils them.
+//!
+//! - `columns`: the suspects and their columns;
+//! - `scores`: one pass over the runs;
+//! - `test`: sizes, deviations, probabilities.
+//!
+//! Columns that are made of torques use torques that are freed of the residual,
+//! τ - J (Jᵀ J)^-1 ρ: measured ones hold the noise of the residual itself, which would accuse every drive.
+
+mod columns;
+mod scores;
+mod test;
+
+pub(crate) use columns::{Shape, Suspect};
+pub(crate) use scores::{Scores, scores};
+pub(crate) use test::{Accused, Group};
