@@ -9,12 +9,17 @@
 //! of a coverage comes from the spread between draws ([`tally`]). [`table`] writes it down.
 //!
 //! `cargo run --release -p overact-trust -- --draws 30 robots/dualv.toml` prints the table.
+//!
+//! [`traps`] are data with one known fault each; `cargo run --release -p overact-trust --bin traps --
+//! robots/dualv.toml` prints what identifications say of them, with `--clean 100` how often they accuse
+//! faultless data.
 
 pub mod draw;
 pub mod measure;
 pub mod subject;
 pub mod table;
 pub mod tally;
+pub mod traps;
 
 pub use draw::Noise;
 pub use measure::{Counted, measure};

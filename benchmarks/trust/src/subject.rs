@@ -5,7 +5,7 @@ use overact::{Info, Model};
 use overact_identification::{Projection, Settings};
 use overact_robot::Robot;
 use overact_simulation::Experiment;
-use std::{collections::BTreeMap, ffi::OsStr, path::Path};
+use std::{collections::BTreeMap, ffi::OsStr, fs, path::Path};
 
 /// A robot with its virtual experiment and the settings of its identification.
 pub struct Subject {
@@ -26,8 +26,27 @@ impl Subject {
     /// # Errors
     /// A description that is wrong or has no virtual experiment.
     pub fn load(path: &Path) -> Result<Self, Failure> {
-        let said = |error: overact_robot::Error| error.render(false);
         let robot = Robot::from_toml(path).map_err(said)?;
+        Self::new(robot, compiled(path))
+    }
+
+    /// Reads the description of a robot with replacements in its text.
+    ///
+    /// # Errors
+    /// A replacement that replaces nothing, a description that is wrong or has no virtual experiment.
+    pub fn altered(path: &Path, replacements: &[(String, String)]) -> Result<Self, Failure> {
+        let mut text = fs::read_to_string(path)?;
+        for (from, to) in replacements {
+            if !text.contains(from) {
+                return Err(format!("{}: no `{from}`", path.display()).into());
+            }
+            text = text.replacen(from, to, 1);
+        }
+        let robot = Robot::from_text(&path.to_string_lossy(), &text).map_err(said)?;
+        Self::new(robot, None)
+    }
+
+    fn new(robot: Robot, compiled: Option<&'static dyn Model>) -> Result<Self, Failure> {
         let mut experiment = robot.experiment().map_err(said)?.plan().clone();
         let held = robot.held_out();
         experiment.runs.retain(|run| !held.contains(&run.name));
@@ -35,7 +54,7 @@ impl Subject {
             settings: robot.settings(experiment.sampling_hz),
             truth: robot.true_values().unwrap_or_default(),
             experiment,
-            compiled: compiled(path),
+            compiled,
             robot,
         })
     }
@@ -76,6 +95,11 @@ impl Subject {
             vec![Projection::Joints]
         }
     }
+}
+
+/// An error as the command line tells it.
+fn said(error: overact_robot::Error) -> String {
+    error.render(false)
 }
 
 /// The compiled robot of a file of the library.

@@ -1,0 +1,140 @@
+//! Faults made of faultless records.
+
+use overact_simulation::Record;
+
+/// Shifts the torques so that they come late by so many seconds; early for a negative delay.
+pub(super) fn late(record: &mut Record, seconds: f64) {
+    let n = record.actuators.len();
+    let shift = (seconds.abs() * record.sampling_hz).round() as usize;
+    let (moved, still) = if seconds > 0.0 {
+        (&mut record.torques, &mut record.positions)
+    } else {
+        (&mut record.positions, &mut record.torques)
+    };
+    // The first samples of the one have no partner among the other's.
+    moved.truncate(moved.len() - shift * n);
+    still.drain(..shift * n);
+    record.time.truncate(record.time.len() - shift);
+}
+
+/// Passes the torques through a first-order lag.
+pub(super) fn lag(record: &mut Record, seconds: f64) {
+    let n = record.actuators.len();
+    let part = 1.0 - (-1.0 / (seconds * record.sampling_hz)).exp();
+    let mut state = record.torques[..n].to_vec();
+    for row in record.torques.chunks_exact_mut(n) {
+        for (state, torque) in state.iter_mut().zip(row) {
+            *state += part * (*torque - *state);
+            *torque = *state;
+        }
+    }
+}
+
+/// Drops a part of the samples, evenly scattered, as if the rest had been sampled uniformly.
+pub(super) fn drop_samples(record: &mut Record, part: f64) {
+    let n = record.actuators.len();
+    let kept = |sample: usize| {
+        // Low-discrepancy: the golden ratio's multiples.
+        let place = (sample as f64 * 0.618_033_988_749_895).fract();
+        place >= part
+    };
+    for values in [&mut record.positions, &mut record.torques] {
+        let rows = values.chunks_exact(n).enumerate();
+        let rows = rows.filter(|(sample, _)| kept(*sample));
+        *values = rows.flat_map(|(_, row)| row.iter().copied()).collect();
+    }
+    let samples = record.positions.len() / n;
+    record.time.truncate(samples);
+}
+
+/// Changes the torque of an actuator.
+pub(super) fn torque(record: &mut Record, actuator: usize, change: impl Fn(f64) -> f64) {
+    let n = record.actuators.len();
+    let own = record.torques[actuator..].iter_mut().step_by(n);
+    own.for_each(|torque| *torque = change(*torque));
+}
+
+/// Changes the position of an actuator.
+pub(super) fn position(record: &mut Record, actuator: usize, change: impl Fn(f64) -> f64) {
+    let n = record.actuators.len();
+    let own = record.positions[actuator..].iter_mut().step_by(n);
+    own.for_each(|q| *q = change(*q));
+}
+
+/// Cuts the torque of an actuator at a part of its largest magnitude.
+pub(super) fn saturate(record: &mut Record, actuator: usize, part: f64) {
+    let limit = part * peak(record, actuator);
+    torque(record, actuator, |torque| torque.clamp(-limit, limit));
+}
+
+fn peak(record: &Record, actuator: usize) -> f64 {
+    let n = record.actuators.len();
+    let own = record.torques[actuator..].iter().step_by(n);
+    own.fold(0.0, |peak, torque| peak.max(torque.abs()))
+}
+
+/// An encoder behind play: it moves only when the motor has crossed it.
+pub(super) fn backlash(record: &mut Record, actuator: usize, width: f64) {
+    let n = record.actuators.len();
+    let mut seen = record.positions[actuator];
+    for q in record.positions[actuator..].iter_mut().step_by(n) {
+        seen = seen.clamp(*q - 0.5 * width, *q + 0.5 * width);
+        *q = seen;
+    }
+}
+
+/// Holds the first positions and torques but for noise of their last digits.
+pub(super) fn stand_still(record: &mut Record) {
+    let n = record.actuators.len();
+    let step = 1e-5;
+    for values in [&mut record.positions, &mut record.torques] {
+        let held = values[..n].to_vec();
+        for (k, row) in values.chunks_exact_mut(n).enumerate() {
+            for (i, (value, held)) in row.iter_mut().zip(&held).enumerate() {
+                let noise = (7.3 * (k * (i + 1)) as f64).sin();
+                *value = held + if noise > 0.5 { step } else { 0.0 };
+            }
+        }
+    }
+}
+
+/// The motion of an actuator at a sample.
+pub(super) struct Moment {
+    pub(super) position: f64,
+    pub(super) velocity: f64,
+    pub(super) time: f64,
+}
+
+/// Adds a torque that depends on the motion, of so large a part of the actuator's root mean square
+/// torque.
+pub(super) fn add(record: &mut Record, actuator: usize, shape: impl Fn(&Moment) -> f64, part: f64) {
+    let n = record.actuators.len();
+    let positions: Vec<f64> = record.positions[actuator..]
+        .iter()
+        .step_by(n)
+        .copied()
+        .collect();
+    // Over a few milliseconds, so that the resolution of the encoder does not count.
+    let reach = ((2e-3 * record.sampling_hz) as usize).max(1);
+    let last = positions.len() - 1;
+    let added: Vec<f64> = (0..positions.len())
+        .map(|k| {
+            let (before, behind) = (k.saturating_sub(reach), (k + reach).min(last));
+            let span = (behind - before) as f64 / record.sampling_hz;
+            shape(&Moment {
+                position: positions[k],
+                velocity: (positions[behind] - positions[before]) / span,
+                time: k as f64 / record.sampling_hz,
+            })
+        })
+        .collect();
+    let size = |values: &mut dyn Iterator<Item = f64>| -> f64 {
+        let (sum, count) = values.fold((0.0, 0), |(sum, count), x| (sum + x * x, count + 1));
+        (sum / f64::from(count)).sqrt()
+    };
+    let whole = size(&mut record.torques[actuator..].iter().step_by(n).copied());
+    let scale = part * whole / size(&mut added.iter().copied());
+    let own = record.torques[actuator..].iter_mut().step_by(n);
+    own.zip(added)
+        .for_each(|(torque, added)| *torque += scale * added);
+}

@@ -1,0 +1,249 @@
+//! The faults.
+
+use super::alter;
+use overact_simulation::Record;
+
+/// A fault.
+pub struct Trap {
+    /// What is wrong, in words.
+    pub name: String,
+    /// Replacements in the description of the robot that makes the records; none where only records are
+    /// altered.
+    pub plant: Vec<(String, String)>,
+    /// What is done to the records.
+    pub alter: Box<dyn Fn(&mut Vec<Record>) + Sync>,
+    /// Why no data can show it, where none can.
+    pub assumed: Option<&'static str>,
+}
+
+impl Trap {
+    fn new(name: &str, alter: impl Fn(&mut Vec<Record>) + Sync + 'static) -> Self {
+        Self {
+            name: name.to_owned(),
+            plant: Vec::new(),
+            alter: Box::new(alter),
+            assumed: None,
+        }
+    }
+
+    /// No fault.
+    #[must_use]
+    pub fn none() -> Self {
+        Self::new("none", |_| ())
+    }
+
+    /// A fault of every record by itself.
+    fn each(name: &str, alter: impl Fn(&mut Record) + Sync + 'static) -> Self {
+        Self::new(name, move |records| records.iter_mut().for_each(&alter))
+    }
+
+    /// A robot that is not the one of the description.
+    fn plant(name: &str, from: &str, to: &str) -> Self {
+        Self {
+            plant: vec![(from.to_owned(), to.to_owned())],
+            ..Self::new(name, |_| ())
+        }
+    }
+
+    fn assumed(self, why: &'static str) -> Self {
+        Self {
+            assumed: Some(why),
+            ..self
+        }
+    }
+}
+
+/// The traps of a robot.
+#[must_use]
+pub fn traps(robot: &str) -> Vec<Trap> {
+    let mut all = timing();
+    all.extend(drives());
+    all.extend(encoders());
+    all.extend(missing());
+    all.extend(labels(robot));
+    all.extend(geometry(robot));
+    all
+}
+
+fn timing() -> Vec<Trap> {
+    vec![
+        Trap::each("torques 1 ms late", |run| alter::late(run, 1e-3)),
+        Trap::each("torques 5 ms late", |run| alter::late(run, 5e-3)),
+        Trap::each("torques behind a first-order lag of 5 ms", |run| {
+            alter::lag(run, 5e-3);
+        }),
+        Trap::each("positions 2 ms late", |run| alter::late(run, -2e-3)),
+        Trap::each("3 % of the samples dropped and restamped", |run| {
+            alter::drop_samples(run, 0.03);
+        }),
+        Trap::each("sampling frequency 5 % too high", |run| {
+            run.sampling_hz *= 1.05;
+        })
+        .assumed("a clock that is wrong by one factor"),
+    ]
+}
+
+fn drives() -> Vec<Trap> {
+    vec![
+        Trap::each("gain of drive 1 10 % low", |run| {
+            alter::torque(run, 0, |torque| 0.9 * torque);
+        }),
+        Trap::each("gain of drive 2 3 % low", |run| {
+            alter::torque(run, 1, |torque| 0.97 * torque);
+        }),
+        Trap::each("all gains 5 % high", |run| {
+            run.torques.iter_mut().for_each(|torque| *torque *= 1.05);
+        })
+        .assumed("gains that are wrong by one factor"),
+        Trap::each("torques in mN m", |run| {
+            run.torques.iter_mut().for_each(|torque| *torque *= 1e3);
+        })
+        .assumed("gains that are wrong by one factor"),
+        Trap::each("torque of drive 2 reversed", |run| {
+            alter::torque(run, 1, |torque| -torque);
+        }),
+        Trap::each("torques of drives 1 and 2 swapped", |run| {
+            let n = run.actuators.len();
+            run.torques
+                .chunks_exact_mut(n)
+                .for_each(|row| row.swap(0, 1));
+        }),
+        Trap::each("torque of drive 1 saturated at 60 % of its peak", |run| {
+            alter::saturate(run, 0, 0.6);
+        }),
+        Trap::each("torque of drive 1 all zero", |run| {
+            alter::torque(run, 0, |_| 0.0);
+        }),
+        Trap::each("all torques zero", |run| run.torques.fill(0.0)),
+        Trap::each("torque of drive 2 in the column of drive 1, too", |run| {
+            let n = run.actuators.len();
+            run.torques
+                .chunks_exact_mut(n)
+                .for_each(|row| row[0] = row[1]);
+        }),
+    ]
+}
+
+fn encoders() -> Vec<Trap> {
+    let degree = 1_f64.to_radians();
+    vec![
+        Trap::each("encoder 1 off by 0.2 deg", move |run| {
+            alter::position(run, 0, |q| q + 0.2 * degree);
+        }),
+        Trap::each("encoder 1 off by 1 deg", move |run| {
+            alter::position(run, 0, |q| q + degree);
+        }),
+        Trap::each("encoders of 12 bits", |run| {
+            let step = std::f64::consts::TAU / 4096.0;
+            run.positions
+                .iter_mut()
+                .for_each(|q| *q = (*q / step).round() * step);
+        }),
+        Trap::each("backlash of 0.2 deg at encoder 1", move |run| {
+            alter::backlash(run, 0, 0.2 * degree);
+        }),
+        Trap::each("positions in degrees", move |run| {
+            run.positions.iter_mut().for_each(|q| *q /= degree);
+        }),
+        Trap::each("positions of the motors, ratio 50", |run| {
+            run.positions.iter_mut().for_each(|q| *q *= 50.0);
+        }),
+        Trap::each("encoder 1 counts backwards", |run| {
+            alter::position(run, 0, |q| -q)
+        }),
+        Trap::each("positions of actuators 1 and 2 swapped", |run| {
+            let n = run.actuators.len();
+            run.positions
+                .chunks_exact_mut(n)
+                .for_each(|row| row.swap(0, 1));
+        }),
+    ]
+}
+
+fn missing() -> Vec<Trap> {
+    vec![
+        Trap::each("a spring at actuator 1", |run| {
+            alter::add(run, 0, |at| at.position, 0.2);
+        }),
+        Trap::each("friction of actuator 1 grows with time", |run| {
+            alter::add(run, 0, |at| at.velocity.signum() * at.time, 0.1);
+        }),
+        Trap::each("friction of actuator 1 differs by direction", |run| {
+            alter::add(run, 0, |at| f64::from(u8::from(at.velocity > 0.0)), 0.1);
+        }),
+        Trap::each(
+            "drag with the square of the velocity at actuator 2",
+            |run| {
+                alter::add(run, 1, |at| at.velocity * at.velocity.abs(), 0.1);
+            },
+        ),
+        Trap::each("cogging at actuator 1", |run| {
+            alter::add(run, 0, |at| (24.0 * at.position).sin(), 0.1);
+        }),
+        Trap::each("torque 1 drifts with time", |run| {
+            alter::add(run, 0, |at| at.time, 0.1);
+        }),
+    ]
+}
+
+fn labels(robot: &str) -> Vec<Trap> {
+    let mut all = vec![
+        Trap::each("every run at a standstill", |run| alter::stand_still(run)),
+        Trap::new("one run at a standstill", |runs| {
+            if runs.len() > 1 {
+                alter::stand_still(&mut runs[0]);
+            }
+        }),
+    ];
+    if robot != "Rx90" {
+        all.push(Trap::each("every run labelled unloaded", |run| {
+            run.payload = false
+        }));
+        all.push(Trap::new("one loaded run labelled unloaded", |runs| {
+            if let Some(run) = runs.iter_mut().find(|run| run.payload) {
+                run.payload = false;
+            }
+        }));
+        all.push(Trap::new("one unloaded run labelled loaded", |runs| {
+            if let Some(run) = runs.iter_mut().find(|run| !run.payload) {
+                run.payload = true;
+            }
+        }));
+    }
+    all
+}
+
+fn geometry(robot: &str) -> Vec<Trap> {
+    match robot {
+        "DualV" => vec![
+            Trap::plant("links 1 % long", "l_bc = \"0.28 m\"", "l_bc = \"0.2828 m\""),
+            Trap::plant(
+                "attachment of leg 1 2 mm off",
+                "at = \"r_p\"",
+                "at = \"112 mm\"",
+            ),
+        ],
+        "Delta" => vec![
+            Trap::plant("rods 1 % long", "rod = \"0.56 m\"", "rod = \"0.5656 m\""),
+            Trap::plant(
+                "platform 2 mm large",
+                "r_p = \"0.05 m\"",
+                "r_p = \"0.052 m\"",
+            ),
+            Trap::plant(
+                "gravity tilted by 5 deg",
+                "gravity = [0, 0, \"-9.81 m/s^2\"]",
+                "gravity = [\"0.855 m/s^2\", 0, \"-9.773 m/s^2\"]",
+            ),
+        ],
+        "Rx90" => vec![
+            Trap::plant("upper arm 1 % long", "d3 = \"0.45 m\"", "d3 = \"0.4545 m\""),
+            Trap::plant(
+                "gravity tilted by 5 deg",
+                "gravity = [0, 0, \"-9.81 m/s^2\"]",
+                "gravity = [\"0.855 m/s^2\", 0, \"-9.773 m/s^2\"]",
+            ),
+        ],
+        _ => Vec::new(),
+    }
+}

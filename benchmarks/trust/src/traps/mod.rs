@@ -1,0 +1,12 @@
+//! Traps: data with one known fault each, and what an identification says of them.
+//!
+//! - `list`: the faults;
+//! - `alter`: how they are made of faultless records;
+//! - `outcome`: how wrong the parameters get, and what the verdict says.
+
+mod alter;
+mod list;
+mod outcome;
+
+pub use list::{Trap, traps};
+pub use outcome::{Outcome, clean, outcome, prepared};

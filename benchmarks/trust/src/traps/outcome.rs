@@ -1,0 +1,158 @@
+//! How wrong the parameters of an identification get, and what its verdict says.
+
+use crate::{Failure, Subject};
+use overact_identification::{
+    Check, Dataset, Estimate, Grade, Identification, Log, Stage, identify,
+};
+use overact_simulation::{Experiment, Record, simulate};
+use serde::Serialize;
+
+/// By how much the half width of a 95 % interval exceeds a deviation.
+const HALF_WIDTH: f64 = 1.96;
+
+/// What an identification of data with a known fault says.
+#[derive(Debug, Clone, Serialize)]
+pub struct Outcome {
+    /// The robot.
+    pub robot: String,
+    /// The fault.
+    pub trap: String,
+    /// The largest error of a recommended parameter of the first model by its deviation, and the
+    /// parameter; none where there is no estimate.
+    pub worst: Option<(f64, String)>,
+    /// The largest error of those parameters that the verdict allows to use.
+    pub worst_listed: Option<(f64, String)>,
+    /// The grade; none where the data are refused with an error.
+    pub grade: Option<Grade>,
+    /// The checks that found something.
+    pub found: Vec<String>,
+    /// The first reason, or the error.
+    pub words: String,
+}
+
+/// The records of a subject's experiment, which makes all traps.
+///
+/// # Errors
+/// A run that can't be made.
+pub fn prepared(subject: &Subject, experiment: &Experiment) -> Result<Vec<Record>, Failure> {
+    Ok(simulate(subject.model(), experiment, &|_, _| ()).map_err(|error| error.to_string())?)
+}
+
+/// What the identification of records says; `name` is what is wrong with them.
+#[must_use]
+pub fn outcome(subject: &Subject, name: &str, records: Vec<Record>) -> Outcome {
+    let result = identified(subject, records);
+    let start = Outcome {
+        robot: subject.info().name.to_owned(),
+        trap: name.to_owned(),
+        worst: None,
+        worst_listed: None,
+        grade: None,
+        found: Vec::new(),
+        words: String::new(),
+    };
+    match result {
+        Ok(result) => told(&result, start),
+        Err(error) => Outcome {
+            words: error.to_string(),
+            ..start
+        },
+    }
+}
+
+/// The checks of an identification of faultless records that found something.
+///
+/// # Errors
+/// Records that can't be identified from.
+pub fn clean(subject: &Subject, records: Vec<Record>) -> Result<(Grade, Vec<Check>), Failure> {
+    let result = identified(subject, records)?;
+    let grade = result.grade();
+    Ok((
+        grade,
+        result
+            .checks
+            .into_iter()
+            .filter(|check| !check.passed)
+            .collect(),
+    ))
+}
+
+fn identified(subject: &Subject, records: Vec<Record>) -> Result<Identification, Failure> {
+    let log = |record: Record| {
+        let n = record.actuators.len();
+        Log::new(
+            record.name,
+            record.sampling_hz,
+            n,
+            record.positions,
+            record.torques,
+            record.payload,
+        )
+    };
+    let runs = records
+        .into_iter()
+        .map(log)
+        .collect::<Result<Vec<Log>, _>>()?;
+    let dataset = Dataset {
+        runs: &runs,
+        validation: &[],
+        true_values: Some(&subject.truth),
+    };
+    Ok(identify(
+        subject.model(),
+        &dataset,
+        &subject.settings,
+        &|_| {},
+    )?)
+}
+
+fn told(result: &Identification, start: Outcome) -> Outcome {
+    let verdict = result.verdicts.first();
+    let listed = |name: &str| {
+        verdict.is_none_or(|verdict| {
+            verdict.grade == Grade::Use
+                || verdict.grade == Grade::UseListed && verdict.listed.iter().any(|one| one == name)
+        })
+    };
+    let recommended = result
+        .estimates
+        .iter()
+        .find(|one| one.stage == Stage::Recommended);
+    let errors = recommended.map(errors).unwrap_or_default();
+    let worst = |of: &dyn Fn(&str) -> bool| {
+        let own = errors.iter().filter(|(_, name)| of(name));
+        own.max_by(|a, b| a.0.total_cmp(&b.0)).cloned()
+    };
+    let found = result.checks.iter().filter(|check| !check.passed);
+    let mut kinds: Vec<String> = found.map(|check| check.kind.name().to_owned()).collect();
+    kinds.dedup();
+    Outcome {
+        worst: worst(&|_| true),
+        worst_listed: worst(&listed),
+        grade: Some(result.grade()),
+        found: kinds,
+        words: match verdict {
+            Some(verdict) if verdict.grade != Grade::Use => verdict.reasons.first().cloned(),
+            _ => result
+                .checks
+                .iter()
+                .find(|check| !check.passed)
+                .map(Check::located),
+        }
+        .unwrap_or_default(),
+        ..start
+    }
+}
+
+/// Errors of the parameters by their deviations.
+fn errors(estimate: &Estimate) -> Vec<(f64, String)> {
+    let parameters = estimate.parameters.iter();
+    let error = parameters.filter_map(|one| {
+        let half = 0.5 * (one.interval_95[1] - one.interval_95[0]);
+        Some((
+            (one.value - one.true_value?).abs() * HALF_WIDTH / half,
+            one.name.clone(),
+        ))
+    });
+    error.collect()
+}
