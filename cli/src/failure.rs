@@ -13,19 +13,22 @@ pub enum Failure {
     Usage(String),
     /// Something that the arguments name is wrong.
     Input(Error),
+    /// The result is there, but is not to be used, and that was asked to count as a failure.
+    Refused(String),
     /// Something is wrong with this program.
     Internal(InternalError),
 }
 
 impl Failure {
-    /// The exit code: 1 for bad input, 2 for arguments that do not go together, 4 for an error of this
-    /// program.
+    /// The exit code: 1 for bad input, 2 for arguments that do not go together, 3 for a result
+    /// that is not to be used, 4 for an error of this program.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(error) if error.internal().is_some() => 4,
             Self::Input(_) => 1,
             Self::Usage(_) => 2,
+            Self::Refused(_) => 3,
             Self::Internal(_) => 4,
         }
     }
@@ -34,7 +37,7 @@ impl Failure {
     #[must_use]
     pub fn problems(&self) -> Vec<Problem> {
         match self {
-            Self::Usage(message) => vec![Problem::new(message)],
+            Self::Usage(message) | Self::Refused(message) => vec![Problem::new(message)],
             Self::Input(error) => error.problems(),
             Self::Internal(error) => vec![Problem::from(error)],
         }
@@ -44,7 +47,7 @@ impl Failure {
     #[must_use]
     pub fn render(&self, styled: bool) -> String {
         match self {
-            Self::Usage(message) => Problem::new(message).to_string(),
+            Self::Usage(message) | Self::Refused(message) => Problem::new(message).to_string(),
             Self::Input(error) => error.render(styled),
             Self::Internal(error) => Problem::from(error).to_string(),
         }

@@ -13,6 +13,26 @@ fn serial() -> Bench {
 }
 
 #[test]
+fn a_result_that_is_not_to_be_used_fails_where_that_is_asked_for() {
+    let bench = serial();
+    bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
+    let log = bench.read("log_identification.csv");
+    bench.write(
+        "swapped.csv",
+        &log.replacen("tau_1,tau_2", "tau_2,tau_1", 1),
+    );
+    let identify = |log: &str| bench.run(&["identify", "my.toml", "--data", log, "--strict"]);
+    assert_eq!(identify("log_identification.csv").code, Some(0));
+    let refused = identify("swapped.csv");
+    assert_eq!(refused.code, Some(3), "{}", refused.err);
+    assert!(refused.err.contains("not to be used"), "{}", refused.err);
+    assert!(
+        refused.out.contains("do not use it"),
+        "the result is written"
+    );
+}
+
+#[test]
 fn simulated_logs_give_what_the_virtual_experiment_gives() {
     let bench = serial();
     let made = bench.run(&["simulate", "my.toml", "-o", "log.csv"]);

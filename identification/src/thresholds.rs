@@ -7,10 +7,6 @@ use serde::Serialize;
 pub struct Thresholds {
     /// A partition whose condition exceeds this spoils case 2.
     pub partition_condition: f64,
-    /// A relative error above this (percent) means that the model does not explain the data.
-    pub relative_error_percent: f64,
-    /// A miss of the loops' closure above this (m, rad) speaks of wrong geometry or offsets.
-    pub closure_residual: f64,
     /// |χ|/σ above which a parameter is significant.
     pub significance: f64,
     /// Growth of the held-out error, in percent of the measured inputs' norm, above which a
@@ -27,8 +23,6 @@ impl Default for Thresholds {
     fn default() -> Self {
         Self {
             partition_condition: 30.0,
-            relative_error_percent: 50.0,
-            closure_residual: 0.01,
             significance: 5.0,
             held_out_growth_percent: 2.0,
             drift_percent: 10.0,

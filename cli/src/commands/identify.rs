@@ -7,7 +7,9 @@ use super::runs;
 use crate::{failure::Failure, output, progress::Progress, report as files};
 use clap::ValueEnum;
 use overact::Model;
-use overact_identification::{CalibrationScope, Identification, Progress as Doing, Settings};
+use overact_identification::{
+    CalibrationScope, Grade, Identification, Progress as Doing, Settings,
+};
 use overact_robot::{Identifier, Robot, Runs, tracking};
 use std::path::PathBuf;
 
@@ -26,6 +28,9 @@ pub(crate) struct Arguments {
     /// torques [default: where the runs are virtual and published results lie beside the description]
     #[arg(long)]
     tracking: bool,
+    /// End with exit code 3 where the verdict is not to use the result
+    #[arg(long)]
+    strict: bool,
     /// Write the tables (with --json the document) to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -71,7 +76,8 @@ impl From<Scope> for CalibrationScope {
 /// Runs the command.
 ///
 /// # Errors
-/// Logs that can't be used, a virtual experiment that can't be made, or data that determine nothing.
+/// Logs that can't be used, a virtual experiment that can't be made, or data that determine nothing; with
+/// `--strict` a result that is not to be used, which has been written then.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let reports = arguments.reports.check(&arguments.file)?;
     let inputs = [arguments.runs.inputs(&arguments.file), reports.inputs()].concat();
@@ -107,7 +113,23 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let text = robot.calibrated_text(calibration)?;
         written.push((path.clone(), text.into_bytes()));
     }
-    output::emit_with(&text, output, written)
+    output::emit_with(&text, output, written)?;
+    match result.grade() {
+        Grade::DoNotUse if arguments.strict => Err(refused(&result)),
+        _ => Ok(()),
+    }
+}
+
+/// Why the result is not to be used.
+fn refused(result: &Identification) -> Failure {
+    let first = result.verdicts.first();
+    let reasons = first.map_or(&[][..], |verdict| verdict.reasons.as_slice());
+    Failure::Refused(format!(
+        "the result is not to be used: {}",
+        reasons
+            .first()
+            .map_or("there is no estimate", String::as_str)
+    ))
 }
 
 /// The identification, with a bar on a terminal.

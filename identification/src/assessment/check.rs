@@ -132,6 +132,10 @@ pub enum CheckKind {
     PayloadLabel,
     /// Torques and motion are not of the same time.
     Delay,
+    /// The sampling frequency contradicts gravity and friction.
+    Clock,
+    /// The torques speak of an offset or a play of an encoder.
+    EncoderOffset,
     /// The residual holds something that the model lacks.
     MissingParameter,
     /// A parameter that can't be negative is.
@@ -166,6 +170,8 @@ impl CheckKind {
             Self::WrongGain => "wrong gain",
             Self::PayloadLabel => "payload label",
             Self::Delay => "delay",
+            Self::Clock => "clock",
+            Self::EncoderOffset => "encoder offset",
             Self::MissingParameter => "missing parameter",
             Self::NegativeParameter => "negative parameter",
             Self::Partition => "partition",

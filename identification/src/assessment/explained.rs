@@ -5,11 +5,14 @@ use overact::Model;
 use super::{checks::raw_numbers, positions};
 use crate::{data::Log, error::Error, monitor::Monitor};
 
+/// Loops that close to this are closed by a change of the positions (m, rad).
+const CLOSED: f64 = 0.01;
+
 /// An error of a run together with what is suspicious in its numbers: each is a way out.
 pub(crate) fn explained(model: &dyn Model, log: &Log, error: Error) -> Error {
     let mut hints: Vec<String> = Vec::new();
     hints.extend(
-        positions::explanation(model, log)
+        positions::explanation(model, log, CLOSED)
             .ok()
             .flatten()
             .map(|one| one.words),

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use overact::{Function, Model, math::wrap_angle};
 
 use super::check::{About, Check, CheckKind, Grade};
-use crate::{data::Log, error::Error, kinematics::approach, thresholds::Thresholds};
+use crate::{data::Log, error::Error, kinematics::approach};
 
 /// Rows of a run that are looked at, and their distance in time (s).
 const ROWS: usize = 200;
@@ -66,7 +66,7 @@ impl Fault {
                 CheckKind::Degrees,
                 None,
                 String::from(
-                    "the positions look like degrees: give `position_scale = \"1 deg\"` in the table [data]",
+                    "the positions look like degrees, or like angles of motors before their gears: give `position_scale = \"1 deg\"` in the table [data], or the inverse of each gear ratio",
                 ),
             ),
             Self::Swapped(i, j) => (
@@ -97,13 +97,17 @@ impl Fault {
     }
 }
 
-/// What would make the loops close in a run that contradicts them, if one change does.
+/// What would make the loops close to a `tolerance` (m, rad) in a run that contradicts them, if one
+/// change does.
 ///
 /// # Errors
 /// A file that can't be read any more.
-pub(crate) fn explanation(model: &dyn Model, log: &Log) -> Result<Option<Check>, Error> {
+pub(crate) fn explanation(
+    model: &dyn Model,
+    log: &Log,
+    tolerance: f64,
+) -> Result<Option<Check>, Error> {
     let rows = rows(log)?;
-    let tolerance = Thresholds::default().closure_residual;
     let miss = miss(model, &rows);
     if miss.is_some_and(|miss| miss <= tolerance) {
         return Ok(None);

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::check::{Check, Grade};
 use crate::{
     regression::projection::ModelKind,
-    result::{Estimate, Stage},
+    result::{Estimate, Estimator, Stage},
 };
 
 /// The verdict on a model: that on its recommended parameters, and on the other stages beside it.
@@ -47,7 +47,11 @@ pub(crate) fn verdicts(estimates: &[Estimate], checks: &[Check]) -> Vec<Verdict>
     let mut models: Vec<ModelKind> = estimates.iter().map(|one| one.model).collect();
     models.dedup();
     let of_model = |model: ModelKind| {
-        let own = estimates.iter().filter(|one| one.model == model);
+        let by_least_squares = |one: &&Estimate| one.estimator == Estimator::LeastSquares;
+        let own = estimates
+            .iter()
+            .filter(by_least_squares)
+            .filter(|one| one.model == model);
         let stages: Vec<StageVerdict> = own.map(|one| of_estimate(one, checks)).collect();
         let recommended = stages.iter().find(|one| one.stage == Stage::Recommended);
         let main = recommended.or_else(|| stages.first())?.clone();

@@ -222,7 +222,11 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
                 settings.filter_cutoff_hz
             ))
             .file(log.name())
-            .help("choose about ten times the bandwidth of the motion"),
+            .help(if (10.0 * nyquist..1e3 * nyquist).contains(&settings.filter_cutoff_hz) {
+                "is the time in milliseconds? It has to be in seconds: divide the column by 1000. Else choose a cutoff of about ten times the bandwidth of the motion"
+            } else {
+                "choose about ten times the bandwidth of the motion"
+            }),
         );
     }
     Error::check(problems)

@@ -4,11 +4,13 @@
 //! - `watch`: stuck encoders, lost samples, a robot that stands still;
 //! - `peaks`: torques that are flat at their extremes;
 //! - `clipping`: what is told of them;
+//! - `roughness`: noise of signals, and signals that are equal;
 //! - `suspicion`: what is suspicious;
 //! - `statistics`: what is kept of numbers that pass.
 
 mod clipping;
 mod peaks;
+mod roughness;
 mod statistics;
 mod suspicion;
 #[cfg(test)]

@@ -26,4 +26,8 @@ pub(crate) enum Trouble {
     Dropped,
     /// The robot hardly moves.
     Standstill,
+    /// Two columns are one.
+    Duplicate,
+    /// A torque is zero throughout.
+    Zero,
 }

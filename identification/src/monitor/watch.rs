@@ -4,6 +4,7 @@
 use super::{
     clipping::clipping,
     peaks,
+    roughness::Roughness,
     statistics::{Extreme, Histogram, Means},
     suspicion::{Suspicion, Trouble},
 };
@@ -27,6 +28,9 @@ const LOST_STEP: f64 = 0.5;
 /// Times by which it exceeds the encoder's resolution, and the usual changes of steps.
 const LOST_RATIO: f64 = 4.0;
 
+/// Part of the steps that are usual, though samples are lost.
+const USUAL: f64 = 0.9;
+
 /// A range of less than so many steps between samples is noise: the robot stands still.
 const STILL_STEPS: f64 = 15.0;
 
@@ -47,6 +51,8 @@ pub(crate) struct Monitor {
     torques: Vec<[Extreme; 2]>,
     /// Means of the torques over a few samples, in the beginning of the run.
     means: Means,
+    /// Noise of positions and of torques.
+    roughness: [Roughness; 2],
     /// The last [`SPEED_SAMPLES`] + 1 rows of positions, the newest last.
     recent: Vec<Vec<f64>>,
 }
@@ -96,6 +102,7 @@ impl Monitor {
             positions: vec![Position::default(); actuators],
             torques: vec![[Extreme::default(); 2]; actuators],
             means: Means::new(actuators, frequency),
+            roughness: [Roughness::new(actuators), Roughness::new(actuators)],
             recent: Vec::new(),
         }
     }
@@ -109,6 +116,8 @@ impl Monitor {
                 position.take(actuator, self.samples, positions, &self.recent);
             }
             self.means.take(torques);
+            self.roughness[0].take(positions);
+            self.roughness[1].take(torques);
             for ([low, high], torque) in self.torques.iter_mut().zip(torques) {
                 high.take(*torque);
                 low.take(-torque);
@@ -136,6 +145,77 @@ impl Monitor {
         self.positions.iter().map(magnitude).collect()
     }
 
+    /// The variances of white noise of the positions, and of the torques.
+    pub(crate) fn noise(&self) -> [Vec<f64>; 2] {
+        self.roughness.each_ref().map(Roughness::variances)
+    }
+
+    /// The smallest step of each actuator's positions that is not zero: the resolution, if it is one (m,
+    /// rad).
+    pub(crate) fn resolutions(&self) -> Vec<f64> {
+        let positions = self.positions.iter();
+        positions.map(|one| one.smallest.unwrap_or(0.0)).collect()
+    }
+
+    /// The range of each actuator's positions (m, rad).
+    pub(crate) fn ranges(&self) -> Vec<f64> {
+        self.positions
+            .iter()
+            .map(|one| one.high - one.low)
+            .collect()
+    }
+
+    /// Whether no torque is anything but zero.
+    fn zeros(&self, names: &[&str]) -> Vec<Suspicion> {
+        let is_zero = |[low, high]: &[Extreme; 2]| {
+            let zero = |one: &Extreme| one.value == 0.0 && one.count == self.samples;
+            zero(low) && zero(high)
+        };
+        let zeros = self
+            .torques
+            .iter()
+            .zip(names)
+            .filter(|(one, _)| is_zero(one));
+        zeros
+            .map(|(_, name)| Suspicion {
+                trouble: Trouble::Zero,
+                actuator: Some((*name).to_owned()),
+                statistic: 0.0,
+                unit: "N or N m",
+                threshold: 0.0,
+                message: String::from(
+                    "the torque is zero throughout: it was not recorded, or stands in another column",
+                ),
+            })
+            .collect()
+    }
+
+    /// Columns that are one.
+    fn duplicates(&self, names: &[&str]) -> Vec<Suspicion> {
+        let of = |what: &str, roughness: &Roughness| -> Vec<Suspicion> {
+            let name = |index: usize| names.get(index).copied().unwrap_or_default();
+            let one = |&(i, j): &(usize, usize)| Suspicion {
+                trouble: Trouble::Duplicate,
+                actuator: Some(name(j).to_owned()),
+                statistic: 0.0,
+                unit: "",
+                threshold: 0.0,
+                message: format!(
+                    "the {what} is that of `{}`, sample by sample: one column was taken twice; check the names of the columns in the table [data]",
+                    name(i)
+                ),
+            };
+            roughness.twins().iter().map(one).collect()
+        };
+        let [positions, torques] = &self.roughness;
+        let mut all = of("position", positions);
+        let zero = |actuator: usize| self.torques[actuator][1].value == 0.0;
+        let mut torques = torques.clone();
+        torques.forget(zero);
+        all.extend(of("torque", &torques));
+        all
+    }
+
     /// What is suspicious in a run of actuators with these names. Where the loops couple all actuators
     /// (`coupled`), one that rests while others move is stuck; without loops it may be held.
     pub(crate) fn suspicions(mut self, names: &[&str], coupled: bool) -> Vec<Suspicion> {
@@ -149,6 +229,7 @@ impl Monitor {
                 suspicions.push(suspicion);
             }
         }
+        suspicions.extend(self.zeros(names));
         if self.travel() <= STILL_STEPS {
             suspicions.push(Suspicion {
                 trouble: Trouble::Standstill,
@@ -162,6 +243,7 @@ impl Monitor {
             });
             return suspicions;
         }
+        suspicions.extend(self.duplicates(names));
         let stuck: Vec<Option<(f64, String)>> = (0..names.len())
             .map(|actuator| self.stuck(actuator, coupled))
             .collect();
@@ -232,10 +314,10 @@ impl Monitor {
             let Some(resolution) = one.smallest else {
                 continue;
             };
-            let usual = one.sizes.quantile(0.99);
+            let usual = one.sizes.quantile(USUAL);
             let least = (LOST_STEP * usual)
                 .max(LOST_RATIO * resolution)
-                .max(LOST_RATIO * one.changes.quantile(0.99));
+                .max(LOST_RATIO * one.changes.quantile(USUAL));
             let jumps = one.jumps.iter().filter(|(size, _)| *size > least);
             largest = jumps
                 .clone()

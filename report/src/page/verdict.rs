@@ -117,16 +117,6 @@ fn thresholds(identification: &Identification) -> String {
             "above it, case 2 is too close to a singularity of its choice of actuators",
         ),
         (
-            "Relative error",
-            format!("{} %", significant(thresholds.relative_error_percent, 4)),
-            "above it, the model does not explain the measured torques",
-        ),
-        (
-            "Miss of the loops’ closure",
-            format!("{} m or rad", significant(thresholds.closure_residual, 4)),
-            "above it, geometry or encoder offsets are wrong",
-        ),
-        (
             "Significance |χ|/σ",
             significant(thresholds.significance, 4),
             "above it, the data speak for a parameter; σ is that of correlated residuals",

@@ -5,7 +5,7 @@ use clap::Parser;
 use overact_identification::Grade;
 use overact_trust::{
     Failure, Subject, draw,
-    traps::{Outcome, Trap, clean, outcome, prepared, traps},
+    traps::{Outcome, Trap, clean, identified, outcome, prepared, traps},
 };
 use rayon::prelude::*;
 use std::{
@@ -44,6 +44,7 @@ fn trapped(arguments: &Arguments, path: &Path) -> Result<Vec<Outcome>, Failure> 
     let mut subject = Subject::load(path)?;
     subject.shorten(arguments.part);
     let records = prepared(&subject, &subject.experiment)?;
+    let faultless = identified(&subject, records.clone())?;
     let one = |trap: &Trap| -> Result<Outcome, Failure> {
         let mut own = if trap.plant.is_empty() {
             records.clone()
@@ -53,7 +54,7 @@ fn trapped(arguments: &Arguments, path: &Path) -> Result<Vec<Outcome>, Failure> 
             prepared(&plant, &plant.experiment)?
         };
         (trap.alter)(&mut own);
-        let mut told = outcome(&subject, &trap.name, own);
+        let mut told = outcome(&subject, &trap.name, own, Some(&faultless));
         if let Some(why) = trap.assumed {
             told.words = format!("assumption: {why}. {}", told.words);
         }
@@ -73,7 +74,7 @@ fn trapped(arguments: &Arguments, path: &Path) -> Result<Vec<Outcome>, Failure> 
 /// One row for each trap.
 fn table(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
-        "| robot | trap | worst error, deviations | worst of what may be used | verdict | checks that found something | first words |\n|---|---|---:|---:|---|---|---|\n",
+        "| robot | trap | worst error, deviations | worst of what may be used | visible, deviations | verdict | checks that found something | first words |\n|---|---|---:|---:|---:|---|---|---|\n",
     );
     let number = |worst: &Option<(f64, String)>| {
         worst.as_ref().map_or_else(
@@ -84,11 +85,13 @@ fn table(outcomes: &[Outcome]) -> String {
     for one in outcomes {
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {} | {} |",
             one.robot,
             one.trap,
             number(&one.worst),
             number(&one.worst_listed),
+            one.oracle
+                .map_or_else(|| String::from("-"), |size| format!("{size:.1}")),
             one.grade.map_or("refused with an error", Grade::words),
             one.found.join(", "),
             one.words.replace('|', "/").replace('\n', " ")

@@ -3,6 +3,9 @@
 use super::alter;
 use overact_simulation::Record;
 
+/// What is done to records.
+pub type Change = dyn Fn(&mut Vec<Record>) + Sync;
+
 /// A fault.
 pub struct Trap {
     /// What is wrong, in words.
@@ -11,7 +14,7 @@ pub struct Trap {
     /// altered.
     pub plant: Vec<(String, String)>,
     /// What is done to the records.
-    pub alter: Box<dyn Fn(&mut Vec<Record>) + Sync>,
+    pub alter: Box<Change>,
     /// Why no data can show it, where none can.
     pub assumed: Option<&'static str>,
 }
@@ -168,8 +171,13 @@ fn missing() -> Vec<Trap> {
         Trap::each("friction of actuator 1 grows with time", |run| {
             alter::add(run, 0, |at| at.velocity.signum() * at.time, 0.1);
         }),
-        Trap::each("friction of actuator 1 differs by direction", |run| {
-            alter::add(run, 0, |at| f64::from(u8::from(at.velocity > 0.0)), 0.1);
+        Trap::each("friction of actuator 1 rises towards standstill", |run| {
+            alter::add(
+                run,
+                0,
+                |at| at.velocity.signum() * (-5.0 * at.velocity.abs()).exp(),
+                0.1,
+            );
         }),
         Trap::each(
             "drag with the square of the velocity at actuator 2",
@@ -188,7 +196,7 @@ fn missing() -> Vec<Trap> {
 
 fn labels(robot: &str) -> Vec<Trap> {
     let mut all = vec![
-        Trap::each("every run at a standstill", |run| alter::stand_still(run)),
+        Trap::each("every run at a standstill", alter::stand_still),
         Trap::new("one run at a standstill", |runs| {
             if runs.len() > 1 {
                 alter::stand_still(&mut runs[0]);

@@ -9,4 +9,4 @@ mod list;
 mod outcome;
 
 pub use list::{Trap, traps};
-pub use outcome::{Outcome, clean, outcome, prepared};
+pub use outcome::{Outcome, clean, identified, outcome, prepared};

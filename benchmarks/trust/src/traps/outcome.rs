@@ -2,7 +2,7 @@
 
 use crate::{Failure, Subject};
 use overact_identification::{
-    Check, Dataset, Estimate, Grade, Identification, Log, Stage, identify,
+    Check, Dataset, Estimate, Grade, Identification, LineError, Log, Stage, identify,
 };
 use overact_simulation::{Experiment, Record, simulate};
 use serde::Serialize;
@@ -22,6 +22,9 @@ pub struct Outcome {
     pub worst: Option<(f64, String)>,
     /// The largest error of those parameters that the verdict allows to use.
     pub worst_listed: Option<(f64, String)>,
+    /// By how many deviations a test would see the fault that knew it beforehand: the root of what it adds
+    /// to the squared residual, by the deviation of the residual; none for the faultless data themselves.
+    pub oracle: Option<f64>,
     /// The grade; none where the data are refused with an error.
     pub grade: Option<Grade>,
     /// The checks that found something.
@@ -38,21 +41,31 @@ pub fn prepared(subject: &Subject, experiment: &Experiment) -> Result<Vec<Record
     Ok(simulate(subject.model(), experiment, &|_, _| ()).map_err(|error| error.to_string())?)
 }
 
-/// What the identification of records says; `name` is what is wrong with them.
+/// What the identification of records says; `name` is what is wrong with them, beside what it says of
+/// `faultless` ones.
 #[must_use]
-pub fn outcome(subject: &Subject, name: &str, records: Vec<Record>) -> Outcome {
+pub fn outcome(
+    subject: &Subject,
+    name: &str,
+    records: Vec<Record>,
+    faultless: Option<&Identification>,
+) -> Outcome {
     let result = identified(subject, records);
     let start = Outcome {
         robot: subject.info().name.to_owned(),
         trap: name.to_owned(),
         worst: None,
         worst_listed: None,
+        oracle: None,
         grade: None,
         found: Vec::new(),
         words: String::new(),
     };
     match result {
-        Ok(result) => told(&result, start),
+        Ok(result) => Outcome {
+            oracle: faultless.and_then(|faultless| oracle(&result, faultless)),
+            ..told(&result, start)
+        },
         Err(error) => Outcome {
             words: error.to_string(),
             ..start
@@ -77,7 +90,25 @@ pub fn clean(subject: &Subject, records: Vec<Record>) -> Result<(Grade, Vec<Chec
     ))
 }
 
-fn identified(subject: &Subject, records: Vec<Record>) -> Result<Identification, Failure> {
+/// What a fault adds to the squared residual of the base parameters, in deviations.
+fn oracle(result: &Identification, faultless: &Identification) -> Option<f64> {
+    let [with, without] = [result, faultless].map(|one| one.estimates.first());
+    let (with, without) = (with?, without?);
+    let lines = with.lines.iter().zip(&without.lines).zip(&without.weights);
+    let added: f64 = lines
+        .map(|((with, without), weight)| {
+            let per = |line: &LineError| line.residual_norm.powi(2) / line.equations as f64;
+            weight * weight * (per(with) - per(without)) * without.equations as f64
+        })
+        .sum();
+    Some(added.max(0.0).sqrt() / without.residual_deviation)
+}
+
+/// Identifies from records.
+///
+/// # Errors
+/// Records that can't be identified from.
+pub fn identified(subject: &Subject, records: Vec<Record>) -> Result<Identification, Failure> {
     let log = |record: Record| {
         let n = record.actuators.len();
         Log::new(

@@ -56,9 +56,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             harm.words()
         );
         Check { words, ..check }
-            .found()
-            .allowing(harm.grade)
-            .spoiling(harm.spoiled)
+            .because(&harm)
     });
     Ok(checks.collect())
 }

@@ -3,7 +3,7 @@
 use super::{
     Context,
     level::{level, origin},
-    suspected::{Tested, guilty, harm, parabola, tested},
+    suspected::{Tested, guilty, parabola, tested, worst_harm},
 };
 use crate::{
     assessment::{
@@ -64,7 +64,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let place = found.iter().position(|one| std::ptr::eq(one, worst));
     let actuator = place.map_or("", |place| name(actuators[place]));
-    let harm = harm(context, scores, worst);
+    let harm = worst_harm(context, scores, (&found, worst), level);
     let size = worst.accused.size();
     let words = format!(
         "the torque of `{actuator}` is measured {} % too {} beside those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant and its gear ratio",
@@ -78,9 +78,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .of_actuator(actuator)
             .measured(size.abs() / worst.accused.deviation, "standard deviations")
             .against(worst.accused.quantile(level), origin(gains.len()))
-            .found()
-            .allowing(harm.grade)
-            .spoiling(harm.spoiled)
+            .because(&harm)
             .shown_by(parabola(
                 &worst.accused,
                 &format!("Residual for other gains of {actuator}"),

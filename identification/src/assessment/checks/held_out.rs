@@ -1,35 +1,121 @@
-//! How well the estimates predict runs that were held out.
+//! Whether runs that were held out are predicted as well as those identified from.
+//!
+//! The weighted mean square of the residual of a held-out run is compared with those of the parts of the
+//! runs identified from. Their logarithms spread, and one more of the same kind exceeds their mean by
+//! t s √(1 + 1/K) with a probability that Student's distribution tells.
 
-use super::Context;
+use super::{Context, level::level};
 use crate::{
-    assessment::check::{About, Check, CheckKind, Grade},
+    assessment::{
+        check::{About, Check, CheckKind, Grade},
+        evidence::{Axis, Curve, Evidence},
+    },
     error::Error,
-    result::CrossValidation,
+    estimation::intervals::distributions::student_quantile,
+    result::{CrossValidation, Estimate},
     significant,
     thresholds::Thresholds,
 };
 
+/// Parts whose spread tells something.
+const FEWEST_PARTS: usize = 3;
+
 /// Looks at all estimates on all runs that were held out.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
-    let limit = Thresholds::default().relative_error_percent;
+    let runs = context.dataset.validation.len();
     let of_one = |one: &CrossValidation| {
-        let error = one.relative_error_percent;
-        let words = format!(
-            "of the run, which was held out, the {} parameters leave {} % unexplained",
-            one.stage.name(),
-            significant(error, 3)
-        );
+        let mut estimates = context.least_squares();
+        let estimate =
+            estimates.find(|other| other.model == one.model && other.stage == one.stage)?;
+        of_estimate(context, one, estimate, runs)
+    };
+    Ok(context.cross_validation.iter().filter_map(of_one).collect())
+}
+
+fn of_estimate(
+    context: &Context<'_>,
+    one: &CrossValidation,
+    estimate: &Estimate,
+    runs: usize,
+) -> Option<Check> {
+    let own = parts(context, estimate);
+    let weighted = one.lines.iter().zip(&estimate.weights);
+    let squares = weighted.map(|(line, weight)| (weight * line.residual_norm).powi(2));
+    let equations: usize = one.lines.iter().map(|line| line.equations).sum();
+    let held = squares.sum::<f64>() / equations.max(1) as f64;
+    if own.len() < FEWEST_PARTS || held <= 0.0 {
+        return None;
+    }
+    let logarithms: Vec<f64> = own.iter().map(|square| square.ln()).collect();
+    let count = logarithms.len() as f64;
+    let mean = logarithms.iter().sum::<f64>() / count;
+    let squares: f64 = logarithms.iter().map(|one| (one - mean).powi(2)).sum();
+    let spread = (squares / (count - 1.0) * (1.0 + 1.0 / count)).sqrt();
+    // One-sided, shared by the runs; the estimates of a run are judged by one level each.
+    let quantile = student_quantile(2.0 * level(runs), count - 1.0);
+    let largest = (mean + quantile * spread).exp();
+    let error = one.relative_error_percent;
+    let typical = error * (mean.exp() / held).sqrt();
+    let beyond = (error * error - typical * typical).max(0.0).sqrt();
+    let limit = Thresholds::default().held_out_growth_percent;
+    let grows = held > largest && beyond > limit;
+    let ratio = (held / mean.exp()).sqrt();
+    let words = format!(
+        "{} % of the inputs of this run, which was held out, are left unexplained by the {} parameters, {} times as much as in the runs identified from{}",
+        significant(error, 3),
+        one.stage.name(),
+        significant(ratio, 2),
+        if grows {
+            ": they do not generalise. Look for what differs in this run, identify from more runs or from motions like this one"
+        } else {
+            ""
+        }
+    );
+    let curve = |name: &str, values: &[f64], first: f64| {
+        let x: Vec<f64> = (0..values.len()).map(|k| first + k as f64).collect();
+        let y: Vec<f64> = values.iter().map(|one| (one / mean.exp()).sqrt()).collect();
+        Curve::new(name, &x, &y)
+    };
+    Some(
         Check::new(CheckKind::HeldOut, About::Extrapolation, words)
             .in_run(&one.run)
             .of_model(one.model)
             .of_stage(one.stage)
-            .measured(error, "%")
-            .against(limit, "the model has to explain most of the inputs")
-            .allowing(if error <= limit {
-                Grade::Use
-            } else {
-                Grade::DoNotUse
+            .measured(ratio, "times the usual residual")
+            .against(
+                (largest / mean.exp()).sqrt(),
+                format!(
+                    "Student's test against {count} parts of the runs identified from, and a growth of {limit} % of the inputs"
+                ),
+            )
+            .shown_by(Evidence {
+                title: String::from("Residual of the held-out run beside those identified from"),
+                x: Axis::new("number of the part", ""),
+                y: Axis::new("residual by the usual one", ""),
+                points: vec![
+                    curve("identified from", &own, 1.0),
+                    curve("held out", &[held], count + 1.0),
+                ],
+                limits: vec![(largest / mean.exp()).sqrt()],
+                ..Evidence::default()
             })
+            .allowing(if grows { Grade::DoNotUse } else { Grade::Use }),
+    )
+}
+
+/// Weighted mean squares of the residual in the parts of the runs identified from.
+fn parts(context: &Context<'_>, estimate: &Estimate) -> Vec<f64> {
+    let Some(system) = context.system(estimate.model) else {
+        return Vec::new();
     };
-    Ok(context.cross_validation.iter().map(of_one).collect())
+    let (columns, values) = (estimate.columns(), estimate.values());
+    let of_part = |part: &crate::regression::system::Part| {
+        let lines = part.lines.iter().zip(&estimate.weights);
+        let squares =
+            lines.map(|(line, weight)| (weight * line.residual_norm(&columns, &values)).powi(2));
+        let equations: usize = part.lines.iter().map(|line| line.equations()).sum();
+        squares.sum::<f64>() / equations.max(1) as f64
+    };
+    let all = system.parts.iter().map(of_part);
+    all.filter(|square| *square > 0.0).collect()
 }

@@ -4,7 +4,7 @@
 use super::{
     Context,
     level::{level, origin},
-    suspected::{Tested, guilty, harm, tested},
+    suspected::{Tested, guilty, tested, worst_harm},
 };
 use crate::{
     assessment::{
@@ -58,10 +58,10 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let (what, name) = match suspect {
         Suspect::Force(line, _) => ("force on", info.coordinates.get(line)),
         Suspect::Torque(actuator, _) => ("torque of", info.actuators.get(actuator)),
-        Suspect::Delay | Suspect::Gain(_) => ("", None),
+        _ => ("", None),
     };
     let name = name.copied().unwrap_or_default();
-    let harm = harm(context, scores, worst);
+    let harm = worst_harm(context, scores, (&found, worst), level);
     let words = format!(
         "the {what} `{name}` depends on {} beyond the model, by {} ({:.1} standard deviations), which explains {} % of the residual's square; {}. Add what is missing to the description, or look for what else differs from it",
         shape.words(),
@@ -73,9 +73,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let check = Check { words, ..check }
         .measured(ratio(worst), "standard deviations")
         .against(worst.accused.quantile(level), origin(tests))
-        .found()
-        .allowing(harm.grade)
-        .spoiling(harm.spoiled);
+        .because(&harm);
     Ok(vec![match suspect {
         Suspect::Torque(..) => check.of_actuator(name),
         _ => check,

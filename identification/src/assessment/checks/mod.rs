@@ -1,8 +1,10 @@
 //! All checks. Each has a file of its own and is a function of a read-only [`Context`]; the table
 //! [`CHECKS`] lists them.
 
+mod clock;
 mod closure;
 mod delay;
+mod encoders;
 mod gains;
 mod held_out;
 pub(crate) mod level;
@@ -25,7 +27,7 @@ use crate::{
     estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
     monitor::Monitor,
     regression::{columns::ColumnSet, projection::ModelKind, system::System},
-    result::{CrossValidation, Estimate, Stage},
+    result::{CrossValidation, Estimate, Estimator, Stage},
     settings::Settings,
 };
 
@@ -73,10 +75,15 @@ impl<'a> Context<'a> {
         systems.find(|system| system.projection.model() == model)
     }
 
-    /// The estimates of a stage.
-    pub(crate) fn estimates_of(&self, stage: Stage) -> impl Iterator<Item = &'a Estimate> {
+    /// The estimates by least squares.
+    pub(crate) fn least_squares(&self) -> impl Iterator<Item = &'a Estimate> {
         let all = self.estimates.iter().map(|(_, one)| one);
-        all.filter(move |one| one.stage == stage)
+        all.filter(|one| one.estimator == Estimator::LeastSquares)
+    }
+
+    /// Those of a stage.
+    pub(crate) fn estimates_of(&self, stage: Stage) -> impl Iterator<Item = &'a Estimate> {
+        self.least_squares().filter(move |one| one.stage == stage)
     }
 }
 
@@ -84,12 +91,14 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 12] = [
+const CHECKS: [Function; 14] = [
     raw_numbers::check,
     closure::check,
     torque_faults::check,
     delay::check,
+    clock::check,
     gains::check,
+    encoders::check,
     payload_labels::check,
     missing_parameters::check,
     negative_parameters::check,

@@ -7,13 +7,16 @@ use super::{
 };
 use crate::{
     assessment::{
-        check::{About, Check, CheckKind},
+        check::{About, Check, CheckKind, Grade},
         suspects::{Group, Scores},
     },
     data::Log,
     error::Error,
     significant,
 };
+
+/// A run that explains so much of the squared residual by another payload is labelled wrongly.
+const WRONG: f64 = 0.1;
 
 /// Tests the payload's parameters in each run on its own.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
@@ -66,8 +69,9 @@ fn of_run(
         differences.join(", "),
         harm.words()
     );
-    Check { words, ..check }
-        .found()
-        .allowing(harm.grade)
-        .spoiling(harm.spoiled)
+    let check = Check { words, ..check }.because(&harm);
+    if accused.explained > WRONG {
+        return check.found().allowing(Grade::DoNotUse);
+    }
+    check
 }

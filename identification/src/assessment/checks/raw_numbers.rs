@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use overact::Model;
+use overact::{Model, StandardParameter};
 
 use super::Context;
 use crate::{
@@ -31,12 +31,21 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .filter(|one| one.kind == CheckKind::Standstill);
         own.any(|one| one.run.as_deref() == Some(run.name()))
     };
-    // One run at a standstill does no harm beside others that move.
-    if context.dataset.runs.iter().all(stands) {
-        for check in &mut checks {
-            if check.kind == CheckKind::Standstill {
-                check.grade = Grade::DoNotUse;
-            }
+    let all = context.dataset.runs.iter().all(stands);
+    // The sign of a velocity that is noise is noise, too.
+    let spoiled: Vec<String> = match context.settings.velocity_dead_band {
+        0.0 => dry_friction(context),
+        _ => Vec::new(),
+    };
+    for check in &mut checks {
+        if check.kind != CheckKind::Standstill {
+            continue;
+        }
+        if all {
+            check.grade = Grade::DoNotUse;
+        } else if !spoiled.is_empty() {
+            check.grade = Grade::UseListed;
+            check.spoiled.clone_from(&spoiled);
         }
     }
     if checks.is_empty() {
@@ -47,6 +56,20 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         ));
     }
     Ok(checks)
+}
+
+/// Names of the base parameters that are dry friction or an offset, which stand beside each other at a
+/// standstill.
+fn dry_friction(context: &Context<'_>) -> Vec<String> {
+    let columns = context.columns.as_slice();
+    let base = context.base.columns.iter().zip(&context.base.names);
+    let is_dry = |column: usize| {
+        let symbol = columns.get(column).map(|column| column.symbol);
+        matches!(symbol, Some(StandardParameter::Fs | StandardParameter::Off))
+    };
+    base.filter(|(column, _)| is_dry(**column))
+        .map(|(_, name)| name.clone())
+        .collect()
 }
 
 /// What is suspicious in the raw numbers of a run that a monitor has watched.
@@ -97,6 +120,16 @@ fn told(run: &str, suspicion: Suspicion) -> Check {
             CheckKind::DroppedSamples,
             Grade::DoNotUse,
             "the steps of the run itself",
+        ),
+        Trouble::Duplicate => (
+            CheckKind::DuplicateColumns,
+            Grade::DoNotUse,
+            "two measured signals are never equal throughout",
+        ),
+        Trouble::Zero => (
+            CheckKind::ZeroTorque,
+            Grade::DoNotUse,
+            "a measured torque is never zero throughout",
         ),
         Trouble::Standstill => (
             CheckKind::Standstill,

@@ -3,7 +3,7 @@
 use super::Context;
 use crate::{
     assessment::{
-        check::Grade,
+        check::{Check, Grade},
         evidence::{Axis, Curve, Evidence},
         suspects::{Accused, Group, Scores},
     },
@@ -15,6 +15,9 @@ const HARMFUL: f64 = 3.0;
 
 /// Where a fault does harm, parameters are spoiled that it moves by more than so many.
 const SPOILING: f64 = 1.0;
+
+/// Of what speaks against the first suspect, so much speaks against another one that is likely, too.
+const LIKELY: f64 = 0.5;
 
 /// By how much the half width of a 95 % interval exceeds a deviation.
 const HALF_WIDTH: f64 = 1.96;
@@ -49,6 +52,23 @@ pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Ve
 pub(super) fn guilty(all: &[Tested], level: f64) -> Option<&Tested> {
     let beyond = all.iter().filter(|one| one.accused.probability < level);
     beyond.max_by(|a, b| a.accused.explained.total_cmp(&b.accused.explained))
+}
+
+/// What suspects that may well be there do to the parameters: the worst of them.
+pub(super) fn worst_harm(
+    context: &Context<'_>,
+    scores: &Scores,
+    (all, guilty): (&[Tested], &Tested),
+    level: f64,
+) -> Harm {
+    let likely = all.iter().filter(|one| {
+        one.accused.probability < level
+            && one.accused.explained >= LIKELY * guilty.accused.explained
+    });
+    let harms = likely.map(|one| harm(context, scores, one));
+    harms
+        .max_by(|a, b| a.worst.total_cmp(&b.worst))
+        .unwrap_or_else(Harm::none)
 }
 
 /// What a suspect does to the base and the recommended parameters of the first model.
@@ -104,6 +124,14 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
     harm
 }
 
+impl Check {
+    /// With the grade that a suspect's harm allows.
+    pub(super) fn because(self, harm: &Harm) -> Self {
+        let check = self.allowing(harm.grade).spoiling(harm.spoiled.clone());
+        if harm.counts() { check.found() } else { check }
+    }
+}
+
 impl Harm {
     /// That of nothing.
     fn none() -> Self {
@@ -113,6 +141,11 @@ impl Harm {
             spoiled: Vec::new(),
             grade: Grade::Use,
         }
+    }
+
+    /// Whether it is worth a remark: not where no parameter moves by one deviation.
+    pub(super) fn counts(&self) -> bool {
+        self.worst > SPOILING
     }
 
     /// What it means, as the end of a sentence.

@@ -11,6 +11,12 @@ pub(crate) enum Suspect {
     Delay,
     /// The measured torque of an actuator is too large by this part of itself.
     Gain(usize),
+    /// The sampling frequency is too high by this part of itself.
+    Clock,
+    /// The position of an actuator is too large by this angle or length.
+    Offset(usize),
+    /// The position of an actuator is behind by this half of a play.
+    Play(usize),
     /// A torque of an actuator that the model lacks.
     Torque(usize, Shape),
     /// A force on a coordinate of the platform that the model lacks.
@@ -28,6 +34,8 @@ pub(crate) enum Shape {
     Sign,
     /// The magnitude of the velocity: viscous friction that differs by direction.
     Speed,
+    /// The square of the velocity, with its sign: a drag.
+    Drag,
     /// The acceleration.
     Acceleration,
     /// The position: a spring.
@@ -43,11 +51,12 @@ pub(crate) enum Shape {
 }
 
 /// Shapes of an actuator.
-const SHAPES: [Shape; 10] = [
+const SHAPES: [Shape; 11] = [
     Shape::Constant,
     Shape::Velocity,
     Shape::Sign,
     Shape::Speed,
+    Shape::Drag,
     Shape::Acceleration,
     Shape::Position,
     Shape::Cosine,
@@ -66,6 +75,7 @@ impl Shape {
             Self::Speed => {
                 "the magnitude of the velocity, as viscous friction that differs by direction"
             }
+            Self::Drag => "the square of the velocity, as drag",
             Self::Acceleration => "the acceleration, as inertia",
             Self::Position => "the position, as a spring",
             Self::Cosine => "the cosine of the position, as gravity",
@@ -93,6 +103,7 @@ impl Shape {
             Self::Velocity => velocity,
             Self::Sign => sign,
             Self::Speed => velocity.abs(),
+            Self::Drag => velocity * velocity.abs(),
             Self::Acceleration => acceleration,
             Self::Position => position,
             Self::Cosine => position.cos(),
@@ -104,7 +115,7 @@ impl Shape {
 }
 
 /// The motion of an actuator or a coordinate at one time.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Moment {
     pub(super) position: f64,
     pub(super) velocity: f64,
@@ -116,8 +127,13 @@ pub(super) struct Moment {
 pub(super) fn suspects(model: &dyn Model, kind: ModelKind) -> Vec<Suspect> {
     let info = model.info();
     let sizes = info.sizes;
-    let mut all = vec![Suspect::Delay];
+    let mut all = vec![Suspect::Delay, Suspect::Clock];
     all.extend((0..sizes.actuators).map(Suspect::Gain));
+    // With more actuators than degrees of freedom the closure tells.
+    if sizes.actuators == sizes.dof {
+        all.extend((0..sizes.actuators).map(Suspect::Offset));
+        all.extend((0..sizes.actuators).map(Suspect::Play));
+    }
     for actuator in 0..sizes.actuators {
         // An angle that is unwound has no place among springs, but its sine has; a length has neither.
         let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
@@ -148,6 +164,10 @@ pub(super) struct Sample<'a> {
     pub(super) actuators: &'a [Moment],
     /// The pose.
     pub(super) pose: &'a [f64],
+    /// By how much Γ¹ would change with the clock, and with the position of each actuator, n x r; empty
+    /// where that is not asked for.
+    pub(super) clock: &'a [f64],
+    pub(super) offsets: &'a [f64],
 }
 
 impl Sample<'_> {
@@ -161,6 +181,9 @@ impl Sample<'_> {
                 -rates.map(|(i, rate)| share(i) * rate).sum::<f64>()
             }
             Suspect::Gain(i) => share(i) * self.torques[i],
+            Suspect::Clock => self.clock[line],
+            Suspect::Offset(i) => self.offsets[i * r + line],
+            Suspect::Play(i) => Shape::Sign.value(self.actuators[i]) * self.offsets[i * r + line],
             Suspect::Torque(i, shape) => share(i) * shape.value(self.actuators[i]),
             Suspect::Force(own, _) if own != line => 0.0,
             Suspect::Force(own, shape) => shape.value(Moment {

@@ -13,6 +13,7 @@
 //! moves none of them is a remark, one that moves them by several of their deviations spoils them.
 //!
 //! - `columns`: the suspects and their columns;
+//! - `nearby`: what the model would explain of a motion that is slightly different;
 //! - `scores`: one pass over the runs;
 //! - `test`: sizes, deviations, probabilities.
 //!
@@ -20,6 +21,7 @@
 //! τ - J (Jᵀ J)^-1 ρ: measured ones hold the noise of the residual itself, which would accuse every drive.
 
 mod columns;
+mod nearby;
 mod scores;
 mod test;
 

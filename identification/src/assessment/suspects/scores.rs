@@ -5,7 +5,10 @@ use nalgebra::{DMatrix, DVector};
 use overact::{Function, Model};
 use rayon::prelude::*;
 
-use super::columns::{Sample, Shape, Suspect, moments, rates, suspects};
+use super::{
+    columns::{Sample, Shape, Suspect, moments, rates, suspects},
+    nearby::Nearby,
+};
 use crate::{
     blocks::{BLOCK, evaluate, slice},
     data::Log,
@@ -209,6 +212,21 @@ impl Pass<'_> {
         let torques = self.inputs(motion, &jacobians, &mut lines);
         let torque_rates = rates(&torques, n, motion.sampling_frequency);
         let actuators = moments(&info, motion, &positions, &jacobians);
+        let nearby = Nearby {
+            model: self.model,
+            columns: self.columns,
+            base: self.base,
+            values: &self.values,
+        };
+        let clock = nearby.clock(motion)?;
+        let moved = self
+            .suspects
+            .iter()
+            .any(|one| matches!(one, Suspect::Offset(_)));
+        let offsets = match moved {
+            true => nearby.offsets(motion, (&torques, &jacobians), &actuators)?,
+            false => Vec::new(),
+        };
         let width = self.width();
         let own = self.base.len() + 1;
         for sample in 0..motion.samples {
@@ -218,6 +236,8 @@ impl Pass<'_> {
                 torque_rates: slice(&torque_rates, n, sample, 1),
                 actuators: &actuators[sample * n..(sample + 1) * n],
                 pose: slice(&motion.pose, info.sizes.pose, sample, 1),
+                clock: slice(&clock, r, sample, 1),
+                offsets: slice(&offsets, n * r, sample, 1),
             };
             for (line, rows) in lines.iter_mut().enumerate() {
                 let row = &mut rows[sample * width..(sample + 1) * width];

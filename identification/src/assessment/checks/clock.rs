@@ -1,0 +1,57 @@
+//! Whether the sampling frequency is right, as far as gravity and friction tell.
+
+use super::{
+    Context,
+    level::{level, origin},
+    suspected::{harm, parabola, tested},
+};
+use crate::{
+    assessment::{
+        check::{About, Check, CheckKind},
+        suspects::{Group, Suspect},
+    },
+    error::Error,
+    significant,
+};
+
+/// Tests one factor of all times.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let Some(scores) = context.scores else {
+        return Ok(Vec::new());
+    };
+    let place = scores
+        .suspects
+        .iter()
+        .position(|one| *one == Suspect::Clock);
+    let found = tested(scores, place.into_iter().map(Group::suspect));
+    let level = level(1);
+    let checks = found.iter().map(|one| {
+        let accused = &one.accused;
+        let percent = |value: f64| significant(100.0 * value, 3);
+        let check = Check::new(CheckKind::Clock, About::Model, "")
+            .measured(accused.size().abs() / accused.deviation, "standard deviations")
+            .against(accused.quantile(level), origin(1))
+            .shown_by(parabola(
+                accused,
+                "Residual for other sampling frequencies",
+                ("error of the sampling frequency", "%", 100.0),
+            ));
+        if accused.probability >= level {
+            let words = format!(
+                "the sampling frequency agrees with the model; an error of {} % would have been seen",
+                percent(accused.visible(level))
+            );
+            return Check { words, ..check };
+        }
+        let harm = harm(context, scores, one);
+        let words = format!(
+            "the sampling frequency looks {} % too {} (standard deviation {} %); {}. Check the time column and its unit",
+            percent(accused.size().abs()),
+            if accused.size() > 0.0 { "high" } else { "low" },
+            percent(accused.deviation),
+            harm.words()
+        );
+        Check { words, ..check }.because(&harm)
+    });
+    Ok(checks.collect())
+}

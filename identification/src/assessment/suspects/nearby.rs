@@ -1,0 +1,142 @@
+//! What the estimate would explain of a motion that is slightly different: the columns of suspects that
+//! change the motion, by differences.
+
+use overact::{Function, Model};
+
+use super::columns::Moment;
+use crate::{
+    blocks::{BLOCK, evaluate, slice},
+    error::Error,
+    kinematics::{
+        Motion,
+        distribution::{least_norm, transposed_product},
+    },
+    regression::columns::ColumnSet,
+};
+
+/// Step of a position (m, rad) and relative step of the clock.
+const STEP: f64 = 1e-5;
+
+/// An estimate that explains a motion.
+pub(super) struct Nearby<'a> {
+    pub(super) model: &'a dyn Model,
+    pub(super) columns: &'a ColumnSet,
+    pub(super) base: &'a [usize],
+    /// For each base parameter its estimate.
+    pub(super) values: &'a [f64],
+}
+
+impl Nearby<'_> {
+    /// Γ¹ as the estimate explains it, samples x r.
+    fn explained(&self, motion: &Motion, states: [&[f64]; 3]) -> Result<Vec<f64>, Error> {
+        let sizes = self.model.info().sizes;
+        let r = sizes.dof;
+        let mut all = Vec::with_capacity(motion.samples * r);
+        for first in (0..motion.samples).step_by(BLOCK) {
+            let count = BLOCK.min(motion.samples - first);
+            let widths = [sizes.pose, r, r];
+            let parts = [0, 1, 2].map(|i| slice(states[i], widths[i], first, count));
+            let interval = 1.0 / motion.sampling_frequency;
+            let lines = self
+                .columns
+                .evaluate(
+                    self.model,
+                    &parts,
+                    (count, interval),
+                    motion.payload,
+                    (self.base, 0),
+                )
+                .map_err(|error| motion.outside(first + error.sample, error.error))?;
+            let p = self.base.len();
+            for sample in 0..count {
+                all.extend(lines.iter().map(|rows| {
+                    let row = &rows[sample * p..(sample + 1) * p];
+                    row.iter().zip(self.values).map(|(w, x)| w * x).sum::<f64>()
+                }));
+            }
+        }
+        Ok(all)
+    }
+
+    /// By how much Y - W χ changes with the part by which the sampling frequency is too high, samples x r.
+    pub(super) fn clock(&self, motion: &Motion) -> Result<Vec<f64>, Error> {
+        let faster = 1.0 + STEP;
+        let twist: Vec<f64> = motion.twist.iter().map(|v| v * faster).collect();
+        let acceleration: Vec<f64> = motion
+            .acceleration
+            .iter()
+            .map(|a| a * faster * faster)
+            .collect();
+        let here = self.explained(motion, [&motion.pose, &motion.twist, &motion.acceleration])?;
+        let there = self.explained(motion, [&motion.pose, &twist, &acceleration])?;
+        Ok(here
+            .iter()
+            .zip(there)
+            .map(|(a, b)| (a - b) / STEP)
+            .collect())
+    }
+
+    /// By how much Y - W χ changes with the position of each actuator while its velocity and acceleration
+    /// stay, samples x n x r; `torques` are those of the actuators, `jacobians` n x r each.
+    pub(super) fn offsets(
+        &self,
+        motion: &Motion,
+        (torques, jacobians): (&[f64], &[f64]),
+        actuators: &[Moment],
+    ) -> Result<Vec<f64>, Error> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let rates: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
+        let changes: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
+        let here = self.left(motion, &motion.pose, torques, (&rates, &changes))?;
+        let mut all = vec![0.0; motion.samples * n * r];
+        for actuator in 0..n {
+            let mut poses = motion.pose.clone();
+            for (sample, pose) in poses.chunks_exact_mut(sizes.pose).enumerate() {
+                let jacobian = slice(jacobians, n * r, sample, 1);
+                if let Some(distribution) = least_norm(jacobian, r) {
+                    let row = &distribution[actuator * r..(actuator + 1) * r];
+                    let step: Vec<f64> = row.iter().map(|part| STEP * part).collect();
+                    self.model.displace(pose, &step);
+                }
+            }
+            let there = self.left(motion, &poses, torques, (&rates, &changes))?;
+            for (place, (a, b)) in here.iter().zip(&there).enumerate() {
+                let (sample, line) = (place / r, place % r);
+                all[(sample * n + actuator) * r + line] = (b - a) / STEP;
+            }
+        }
+        Ok(all)
+    }
+
+    /// Y - W χ at other poses, of the same torques, velocities and accelerations of the actuators.
+    fn left(
+        &self,
+        motion: &Motion,
+        poses: &[f64],
+        torques: &[f64],
+        (rates, changes): (&[f64], &[f64]),
+    ) -> Result<Vec<f64>, Error> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
+        let ask = |function: Function, inputs: &[&[f64]]| {
+            evaluate(self.model, function, inputs, motion.samples).map_err(at)
+        };
+        let twist = ask(Function::TwistFromActuators, &[poses, rates])?;
+        let acceleration = ask(
+            Function::AccelerationFromActuators,
+            &[poses, &twist, changes],
+        )?;
+        let jacobians = ask(Function::InverseJacobian, &[poses])?;
+        let explained = self.explained(motion, [poses, &twist, &acceleration])?;
+        let mut left = Vec::with_capacity(explained.len());
+        for sample in 0..motion.samples {
+            let jacobian = slice(&jacobians, n * r, sample, 1);
+            let inputs = transposed_product(jacobian, slice(torques, n, sample, 1), r);
+            let explained = slice(&explained, r, sample, 1);
+            left.extend(inputs.iter().zip(explained).map(|(y, w)| y - w));
+        }
+        Ok(left)
+    }
+}
