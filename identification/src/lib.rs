@@ -57,7 +57,9 @@ pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
     essential::{Drift, Essential, Removal, essential},
     estimate::{Estimation, LineError, estimate},
-    instruments::regressor::{Agreement, ErrorsInRegressor, RegressorError, RepeatedRun},
+    instruments::regressor::{
+        Agreement, ErrorsInRegressor, RegressorError, RepeatedRun, SimulatedRun,
+    },
 };
 pub use identify::{
     BaseParameter, Identification, Outcome, Prepared, Progress, RankedProjection, Regrouping,

@@ -3,8 +3,8 @@
 use crate::{error::Error, partitions::partitions, robot::Robot, runs::Runs};
 use overact::Model;
 use overact_identification::{
-    Calibration, CalibrationScope, Dataset, Identification, Log, Progress, Settings, Stage, Study,
-    identify, study,
+    Calibration, CalibrationScope, Dataset, Identification, Instruments, Log, Progress, Settings,
+    Stage, Study, identify, study,
 };
 use std::collections::BTreeMap;
 
@@ -152,9 +152,17 @@ impl<'a> Identifier<'a> {
     fn identified(&self) -> Result<Identification, Error> {
         let settings = self.with_defaults();
         let essential = self.essential();
+        let beside = match settings.instruments {
+            Instruments::Simulated => Some(self.robot.simulated(self.runs, &settings)?),
+            _ => None,
+        };
+        let dataset = Dataset {
+            runs: beside.as_deref().unwrap_or(self.runs),
+            ..self.dataset()
+        };
         let mut result = identify(
             self.robot.model(),
-            &self.dataset(),
+            &dataset,
             &without_elimination(&settings, essential),
             self.progress,
         )?;

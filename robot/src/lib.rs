@@ -26,6 +26,7 @@
 //! - `robot`: the running robot; `settings`, `experiment`: its tables as inputs of identification and
 //!   simulation; `runs`: logs and virtual runs;
 //! - `check`: everything that is wrong with a description, found without its model;
+//! - `instruments`: the motion of the simulated robot beside runs, by which errors of theirs are told;
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
 
@@ -35,6 +36,7 @@ mod compiled_file;
 mod error;
 mod experiment;
 mod identifier;
+mod instruments;
 mod interpreted;
 mod partitions;
 mod robot;
@@ -47,6 +49,7 @@ pub use compiled_file::CompiledFile;
 pub use error::{Column, Error, Problem};
 pub use experiment::VirtualExperiment;
 pub use identifier::Identifier;
+pub use instruments::beside_simulated;
 pub use interpreted::InterpretedRobot;
 pub use partitions::partitions;
 pub use robot::Robot;

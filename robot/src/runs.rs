@@ -1,7 +1,8 @@
 //! The runs of an identification: measured logs, or the virtual experiment.
 
 use crate::{error::Error, experiment::VirtualExperiment, robot::Robot};
-use overact_identification::{Log, data};
+use overact_codegen::description::Instruments;
+use overact_identification::{Gain, Log, Mapping, data};
 use overact_simulation::Record;
 use std::{collections::BTreeMap, path::Path};
 
@@ -43,11 +44,47 @@ impl Robot {
                 Err(error) => errors.push(Error::from(error)),
             }
         }
+        if errors.is_empty()
+            && let Some(mapping) = self.references(&mapping)
+        {
+            return beside_references(logs, files, &mapping);
+        }
         match errors.is_empty() {
             true => Ok(logs),
             false => Err(Error::Several(errors)),
         }
     }
+}
+
+impl Robot {
+    /// Where the references of runs stand, if the robot is to be simulated along them.
+    fn references(&self, own: &Mapping) -> Option<Mapping> {
+        let description = self.description();
+        let controller = description.controller.as_ref()?;
+        let wanted = description.identification.instruments == Instruments::Simulated;
+        wanted.then(|| Mapping {
+            positions: controller.reference.clone(),
+            // A log has two signals; the reference's second one is not looked at.
+            torques: controller.reference.clone(),
+            torque_gain: vec![Gain::Value(1.0); controller.reference.len()],
+            ..own.clone()
+        })
+    }
+}
+
+/// Runs with the reference that they followed beside each.
+fn beside_references(
+    logs: Vec<Log>,
+    files: &[(&Path, bool)],
+    mapping: &Mapping,
+) -> Result<Vec<Log>, Error> {
+    let references = data::read_all(files, mapping, &|_| ());
+    let pairs = logs.into_iter().zip(references);
+    let beside = |(log, reference): (Log, Result<Log, _>)| {
+        let reference = reference.map_err(Error::from)?;
+        Ok(log.with_instruments(reference))
+    };
+    pairs.map(beside).collect()
 }
 
 impl VirtualExperiment<'_> {

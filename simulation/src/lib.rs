@@ -22,6 +22,7 @@
 //! - `plant`: the robot's motion under torques that are held between samples;
 //! - `sensors`: encoder delay and quantisation, torque noise;
 //! - [`run`]: the loop, over all runs; [`log`]: the record as CSV;
+//! - [`cascade`]: the loops of an industrial drive along a recorded reference;
 //! - [`excitation`]: search of trajectories that excite the parameters well.
 //!
 //! ```
@@ -45,6 +46,7 @@
 //! same experiment: every noise stream is seeded by run name and actuator, and no result depends on
 //! the order in which threads finish.
 
+pub mod cascade;
 mod conditioning;
 mod controller;
 pub mod drives;
@@ -65,6 +67,7 @@ mod validation;
 #[path = "../tests/support/mod.rs"]
 mod support;
 
+pub use cascade::{Cascade, Recorded, follow_recorded};
 pub use drives::Drives;
 pub use error::{Cause, Error, Problem, RunError, Stage};
 

@@ -2,8 +2,11 @@
 
 use crate::{Failure, Noise, Subject, draw};
 use overact_identification::{
-    Estimate, ModelKind, ParameterEstimate, Stage, estimate_projection, prepare,
+    Estimate, Estimator, Instruments, Log, ModelKind, ParameterEstimate, Settings, Stage,
+    estimate_projection, prepare,
 };
+use overact_robot::beside_simulated;
+use overact_simulation::Experiment;
 
 /// The intervals of one estimate of one draw, counted.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +17,10 @@ pub struct Counted {
     pub model: ModelKind,
     /// Which parameters were estimated.
     pub stage: Stage,
+    /// How.
+    pub estimator: Estimator,
+    /// Whether errors of the positions were found to spoil least squares, where that was tested.
+    pub flagged: Option<bool>,
     /// The parameters of which the true value is known.
     pub parameters: Vec<Interval>,
 }
@@ -45,26 +52,55 @@ pub fn measure(subject: &Subject, draw: u64, noises: &[Noise]) -> Result<Vec<Cou
         let records = draw::records(subject, &experiment, encoder)?;
         for &noise in noises.iter().filter(|noise| noise.encoder == encoder) {
             let logs = draw::logs(subject, &records, noise.torque, draw)?;
-            let projections = subject.projections();
-            let prepared = prepare(
-                subject.model(),
-                &logs,
-                &projections,
-                &subject.settings,
-                &|_| {},
-            )?;
-            for projection in 0..projections.len() {
-                let truth = Some(&subject.truth);
-                let outcome = estimate_projection(&prepared, projection, &subject.settings, truth)?;
-                for estimate in [&outcome.base, &outcome.recommended, &outcome.essential] {
-                    counted.push(Counted {
-                        noise,
-                        model: estimate.model,
-                        stage: estimate.stage,
-                        parameters: intervals(estimate, &outcome.base),
-                    });
-                }
-            }
+            counted.extend(identified(subject, &experiment, noise, logs)?);
+        }
+    }
+    Ok(counted)
+}
+
+/// Identifies from runs and counts the intervals. With coarser encoders than the description's there is an
+/// estimate by instruments, too: those of the simulated robot, since steps of an encoder return with a
+/// motion that returns.
+fn identified(
+    subject: &Subject,
+    experiment: &Experiment,
+    noise: Noise,
+    logs: Vec<Log>,
+) -> Result<Vec<Counted>, Failure> {
+    let coarse = noise.encoder > 1.0;
+    let settings = Settings {
+        instruments: if coarse {
+            Instruments::Simulated
+        } else {
+            Instruments::None
+        },
+        ..subject.settings.clone()
+    };
+    let logs = if coarse {
+        let beside = beside_simulated(subject.model(), experiment, logs, &settings);
+        beside.map_err(|error| error.render(false))?
+    } else {
+        logs
+    };
+    let projections = subject.projections();
+    let prepared = prepare(subject.model(), &logs, &projections, &settings, &|_| {})?;
+    let mut counted = Vec::new();
+    for projection in 0..projections.len() {
+        let truth = Some(&subject.truth);
+        let outcome = estimate_projection(&prepared, projection, &settings, truth)?;
+        let told = &outcome.errors_in_regressor;
+        let spoils = told.parameters.iter().any(|one| one.spoiled);
+        let flagged = told.agreement.as_ref().map(|own| own.differs && spoils);
+        let least_squares = [&outcome.base, &outcome.recommended, &outcome.essential];
+        for estimate in least_squares.into_iter().chain(&outcome.instrumental) {
+            counted.push(Counted {
+                noise,
+                model: estimate.model,
+                stage: estimate.stage,
+                estimator: estimate.estimator,
+                flagged,
+                parameters: intervals(estimate, &outcome.base),
+            });
         }
     }
     Ok(counted)

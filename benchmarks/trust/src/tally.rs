@@ -5,7 +5,7 @@
 //! mean of as many values as there are draws, by Student's distribution.
 
 use crate::{Counted, Noise};
-use overact_identification::{ModelKind, Stage};
+use overact_identification::{Estimator, ModelKind, Stage};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -18,6 +18,11 @@ pub struct Cell {
     pub model: ModelKind,
     /// Which parameters are estimated.
     pub stage: Stage,
+    /// How.
+    pub estimator: Estimator,
+    /// Percent of the draws in which errors of the positions were found to spoil least squares, where
+    /// that was tested.
+    pub flagged_percent: Option<f64>,
     /// Multiples of the description's noise.
     pub noise: Noise,
     /// Number of draws.
@@ -57,8 +62,8 @@ impl Tally {
     }
 
     fn cell(&self, robot: &str, key: &Counted) -> Cell {
-        let same =
-            |one: &&Counted| (one.noise, one.model, one.stage) == (key.noise, key.model, key.stage);
+        let of = |one: &Counted| (one.noise, one.model, one.stage, one.estimator);
+        let same = |one: &&Counted| of(one) == of(key);
         let own: Vec<&Counted> = self.draws.iter().flatten().filter(same).collect();
         let fractions: Vec<f64> = own.iter().filter_map(|one| fraction(one)).collect();
         let (coverage, half) = mean(&fractions);
@@ -83,6 +88,8 @@ impl Tally {
             robot: robot.to_owned(),
             model: key.model,
             stage: key.stage,
+            estimator: key.estimator,
+            flagged_percent: flagged(&own),
             noise: key.noise,
             draws: own.len(),
             parameters: all().count() as f64 / own.len() as f64,
@@ -96,6 +103,13 @@ impl Tally {
             worst: (worst.0.to_owned(), 100.0 * worst.1),
         }
     }
+}
+
+/// Percent of the draws that are flagged, of those that were tested.
+fn flagged(draws: &[&Counted]) -> Option<f64> {
+    let tested: Vec<bool> = draws.iter().filter_map(|one| one.flagged).collect();
+    let count = tested.iter().filter(|flagged| **flagged).count();
+    (!tested.is_empty()).then(|| 100.0 * count as f64 / tested.len() as f64)
 }
 
 /// The part of a draw's intervals that contain the truth.

@@ -1,5 +1,6 @@
 //! The whole of a description, evaluated.
 
+use super::controller::Controller;
 use super::experiment::Experiment;
 use super::model::{Leg, Platform, Spanned, actuators};
 use super::settings::{Data, Identification};
@@ -31,6 +32,8 @@ pub struct Description {
     pub experiment: Option<Experiment>,
     /// How a measured log maps on the robot.
     pub data: Option<Data>,
+    /// The loops with which measured runs were made.
+    pub controller: Option<Controller>,
     /// Settings of the identification.
     pub identification: Identification,
 }

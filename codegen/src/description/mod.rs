@@ -9,6 +9,7 @@
 //! Numbers are exact: decimals are fractions, angles are multiples of π and fractions of a radian.
 
 mod actuator_names;
+mod controller;
 mod dimension;
 mod document;
 mod drives;
@@ -37,6 +38,7 @@ mod token;
 mod value;
 
 pub use actuator_names::ActuatorNames;
+pub use controller::Controller;
 pub use document::{BaseColumns, Description};
 pub use drives::Drives;
 pub use experiment::{Experiment, Run, Term, TrueParameter};

@@ -7,7 +7,7 @@ use super::model::{Leg, Platform, Spanned, actuators};
 use super::reader::{Context, Item, Table};
 use super::scope::Scope;
 use super::shape::Shape;
-use super::{experiment, leg, platform, settings, shape};
+use super::{controller, experiment, leg, platform, settings, shape};
 use crate::cas::{Number, Ratio};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::effort::Effort;
@@ -102,7 +102,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     };
     check_parameter_names(table, &robot);
     let (experiment, data) = (table.get("experiment"), table.get("data"));
-    let settings = table.get("identification");
+    let (settings, loops) = (table.get("identification"), table.get("controller"));
     table.finish();
     // Names and numbers in what follows depend on all legs: a leg that failed would make every one
     // of them wrong.
@@ -112,6 +112,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     }
     let experiment = experiment.and_then(|item| experiment::read(&item, &robot));
     let data = data.and_then(|item| settings::data(&item, &robot));
+    let controller = loops.and_then(|item| controller::read(&item, &robot));
     let identification = settings::identification(settings.as_ref(), &robot);
     Some(Description {
         name: name?,
@@ -125,6 +126,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         legs,
         experiment,
         data,
+        controller,
         identification,
     })
 }

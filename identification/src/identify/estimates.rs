@@ -198,6 +198,7 @@ impl Context<'_> {
         let model = self.system.projection.model();
         let told = ErrorsInRegressor {
             runs: companions.runs.clone(),
+            simulated: companions.simulated.clone(),
             ..ErrorsInRegressor::without(model, settings.instruments, why)
         };
         if self.system.instruments.is_empty() {

@@ -44,6 +44,11 @@ zzzz10 = 1
 time = "t"
 positions = ["q"]
 torques = ["f"]
+[controller]
+zzzz15 = 1
+reference = ["qd"]
+position_gain = 1
+velocity_gain = 1
 [experiment]
 zzzz11 = 1
 [experiment.drives]
@@ -56,7 +61,7 @@ terms = [{ zzzz14 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
 "#;
 
 /// Headings, in the order of the unknown keys, and what stands before the keys there.
-const SECTIONS: [(&str, &str); 15] = [
+const SECTIONS: [(&str, &str); 16] = [
     ("## The robot", ""),
     ("### `[platform]`", ""),
     ("### `[platform]`", "axis."),
@@ -72,6 +77,7 @@ const SECTIONS: [(&str, &str); 15] = [
     ("### `[experiment.drives]`", ""),
     ("### `[[experiment.run]]`", ""),
     ("### A term", ""),
+    ("## `[controller]`: the loops of the drives", ""),
 ];
 
 fn folder(path: &str) -> PathBuf {

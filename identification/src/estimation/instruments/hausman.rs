@@ -31,8 +31,9 @@ use crate::{
 /// The probability with which estimates that agree are called different.
 pub(crate) const LEVEL: f64 = 0.05;
 
-/// Directions of V below this part of the largest, in units of deviations, are rounding.
-const SMALLEST_DIRECTION: f64 = 1e-9;
+/// Directions of V below this part of the largest, in units of deviations, do not count: there the
+/// estimates differ by a hundredth of what they may differ by otherwise, which tells nothing of errors.
+const SMALLEST_DIRECTION: f64 = 1e-4;
 
 /// A difference below this part of the standard deviation is rounding.
 const SMALLEST_DIFFERENCE: f64 = 1e-6;

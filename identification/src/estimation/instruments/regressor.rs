@@ -30,6 +30,9 @@ pub struct ErrorsInRegressor {
     /// For instruments from other periods, the repetitions of each run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub runs: Vec<RepeatedRun>,
+    /// For instruments from the simulated robot, how well it reproduces each run.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub simulated: Vec<SimulatedRun>,
     /// Why there are no instruments, or why they could not be used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<String>,
@@ -55,6 +58,16 @@ pub struct RepeatedRun {
     pub periods: usize,
     /// Correlation of the errors of two periods; none where the positions have no noise.
     pub error_correlation: Option<f64>,
+}
+
+/// How well the simulated robot reproduces a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct SimulatedRun {
+    /// Name of the run.
+    pub run: String,
+    /// 100 ||τ simulated - τ measured||/||τ measured||, over all actuators and samples.
+    pub torque_error_percent: f64,
 }
 
 /// The test of Durbin, Wu and Hausman.
@@ -132,6 +145,7 @@ impl ErrorsInRegressor {
             model,
             instruments,
             runs: Vec::new(),
+            simulated: Vec::new(),
             missing: why,
             agreement: None,
             parameters: Vec::new(),

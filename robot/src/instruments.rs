@@ -1,0 +1,161 @@
+//! Instruments from the simulated robot: the motion that a robot with the estimated parameters makes under
+//! its controller, without the errors of its encoders.
+//!
+//! Instruments need not be exact, they must be free of the errors of the measured run. So the parameters
+//! by least squares are good enough for the simulation, although errors may bias them: a good controller
+//! keeps any such robot near its reference.
+
+use crate::{error::Error, robot::Robot};
+use overact::{Info, Model};
+use overact_identification::{
+    Estimate, Instruments, Log, Prepared, Projection, Settings, estimate_projection, prepare,
+};
+use overact_simulation::{
+    Cascade, Drives, Experiment, Record, Recorded, follow_recorded, simulate,
+};
+
+/// The runs of a virtual experiment with the motion of the simulated robot beside each: that of the
+/// parameters by least squares, with the experiment's controller and ideal sensors.
+///
+/// # Errors
+/// Data that determine no parameter, or parameters of which no robot can be made.
+pub fn beside_simulated(
+    model: &dyn Model,
+    plan: &Experiment,
+    runs: Vec<Log>,
+    settings: &Settings,
+) -> Result<Vec<Log>, Error> {
+    let parameters = estimated(model, &runs, settings)?;
+    let mut plan = Experiment {
+        encoder_resolution: Vec::new(),
+        torque_noise: Vec::new(),
+        drives: Drives::default(),
+        nominal_parameters: Some(
+            plan.nominal_parameters
+                .as_ref()
+                .unwrap_or(&plan.parameters)
+                .clone(),
+        ),
+        parameters,
+        ..plan.clone()
+    };
+    plan.runs
+        .retain(|run| runs.iter().any(|log| log.name() == run.name));
+    let records = simulate(model, &plan, &|_, _| ()).map_err(failed)?;
+    let mut beside = Vec::new();
+    for log in runs {
+        let own = records.iter().find(|record| record.name == log.name());
+        beside.push(match own {
+            Some(record) => log.with_instruments(as_log(record)?),
+            None => log,
+        });
+    }
+    Ok(beside)
+}
+
+impl Robot {
+    /// Runs with the motion of the simulated robot beside each: along the recorded reference where a run has
+    /// one, else as the virtual experiment made it.
+    pub(crate) fn simulated(&self, runs: &[Log], settings: &Settings) -> Result<Vec<Log>, Error> {
+        let model = self.model();
+        match &self.description().controller {
+            Some(controller) if runs.iter().all(|log| log.instruments().is_some()) => {
+                let cascade = Cascade {
+                    position_gain: controller.position_gain.clone(),
+                    velocity_gain: controller.velocity_gain.clone(),
+                    drive_gain: controller.drive_gain.clone(),
+                    limit: controller.limit.clone(),
+                };
+                along_references(model, &cascade, runs, settings)
+            }
+            _ if self.description().experiment.is_some() => {
+                let experiment = self.experiment()?;
+                beside_simulated(model, experiment.plan(), runs.to_vec(), settings)
+            }
+            // Why there are none is told where they are missed.
+            _ => Ok(runs.to_vec()),
+        }
+    }
+}
+
+/// Replaces the references beside runs by the motion of the robot that follows them.
+fn along_references(
+    model: &dyn Model,
+    cascade: &Cascade,
+    runs: &[Log],
+    settings: &Settings,
+) -> Result<Vec<Log>, Error> {
+    let whole = estimated(model, runs, settings)?;
+    let robot = model.info().sizes.parameters;
+    let mut beside = Vec::new();
+    for log in runs {
+        let reference = log.instruments().map(Log::load).transpose()?;
+        let (positions, _) = reference.unwrap_or_default();
+        let mut parameters = whole.clone();
+        if !log.payload() {
+            parameters[robot..].fill(0.0);
+        }
+        let recorded = Recorded {
+            run: log.name(),
+            payload: log.payload(),
+            sampling_hz: log.sampling_frequency(),
+            positions: &positions,
+        };
+        let record = follow_recorded(model, cascade, &parameters, recorded).map_err(failed)?;
+        beside.push(log.clone().with_instruments(as_log(&record)?));
+    }
+    Ok(beside)
+}
+
+/// Standard parameters with the model of the base estimate by least squares, the payload's last.
+fn estimated(model: &dyn Model, runs: &[Log], settings: &Settings) -> Result<Vec<f64>, Error> {
+    let sizes = model.info().sizes;
+    let projection = if sizes.actuators > sizes.dof {
+        Projection::Platform
+    } else {
+        Projection::Joints
+    };
+    let settings = Settings {
+        instruments: Instruments::None,
+        r_sigma: f64::INFINITY,
+        ..settings.clone()
+    };
+    let prepared = prepare(model, runs, &[projection], &settings, &|_| {})?;
+    let outcome = estimate_projection(&prepared, 0, &settings, None)?;
+    Ok(standard(&model.info(), &prepared, &outcome.base))
+}
+
+/// Each base parameter stands on the one that is kept, the regrouped ones are zero.
+fn standard(info: &Info<'_>, prepared: &Prepared, estimate: &Estimate) -> Vec<f64> {
+    let columns = prepared.columns.as_slice();
+    let value = |name: &str| {
+        let own = estimate.parameters.iter().find(|one| {
+            let kept = prepared.base.columns.get(one.column);
+            let column = kept.and_then(|&column| columns.get(column));
+            column.is_some_and(|column| column.standard == name)
+        });
+        own.map_or(0.0, |one| one.value)
+    };
+    let all = info.parameters.iter().chain(info.payload_parameters);
+    all.map(|parameter| value(parameter.name)).collect()
+}
+
+/// A record as a run of instruments.
+fn as_log(record: &Record) -> Result<Log, overact_identification::Error> {
+    Log::new(
+        format!("{}, simulated", record.name),
+        record.sampling_hz,
+        record.actuators.len(),
+        record.positions.clone(),
+        record.torques.clone(),
+        record.payload,
+    )
+}
+
+/// A simulation that failed.
+fn failed(error: overact_simulation::Error) -> Error {
+    let help = "the robot of the estimated parameters can't be simulated: set `instruments` to \"periods\" or \"none\"";
+    crate::error::Problem::new(error.to_string())
+        .help(help)
+        .into()
+}
