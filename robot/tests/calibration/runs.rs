@@ -1,0 +1,189 @@
+//! Runs of robots as their encoders see them, without dynamics.
+
+use overact::{Function, Model};
+use overact_identification::{CalibratedParameter, Calibration, CalibrationScope, Log};
+use overact_robot::Robot;
+use std::{f64::consts::TAU, path::Path};
+
+/// The text of a description of `robots/`.
+pub(crate) fn text(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path.join("../robots").join(name)).expect("a description")
+}
+
+/// The robot of a description.
+pub(crate) fn robot(text: &str) -> Robot {
+    Robot::from_text("robot.toml", text).expect("a robot")
+}
+
+/// What encoders make of positions.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Encoder {
+    /// Steps of so many rad or m.
+    Resolution(f64),
+    /// Normal noise of a deviation (rad, m), of which a part is that of the sample before.
+    Noise { deviation: f64, remembered: f64 },
+}
+
+/// How a robot moves and is read.
+#[derive(Debug, Clone)]
+pub(crate) struct Reading {
+    pub(crate) samples: usize,
+    /// How far each coordinate moves: m, rad.
+    pub(crate) size: [f64; 2],
+    pub(crate) encoder: Encoder,
+    /// What each encoder shows too much (rad, m); the others are right.
+    pub(crate) offsets: Vec<f64>,
+    pub(crate) seed: u64,
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        Self {
+            samples: 500,
+            size: [0.05, 0.3],
+            encoder: Encoder::Resolution(1e-5),
+            offsets: Vec::new(),
+            seed: 1,
+        }
+    }
+}
+
+/// A run in which every coordinate moves about home.
+pub(crate) fn run(robot: &Robot, of: &Reading) -> Log {
+    let model = robot.model();
+    let info = model.info();
+    let n = info.sizes.actuators;
+    let mut positions = vec![0.0; of.samples * n];
+    let mut noise = Noise::new(of.seed, n);
+    for (sample, row) in positions.chunks_exact_mut(n).enumerate() {
+        let time = sample as f64 / of.samples as f64;
+        let coordinates = info.coordinates.iter().enumerate();
+        let step: Vec<f64> = coordinates
+            .map(|(k, name)| {
+                let angular = *name == "phi" || name.starts_with('r');
+                let wave = |harmonic: usize| {
+                    let turns = (harmonic * (k + 1)) as f64 * time + 0.3 * (k + 1) as f64;
+                    (TAU * turns).sin() / harmonic as f64
+                };
+                0.5 * of.size[usize::from(angular)] * (wave(1) + wave(2))
+            })
+            .collect();
+        let mut pose = info.home_pose.to_vec();
+        model.displace(&mut pose, &step);
+        model
+            .evaluate(Function::ActuatorPositions, &[&pose], row)
+            .expect("a pose that the robot reaches");
+        for (position, offset) in row.iter_mut().zip(&of.offsets) {
+            *position += offset;
+        }
+        noise.add(of.encoder, row);
+    }
+    let torques = vec![0.0; positions.len()];
+    Log::new("run", 100.0, n, positions, torques, false).expect("a log")
+}
+
+/// The errors of encoders.
+struct Noise {
+    state: u64,
+    last: Vec<f64>,
+}
+
+impl Noise {
+    fn new(seed: u64, sensors: usize) -> Self {
+        Self {
+            state: seed.wrapping_mul(0x9e37_79b9_7f4a_7c15),
+            last: vec![0.0; sensors],
+        }
+    }
+
+    /// A number between 0 and 1.
+    fn uniform(&mut self) -> f64 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.state;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        radius * (TAU * self.uniform()).cos()
+    }
+
+    fn add(&mut self, encoder: Encoder, row: &mut [f64]) {
+        for (sensor, position) in row.iter_mut().enumerate() {
+            match encoder {
+                Encoder::Resolution(step) => *position = (*position / step).round() * step,
+                Encoder::Noise {
+                    deviation,
+                    remembered,
+                } => {
+                    let new = (1.0 - remembered * remembered).sqrt() * self.normal();
+                    self.last[sensor] = remembered * self.last[sensor] + new;
+                    *position += deviation * self.last[sensor];
+                }
+            }
+        }
+    }
+}
+
+/// The parameters that calibration knows of a robot, with their places.
+pub(crate) fn parameters(robot: &Robot) -> Vec<(String, usize)> {
+    let reading = Reading {
+        samples: 20,
+        size: [1e-3, 1e-3],
+        ..Reading::default()
+    };
+    let clean = robot.calibrate(&[run(robot, &reading)], CalibrationScope::Offsets);
+    let clean = clean.expect("a calibration");
+    let n = clean.sensors;
+    let lengths = clean
+        .held
+        .into_iter()
+        .filter(|one| !one.name.starts_with("offset_"));
+    let names = lengths.enumerate().map(|(index, one)| (one.name, index));
+    assert_eq!(n, robot.model().info().sizes.actuators);
+    names.collect()
+}
+
+/// A robot of which lengths are other than described (m).
+pub(crate) fn faulty(robot: &Robot, changes: &[(&str, f64)]) -> Robot {
+    let reading = Reading {
+        samples: 20,
+        size: [1e-3, 1e-3],
+        ..Reading::default()
+    };
+    let clean = robot.calibrate(&[run(robot, &reading)], CalibrationScope::Smallest);
+    let clean = clean.expect("a calibration");
+    let known = parameters(robot);
+    let estimated = changes.iter().map(|(name, change)| {
+        let index = known
+            .iter()
+            .find(|(own, _)| own == name)
+            .expect("a parameter")
+            .1;
+        let held = clean
+            .held
+            .iter()
+            .find(|own| own.name == *name)
+            .expect("a parameter");
+        CalibratedParameter {
+            name: (*name).to_owned(),
+            unit: held.unit,
+            kind: held.kind,
+            described: held.described,
+            change: *change,
+            standard_deviation: 1e-9,
+            interval_95: [*change; 2],
+            alternatives: Vec::new(),
+            index,
+        }
+    });
+    let fault = Calibration {
+        estimated: estimated.collect(),
+        converged: true,
+        ..clean
+    };
+    robot.calibrated(&fault).expect("a robot")
+}
