@@ -2,59 +2,69 @@
 
 use super::runs::{Encoder, Reading, faulty, robot, run, text};
 use overact_identification::CalibrationScope;
-use overact_tier::by_tier;
+use overact_tier::{by_tier, is_full};
 
 /// What is wrong with the robot.
 const LINK: (&str, f64) = ("d_2_leg2", 2.8e-3);
 const OFFSET: (&str, f64) = ("offset_leg3", 3.490_658_503_988_659e-3);
 
-/// Draws of white noise and of noise that is correlated over time: the parameters that were changed are the
-/// right ones, and the 95 % intervals cover them; those of all parameters together cover, too.
+/// Under white noise the parameters that were changed are the right ones, and the 95 % intervals cover them;
+/// those of all parameters together cover, too.
 #[test]
-fn intervals_cover() {
-    let draws = by_tier([3, 200]);
-    let memories: &[f64] = by_tier([&[0.0], &[0.0, 0.9]]);
+fn intervals_cover_under_white_noise() {
+    cover(0.0);
+}
+
+/// The intervals cover under noise that is correlated over some ten samples.
+#[test]
+fn intervals_cover_under_correlated_noise() {
+    if is_full() {
+        cover(0.9);
+    }
+}
+
+/// Draws of noise of which a part is that of the sample before.
+fn cover(remembered: f64) {
+    let draws = by_tier([3, 100]);
     let described = robot(&text("dualv.toml"));
     let real = faulty(&described, &[LINK]);
-    for &remembered in memories {
-        for scope in [CalibrationScope::Smallest, CalibrationScope::All] {
-            let (mut covered, mut squares, mut right) = ([0; 2], [0.0; 2], 0);
-            for draw in 0..draws {
-                let reading = Reading {
-                    samples: 400,
-                    encoder: Encoder::Noise {
-                        deviation: 3e-6,
-                        remembered,
-                    },
-                    offsets: vec![0.0, 0.0, OFFSET.1],
-                    seed: 1 + draw as u64,
-                    ..Reading::default()
-                };
-                let found = described.calibrate(&[run(&real, &reading)], scope);
-                let found = found.expect("a calibration");
-                right += usize::from(found.estimated.len() == 2);
-                for (which, (name, truth)) in [OFFSET, LINK].into_iter().enumerate() {
-                    let one = found.estimated.iter().find(|one| one.name == name);
-                    let Some(one) = one else { continue };
-                    let [low, high] = one.interval_95;
-                    covered[which] += usize::from((low..=high).contains(&truth));
-                    squares[which] += ((one.change - truth) / one.standard_deviation).powi(2);
-                }
+    for scope in [CalibrationScope::Smallest, CalibrationScope::All] {
+        let (mut covered, mut squares, mut right) = ([0; 2], [0.0; 2], 0);
+        for draw in 0..draws {
+            let reading = Reading {
+                samples: 300,
+                encoder: Encoder::Noise {
+                    deviation: 3e-6,
+                    remembered,
+                },
+                offsets: vec![0.0, 0.0, OFFSET.1],
+                seed: 1 + draw as u64,
+                ..Reading::default()
+            };
+            let found = described.calibrate(&[run(&real, &reading)], scope);
+            let found = found.expect("a calibration");
+            right += usize::from(found.estimated.len() == 2);
+            for (which, (name, truth)) in [OFFSET, LINK].into_iter().enumerate() {
+                let one = found.estimated.iter().find(|one| one.name == name);
+                let Some(one) = one else { continue };
+                let [low, high] = one.interval_95;
+                covered[which] += usize::from((low..=high).contains(&truth));
+                squares[which] += ((one.change - truth) / one.standard_deviation).powi(2);
             }
-            let part = |count: usize| count as f64 / draws as f64;
-            let sizes = squares.map(|sum| (sum / draws as f64).sqrt());
-            println!(
-                "noise remembered {remembered}, {scope:?}: coverage {:?}, errors in deviations {sizes:?}, exactly the two {}",
-                covered.map(part),
-                part(right)
-            );
-            for (covered, size) in covered.map(part).into_iter().zip(sizes) {
-                assert!(covered >= by_tier([0.5, 0.88]), "{covered}");
-                assert!(size < by_tier([3.0, 1.25]), "{size}");
-            }
-            if scope == CalibrationScope::Smallest && remembered == 0.0 {
-                assert!(part(right) >= by_tier([0.6, 0.95]), "{right} of {draws}");
-            }
+        }
+        let part = |count: usize| count as f64 / draws as f64;
+        let sizes = squares.map(|sum| (sum / draws as f64).sqrt());
+        println!(
+            "noise remembered {remembered}, {scope:?}: coverage {:?}, errors in deviations {sizes:?}, exactly the two {}",
+            covered.map(part),
+            part(right)
+        );
+        for (covered, size) in covered.map(part).into_iter().zip(sizes) {
+            assert!(covered >= by_tier([0.5, 0.88]), "{covered}");
+            assert!(size < by_tier([3.0, 1.25]), "{size}");
+        }
+        if scope == CalibrationScope::Smallest && remembered == 0.0 {
+            assert!(part(right) >= by_tier([0.6, 0.95]), "{right} of {draws}");
         }
     }
 }

@@ -92,7 +92,8 @@ struct Noise {
 impl Noise {
     fn new(seed: u64, sensors: usize) -> Self {
         Self {
-            state: seed.wrapping_mul(0x9e37_79b9_7f4a_7c15),
+            // Not a multiple of the step of the sequence, so that no two seeds have one sequence shifted.
+            state: seed.wrapping_mul(0xd134_2543_de82_ef95),
             last: vec![0.0; sensors],
         }
     }
