@@ -266,12 +266,17 @@ fn emps_has_the_published_digits() {
         &pulses,
     ];
     let document = bench.json(&arguments);
-    assert_eq!(
-        document["estimates"].as_array().map(Vec::len),
-        Some(1),
-        "base parameters only"
+    // Base parameters only, by least squares and by instruments from the simulated robot.
+    let estimates = document["estimates"].as_array().expect("a list");
+    let how: Vec<&Value> = estimates.iter().map(|one| &one["estimator"]).collect();
+    assert_eq!(how, ["least-squares", "instrumental-variables"]);
+    let simulated = &document["errors_in_regressor"][0]["simulated"][0];
+    let error = number(&simulated["torque_error_percent"]);
+    assert!(
+        (5.0..6.0).contains(&error),
+        "published: 5.848 %, found {error}"
     );
-    let estimate = &document["estimates"][0];
+    let estimate = &estimates[0];
     let digits = |value: &Value| format!("{:.4}", number(value));
     let expected = [
         ("m_1R", "95.1089", "0.1141"),
