@@ -105,6 +105,13 @@ impl Reports {
         self.published.as_ref()
     }
 
+    /// Where the page goes, where one is asked for.
+    pub(crate) fn page(&self) -> Option<&Path> {
+        let mut files = self.files.iter();
+        let page = files.find(|(_, format)| *format == Format::Html);
+        page.map(|(path, _)| path.as_path())
+    }
+
     /// The files with their contents.
     ///
     /// # Errors

@@ -57,6 +57,7 @@ fn logs_give_the_nine_parameters_of_table_2_and_the_papers_tables() {
         "--cross-validate-payload",
         "log_trajectory_2.csv",
         "--tracking",
+        "--tables",
         "--published",
         published.as_str(),
         "--report",

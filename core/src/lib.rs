@@ -2,8 +2,9 @@
 //!
 //! [`function`] is the one table of a robot's functions: what each is called and means, what it takes
 //! and which shape its output has. [`parameter`] are the fourteen standard parameters, [`error`] is what
-//! can go wrong at a state, [`singular`] from where on a configuration counts as singular, and
-//! [`trigonometry`] the polynomials by which all backends compute sines and cosines.
+//! can go wrong at a state, [`singular`] from where on a configuration counts as singular,
+//! [`trigonometry`] the polynomials by which all backends compute sines and cosines, and [`text`] says
+//! which characters may not stand in what is written of a description.
 //!
 //! The crate is `no_std`, has no dependencies and allocates nothing.
 #![no_std]
@@ -13,6 +14,7 @@ pub mod function;
 pub mod parameter;
 pub mod singular;
 pub mod size;
+pub mod text;
 pub mod trigonometry;
 
 pub use error::{ActuatorGroup, Actuators, Error, SampleError};

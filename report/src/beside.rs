@@ -8,8 +8,8 @@ use overact_identification::{
 
 use super::{
     choice::{answers, of_stage},
+    layout::{line, table},
     published::Published,
-    terminal::table,
 };
 
 /// The tables; empty where there is nothing to compare.
@@ -44,7 +44,9 @@ fn section(title: &str, (header, rows): (Vec<String>, Vec<Vec<String>>)) -> Stri
         return String::new();
     }
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    format!("\n{title}\n{}", table(&header, rows))
+    let mut text = String::from("\n");
+    line(&mut text, title);
+    text + &table(&header, rows)
 }
 
 /// What a model is called.

@@ -1,5 +1,5 @@
-//! What an identification is told as: tables for a [`terminal`], a page for a browser ([`page()`]),
-//! and a flat table of all numbers ([`numbers()`]).
+//! What an identification is told as: a [`summary()`] and tables for a [`terminal`], a page for a browser
+//! ([`page()`]), and a flat table of all numbers ([`numbers()`]).
 //!
 //! The page is one file that needs nothing from elsewhere: plots are SVG within it, its style follows
 //! the reader's choice of light or dark, and there is no script. Its sections are in files of their
@@ -7,18 +7,22 @@
 
 pub mod beside;
 mod choice;
-mod escape;
 mod intervals;
+mod judgement;
+mod layout;
 pub mod numbers;
 pub mod page;
 mod plot;
 pub mod published;
+pub mod summary;
 pub mod terminal;
+mod text;
 pub mod units;
 
 pub use beside::beside;
 pub use numbers::numbers;
 pub use page::{Attachment, Contents, page};
 pub use published::Published;
-pub use terminal::{base_parameters, coefficient, cross_validation, estimate, report};
+pub use summary::summary;
+pub use terminal::{base_parameters, coefficient, cross_validation, estimate, tables};
 pub use units::Units;

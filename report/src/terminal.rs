@@ -1,13 +1,14 @@
-//! Plain-text tables of an identification, for a terminal or a file.
+//! All tables of an identification as plain text, for a terminal or a file.
 
-mod calibration;
+pub(crate) mod calibration;
 
-use std::fmt::Write;
-
-use crate::intervals::{half_width_percent, is_outside};
+use crate::{
+    intervals::{half_width_percent, is_outside},
+    layout::{left_table, line, table},
+};
 use overact_identification::{
-    BaseParameter, CheckKind, CrossValidation, Estimate, Estimator, Identification, LineError,
-    ModelKind, ParameterEstimate, Regrouping, Verdict, significant,
+    BaseParameter, CrossValidation, Estimate, Estimator, Identification, LineError, ModelKind,
+    ParameterEstimate, Regrouping, significant,
 };
 
 /// Largest denominator of a fraction that a coefficient is printed as.
@@ -16,20 +17,18 @@ const LARGEST_DENOMINATOR: u32 = 10_000;
 /// A coefficient is printed as a decimal or a fraction that it equals to this relative tolerance.
 const SNAP: f64 = 1e-11;
 
-/// The whole report: runs, base parameters, estimates, cross-validation, warnings, verdicts.
+/// All tables: runs, base parameters, estimates, cross-validation.
 #[must_use]
-pub fn report(identification: &Identification) -> String {
-    let mut text = format!("Identification of {}\n", identification.robot);
-    text.push_str(&runs(identification));
-    if let Some(own) = &identification.calibration {
-        text.push_str(&calibration::calibration(own));
-    }
+pub fn tables(identification: &Identification) -> String {
+    let mut text = runs(identification);
     text.push_str(&base_parameters(&identification.base_parameters));
     if !identification.without_effect.is_empty() {
-        let _ = writeln!(
-            text,
-            "without effect: {}",
-            identification.without_effect.join(", ")
+        line(
+            &mut text,
+            &format!(
+                "without effect: {}",
+                identification.without_effect.join(", ")
+            ),
         );
     }
     for one in &identification.estimates {
@@ -39,45 +38,6 @@ pub fn report(identification: &Identification) -> String {
     if !identification.cross_validation.is_empty() {
         text.push('\n');
         text.push_str(&cross_validation(&identification.cross_validation));
-    }
-    text.push_str(&regressor_errors(identification));
-    text.push_str(&warnings(identification));
-    text.push_str(&verdicts(&identification.verdicts));
-    text
-}
-
-/// Whether errors of the positions bias the estimates.
-fn regressor_errors(identification: &Identification) -> String {
-    let kind = CheckKind::RegressorErrors;
-    let own = identification.checks.iter().filter(|one| one.kind == kind);
-    let lines = own.map(|check| {
-        let models: Vec<&str> = check.models.iter().map(|model| model.case()).collect();
-        format!("  {}: {}\n", models.join(", "), check.words)
-    });
-    let lines: String = lines.collect();
-    if lines.is_empty() {
-        return lines;
-    }
-    format!("\nErrors of the positions\n{lines}")
-}
-
-/// What may be done with the estimates.
-fn verdicts(verdicts: &[Verdict]) -> String {
-    let mut text = String::new();
-    for verdict in verdicts {
-        let _ = writeln!(
-            text,
-            "\n{}, {} parameters: {}",
-            verdict.subject,
-            verdict.stage.name(),
-            verdict.grade.words()
-        );
-        if !verdict.listed.is_empty() {
-            let _ = writeln!(text, "  {}", verdict.listed.join(", "));
-        }
-        for reason in &verdict.reasons {
-            let _ = writeln!(text, "- {reason}");
-        }
     }
     text
 }
@@ -121,7 +81,7 @@ pub fn base_parameters(parameters: &[BaseParameter]) -> String {
     );
     if !alone.is_empty() {
         let names: Vec<&str> = alone.iter().map(|base| base.name.as_str()).collect();
-        let _ = writeln!(text, "alone: {}", names.join(", "));
+        line(&mut text, &format!("alone: {}", names.join(", ")));
     }
     text
 }
@@ -185,7 +145,11 @@ pub fn estimate(estimate: &Estimate) -> String {
         Estimator::LeastSquares => "",
         Estimator::InstrumentalVariables => ", by instruments",
     };
-    let mut text = format!("{what}: {} parameters{how}\n", estimate.stage.name());
+    let mut text = String::new();
+    line(
+        &mut text,
+        &format!("{what}: {} parameters{how}", estimate.stage.name()),
+    );
     let truth = estimate
         .parameters
         .iter()
@@ -218,7 +182,10 @@ pub fn estimate(estimate: &Estimate) -> String {
     });
     text.push_str(&table(&header, rows.collect()));
     if estimate.parameters.iter().any(is_outside) {
-        text.push_str("* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it\n");
+        line(
+            &mut text,
+            "* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it",
+        );
     }
     text.push_str(&quality(estimate));
     text
@@ -233,13 +200,17 @@ fn interval(parameter: &ParameterEstimate) -> String {
 
 /// Errors, condition and the path of the elimination of an estimate.
 fn quality(estimate: &Estimate) -> String {
-    let mut text = format!(
-        "relative error {:.4} %, residual norm {}, condition number {}, {} equations{}\n",
-        estimate.relative_error_percent,
-        significant(estimate.residual_norm, 7),
-        significant(estimate.condition_number, 6),
-        estimate.equations,
-        if estimate.weighted { ", weighted" } else { "" },
+    let mut text = String::new();
+    line(
+        &mut text,
+        &format!(
+            "relative error {:.4} %, residual norm {}, condition number {}, {} equations{}",
+            estimate.relative_error_percent,
+            significant(estimate.residual_norm, 7),
+            significant(estimate.condition_number, 6),
+            estimate.equations,
+            if estimate.weighted { ", weighted" } else { "" },
+        ),
     );
     if estimate.lines.len() > 1 {
         let lines: Vec<String> = estimate
@@ -247,17 +218,19 @@ fn quality(estimate: &Estimate) -> String {
             .iter()
             .map(|line| format!("{} {:.3} %", line.name, line.relative_error_percent))
             .collect();
-        let _ = writeln!(text, "by line: {}", lines.join(", "));
+        line(&mut text, &format!("by line: {}", lines.join(", ")));
     }
     if let Some(partition) = &estimate.partition
         && estimate.model == ModelKind::Actuators
     {
-        let _ = writeln!(
-            text,
-            "condition of the kept actuators: at most {} ({}, t = {:.3} s)",
-            significant(partition.largest, 4),
-            partition.run,
-            partition.time
+        line(
+            &mut text,
+            &format!(
+                "condition of the kept actuators: at most {} ({}, t = {:.3} s)",
+                significant(partition.largest, 4),
+                partition.run,
+                partition.time
+            ),
         );
     }
     if !estimate.removals.is_empty() {
@@ -288,7 +261,7 @@ fn quality(estimate: &Estimate) -> String {
         text.push_str(&table(&header, rows.collect()));
     }
     if let Some(stop) = &estimate.stop {
-        let _ = writeln!(text, "the elimination ended: {stop}");
+        line(&mut text, &format!("the elimination ended: {stop}"));
     }
     text
 }
@@ -330,85 +303,6 @@ pub fn cross_validation(all: &[CrossValidation]) -> String {
         row
     });
     format!("Cross-validation\n{}", table(&header, rows.collect()))
-}
-
-/// The warnings that no verdict tells, one a line.
-fn warnings(identification: &Identification) -> String {
-    let told = |warning: &&String| {
-        let mut reasons = identification.verdicts.iter().flat_map(|one| &one.reasons);
-        reasons.any(|reason| reason == *warning)
-    };
-    let rest = identification.warnings.iter().filter(|one| !told(one));
-    let mut text = String::new();
-    for (index, warning) in rest.enumerate() {
-        if index == 0 {
-            text.push('\n');
-        }
-        let _ = writeln!(text, "warning: {warning}");
-    }
-    text
-}
-
-/// Rows under a header: the first column to the left, the others to the right.
-pub(super) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
-    let mut all = vec![
-        header
-            .iter()
-            .map(|cell| (*cell).to_owned())
-            .collect::<Vec<_>>(),
-    ];
-    all.extend(rows);
-    let widths = widths(&all);
-    let rule: usize = widths.iter().sum::<usize>() + 2 * widths.len().saturating_sub(1);
-    let mut text = String::new();
-    for (index, row) in all.iter().enumerate() {
-        let cells: Vec<String> = row
-            .iter()
-            .zip(&widths)
-            .enumerate()
-            .map(|(column, (cell, &width))| {
-                if column == 0 {
-                    format!("{cell:<width$}")
-                } else {
-                    format!("{cell:>width$}")
-                }
-            })
-            .collect();
-        let _ = writeln!(text, "{}", cells.join("  ").trim_end());
-        if index == 0 {
-            let _ = writeln!(text, "{}", "-".repeat(rule));
-        }
-    }
-    text
-}
-
-/// Rows without a header, all to the left.
-fn left_table(rows: Vec<Vec<String>>) -> String {
-    let widths = widths(&rows);
-    let mut text = String::new();
-    for row in &rows {
-        let cells: Vec<String> = row
-            .iter()
-            .zip(&widths)
-            .map(|(cell, &width)| format!("{cell:<width$}"))
-            .collect();
-        let _ = writeln!(text, "{}", cells.join(" ").trim_end());
-    }
-    text
-}
-
-/// The widest cell of each column, in characters.
-fn widths(rows: &[Vec<String>]) -> Vec<usize> {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    (0..columns)
-        .map(|column| {
-            rows.iter()
-                .filter_map(|row| row.get(column))
-                .map(|cell| cell.chars().count())
-                .max()
-                .unwrap_or(0)
-        })
-        .collect()
 }
 
 #[cfg(test)]

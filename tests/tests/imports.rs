@@ -80,12 +80,17 @@ const HOUSES: [House; 6] = [
     House {
         folder: "report",
         order: &[
-            "escape",
+            "text",
             "units",
             "choice",
             "intervals",
             "published",
+            "intervals",
+            "choice",
+            "judgement",
+            "layout",
             "terminal",
+            "summary",
             "beside",
             "numbers",
             "plot",

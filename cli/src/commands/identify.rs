@@ -31,7 +31,10 @@ pub(crate) struct Arguments {
     /// End with exit code 3 where the verdict is not to use the result
     #[arg(long)]
     strict: bool,
-    /// Write the tables (with --json the document) to a file instead of stdout
+    /// Print all tables below the summary
+    #[arg(long)]
+    tables: bool,
+    /// Write the text (with --json the document) to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Estimate encoder offsets and lengths from the closure of redundant loops first, and go on with them:
@@ -105,8 +108,13 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let text = if as_json {
         output::json(&result)?
     } else {
-        let beside = reports.published();
-        overact_report::report(&result) + &overact_report::beside(&result, beside)
+        let page = reports.page().map(|path| path.display().to_string());
+        let mut text = overact_report::summary(&result, page.as_deref());
+        if arguments.tables {
+            text.push_str(&overact_report::tables(&result));
+            text.push_str(&overact_report::beside(&result, reports.published()));
+        }
+        text
     };
     let mut written = reports.written(&robot, &robot.model().info(), &result)?;
     if let (Some(path), Some(calibration)) = (&arguments.calibrated_robot, &result.calibration) {

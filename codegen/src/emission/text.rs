@@ -4,6 +4,8 @@
 //! how the lines around it are read: no character that breaks a line, that is not seen or that turns the
 //! direction of writing, and in documentation no mark that Markdown would take for its own.
 
+use overact_core::text::is_invisible;
+
 /// The text on one line, of visible characters alone: what separates words is one space, what is not seen
 /// is left out.
 #[must_use]
@@ -36,16 +38,6 @@ pub fn documentation(text: &str) -> String {
         out.push(c);
     }
     out
-}
-
-/// Whether a character is a control or a format character: it has no glyph, or turns the direction of
-/// what follows.
-fn is_invisible(c: char) -> bool {
-    c.is_control()
-        || matches!(c,
-            '\u{00ad}' | '\u{061c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}'
-            | '\u{e0000}'..='\u{e0fff}')
 }
 
 #[cfg(test)]

@@ -66,7 +66,7 @@ pub fn estimate_projection(
     let (selected, names) = on_data(prepared, system, &mut warnings)?;
     let base = estimate(system, &selected, settings)?;
     let rest = essential(system, &selected, &names, &base, settings)?;
-    warnings.extend(quality_warnings(system, &base, &rest.removals));
+    warnings.extend(quality_warnings(system, &base));
     let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
     let intervals = Intervals::new(system, &selected, &base);
     let chosen = recommended(system, (&selected, &names), &base, &intervals, settings)?;
@@ -332,8 +332,8 @@ fn on_data(
     Ok((found.kept, names))
 }
 
-/// What is wrong with a system, its estimate or its elimination.
-fn quality_warnings(system: &System, base: &Estimation, removals: &[Removal]) -> Vec<String> {
+/// What is wrong with a system or its estimate.
+fn quality_warnings(system: &System, base: &Estimation) -> Vec<String> {
     let label = system.projection.model().case();
     let mut warnings = Vec::new();
     if let Some(partition) = &system.partition
@@ -349,20 +349,6 @@ fn quality_warnings(system: &System, base: &Estimation, removals: &[Removal]) ->
         warnings.push(format!(
             "{label}: the relative error is {:.0} %: the model does not explain the torques; check signs, units and gains",
             base.relative_error_percent
-        ));
-    }
-    let significant: Vec<String> = removals
-        .iter()
-        .filter(|removal| removal.significant && removal.accepted)
-        .map(|removal| {
-            let deviation = removal.relative_standard_deviation_percent;
-            format!("`{}` to {deviation:.1} %", removal.name)
-        })
-        .collect();
-    if !significant.is_empty() {
-        warnings.push(format!(
-            "{label}: the elimination cancelled parameters that the data determine ({}); raise `r_sigma`, take the recommended parameters, or leave out the essential ones with `essential = false`",
-            significant.join(", ")
         ));
     }
     warnings

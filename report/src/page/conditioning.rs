@@ -7,8 +7,8 @@ use super::{
 };
 use crate::{
     choice::{case_heading, projection, stage_name},
-    escape::escape,
     plot::{Axis, Chart, Line, Look, Rule},
+    text::escape,
 };
 use overact_identification::{ConditionSeries, Identification, ModelKind, RunFigures};
 

@@ -9,7 +9,7 @@ use super::{
     table::{Cell, Table},
 };
 
-use crate::escape::escape;
+use crate::text::escape;
 use overact_identification::{Identification, Normalisation, Settings, significant};
 
 /// The runs and the settings.
@@ -115,7 +115,7 @@ fn settings(settings: &Settings) -> String {
                 Normalisation::SampleVariance => "sample variance",
             }),
         ),
-        ("r_σ", significant(settings.r_sigma, 4)),
+        ("The r_σ rule ends below", significant(settings.r_sigma, 4)),
         ("Seed of the random states", settings.seed.to_string()),
     ];
     Table {

@@ -10,8 +10,8 @@ use super::{
 };
 use crate::{
     choice::{case_heading, of, of_stage},
-    escape::escape,
     plot::{Axis, Chart, Line, Look, Rule},
+    text::escape,
 };
 use overact_identification::{Estimate, Identification, Removal, Stage, significant};
 

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::{Contents, markup::paragraph};
 use crate::{
     choice::{answers, case_heading, stage_name},
-    escape::escape,
+    text::escape,
 };
 use overact_identification::{Stage, significant};
 

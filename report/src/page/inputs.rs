@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{
     choice::{answers, case_heading, is_answer, stage_name},
-    escape::escape,
     plot::{Axis, Chart, Line, Look},
+    text::escape,
     units::Units,
     units::with_unit,
 };

@@ -2,10 +2,11 @@
 //! what the data could not tell.
 //!
 //! The verdict stands first, the parameters follow, and every plot says below what to look for in it.
-//! Each section is a file: `verdict`, `parameters`, `limits`, `validation`, `inputs`, `residuals`,
+//! Each section is a file: `verdict`, `checks`, `parameters`, `limits`, `validation`, `inputs`, `residuals`,
 //! `elimination`, `conditioning`, `trajectories`, `tracking`, `data`. Sections that have nothing to
 //! show are left out.
 
+mod checks;
 mod conditioning;
 mod data;
 mod elimination;
@@ -26,7 +27,7 @@ mod verdict;
 
 use markup::Section;
 
-use crate::escape::escape;
+use crate::text::escape;
 use crate::{published::Published, units::Units};
 use overact_identification::Identification;
 
@@ -72,6 +73,7 @@ pub struct Attachment<'a> {
 pub fn page(contents: &Contents<'_>) -> String {
     let sections: Vec<Section> = [
         verdict::section(contents),
+        checks::section(contents),
         parameters::section(contents),
         limits::section(contents),
         validation::section(contents),

@@ -7,8 +7,8 @@ use super::{
 };
 use crate::{
     choice::{case_heading, is_answer, stage_name},
-    escape::escape,
     plot::{Axis, Chart, Line, Look, Rule},
+    text::escape,
     units::Units,
 };
 use overact_identification::{LineResidual, ResidualFigures, ResidualSeries, significant};

@@ -7,7 +7,7 @@
 use std::fmt::Write;
 
 use super::markup::prose;
-use crate::escape::escape;
+use crate::text::escape;
 use overact_identification::significant;
 
 /// From so many columns on, a table is set narrower where paper or screen is small.

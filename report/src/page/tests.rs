@@ -3,7 +3,7 @@
 mod example;
 
 use super::{Attachment, Contents, page};
-use crate::{Units, numbers};
+use crate::{Units, beside, numbers, summary, tables};
 use example::{HOSTILE, identification, published, series, settings, units};
 use overact_identification::{Figures, Identification, Thresholds};
 use roxmltree::{Document, ParsingOptions};
@@ -120,6 +120,31 @@ fn no_name_becomes_markup_and_nothing_is_loaded() {
 }
 
 #[test]
+fn no_name_reaches_the_terminal_but_as_text() {
+    let mut identification = identification();
+    identification.robot += &"x".repeat(5000);
+    let told = summary(&identification, Some("report.html"))
+        + &tables(&identification)
+        + &beside(&identification, Some(&published()));
+    let hidden = |c: char| c != '\n' && overact_core::text::is_invisible(c);
+    assert!(!told.contains(hidden), "{told:?}");
+    for words in [
+        "case 1 (torques projected on the platform): USE IT FOR WHAT IS LISTED",
+        "  To be used: m_platformR.\n",
+        "DO NOT USE IT",
+        "leg1: clipped",
+        "The evidence behind each line, with plots: report.html",
+    ] {
+        assert!(told.contains(words), "{words} in {told}");
+    }
+    let is_long = |line: &&str| line.chars().count() > 400;
+    assert_eq!(told.lines().find(is_long), None);
+    let page = full(&identification);
+    let hidden = |c: char| c != '\n' && overact_core::text::is_invisible(c);
+    assert!(!page.contains(hidden));
+}
+
+#[test]
 fn the_verdict_stands_first_and_names_what_to_trust() {
     let html = full(&identification());
     let document = parsed(&html);
@@ -128,23 +153,70 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
         .filter(|node| node.tag_name().name() == "section")
         .filter_map(|node| node.attribute("id"))
         .collect();
-    assert_eq!(sections.first(), Some(&"verdict"));
-    assert_eq!(sections.len(), 12, "{sections:?}");
+    assert_eq!(sections[..3], ["verdict", "checks", "parameters"]);
+    assert_eq!(sections.len(), 13, "{sections:?}");
     let verdict = text(element(&document, "verdict"));
-    assert!(
-        verdict.contains("Case 1: use it. Case 2: do not use it."),
-        "{verdict}"
-    );
-    assert!(verdict.contains("the error 2.4\u{a0}% is < 50\u{a0}%"));
-    assert_eq!(verdict.matches("clipped").count(), 1, "once, as a finding");
-    for threshold in ["30", "50 %", "0.01 m or rad", "r_σ"] {
-        assert!(verdict.contains(threshold), "{threshold}");
+    for words in [
+        "Case 1, recommended parameters: use it for what is listed. Case 2, recommended parameters: do not use it.",
+        "To be used: m_platformR.",
+        "One parameter is biased Shown here.",
+        "leg1: clipped Shown here.",
+        "All base parameters: use it.",
+        "The gains are right",
+    ] {
+        assert!(verdict.contains(words), "{words} in {verdict}");
     }
+    assert_eq!(verdict.matches("lipped").count(), 1, "once, as a reason");
     let conditioning = text(element(&document, "conditioning"));
     assert!(
         conditioning.contains("held out at 0.00 s"),
         "the crossing is told of: {conditioning}"
     );
+}
+
+#[test]
+fn every_check_stands_with_what_shows_it() {
+    let html = full(&identification());
+    let document = parsed(&html);
+    let is = |node: &roxmltree::Node<'_, '_>, name| node.tag_name().name() == name;
+    let checks = element(&document, "checks");
+    let headings: Vec<String> = checks
+        .descendants()
+        .filter(|node| is(node, "h3"))
+        .map(text)
+        .collect();
+    let begins = |at: usize, words: &str| headings[at].starts_with(words);
+    assert!(
+        begins(0, "Clipped torque: case 2"),
+        "most serious first: {headings:?}"
+    );
+    assert!(begins(1, "Noise of the positions in the model: case 1"));
+    let biased = text(element(&document, "check-2"));
+    for words in [
+        "Measured: 0.001 probability. Limit: 0.01 probability.",
+        "1\u{a0}% of all reports",
+        "Not to be used: a<b>",
+    ] {
+        assert!(biased.contains(words), "{words} in {biased}");
+    }
+    // What found nothing is folded away, with its plot.
+    let folded = element(&document, "figure-check-1");
+    assert!(folded.ancestors().any(|node| is(&node, "details")));
+    let shown = element(&document, "figure-check-3");
+    assert!(shown.ancestors().all(|node| !is(&node, "details")));
+    let dashed = shown
+        .descendants()
+        .filter(|node| node.attribute("class") == Some("rule"));
+    assert_eq!(dashed.count(), 2, "both limits");
+    // Every link of the verdict leads somewhere.
+    for link in document
+        .descendants()
+        .filter_map(|node| node.attribute("href"))
+    {
+        if let Some(id) = link.strip_prefix('#') {
+            element(&document, id);
+        }
+    }
 }
 
 #[test]

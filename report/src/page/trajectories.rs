@@ -5,8 +5,8 @@ use super::{
     markup::{Section, figure, key},
 };
 use crate::{
-    escape::escape,
     plot::{Axis, Chart, Line, Look},
+    text::escape,
     units::Units,
     units::with_unit,
 };

@@ -1,26 +1,26 @@
-//! The verdict in plain words, the thresholds that it rests on, and all warnings.
+//! The verdict in plain words: what may be done with the parameters of each model, and why. What it
+//! rests on stands in the section after it, `checks`.
 
 use std::fmt::Write;
 
 use super::{
-    Contents,
-    markup::{Section, capital, details, paragraph, prose},
-    table::{Cell, Table},
+    Contents, checks,
+    markup::{Section, capital, paragraph, prose},
 };
-
-use crate::escape::escape;
-use overact_identification::{Check, Grade, Identification, Verdict, significant};
+use crate::{
+    choice::stage_name,
+    judgement::{grade_words, objections, passed},
+    text::escape,
+};
+use overact_identification::{Check, Grade, Identification, StageVerdict, Verdict};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut body = paragraph(&summary(identification));
     body.push_str(&cards(identification));
-    body.push_str(&findings(identification));
-    body.push_str(&details(
-        "The thresholds of this verdict",
-        &thresholds(identification),
-    ));
+    body.push_str(&warnings(identification));
+    body.push_str(&assumptions(identification));
     Section {
         id: "verdict",
         title: "Verdict",
@@ -28,24 +28,22 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// The verdict in one sentence or two.
+/// The verdict in a sentence for each model.
 fn summary(identification: &Identification) -> String {
     let verdicts = &identification.verdicts;
-    let sentence = |one: &Verdict| format!("{}: {}.", capital(&one.subject), one.grade.words());
-    let sentences: Vec<String> = verdicts.iter().map(sentence).collect();
-    let mut text = if sentences.is_empty() {
-        String::from("Nothing was judged: the numbers below have to speak for themselves.")
-    } else {
-        sentences.join(" ")
-    };
-    match identification.warnings.len() {
-        0 => text.push_str(" There are no warnings."),
-        1 => text.push_str(" There is one warning to read."),
-        count => {
-            let _ = write!(text, " There are {count} warnings to read.");
-        }
+    if verdicts.is_empty() {
+        return String::from("Nothing was judged: the numbers below have to speak for themselves.");
     }
-    text
+    let sentence = |one: &Verdict| {
+        format!(
+            "{}, {}: {}.",
+            capital(&one.subject),
+            stage_name(one.stage),
+            grade_words(one.grade)
+        )
+    };
+    let sentences: Vec<String> = verdicts.iter().map(sentence).collect();
+    sentences.join(" ")
 }
 
 /// One card for each verdict.
@@ -57,97 +55,108 @@ fn cards(identification: &Identification) -> String {
     for verdict in &identification.verdicts {
         let (class, sign) = match verdict.grade {
             Grade::Use => ("good", "✓"),
-            Grade::UseListed => ("bad", "!"),
+            Grade::UseListed => ("partly", "!"),
             Grade::DoNotUse => ("bad", "✗"),
         };
-        let word = verdict.grade.words();
-        let reasons: String = verdict
-            .reasons
-            .iter()
-            .map(|reason| format!("<li>{}</li>", prose(reason)))
-            .collect();
         let _ = writeln!(
             html,
-            "<div class=\"card {class}\"><h3><span aria-hidden=\"true\">{sign}</span> {}: {word}</h3><ul>{reasons}</ul></div>",
-            escape(&capital(&verdict.subject))
+            "<div class=\"card {class}\"><h3><span aria-hidden=\"true\">{sign}</span> {}: {}</h3>{}{}{}</div>",
+            escape(&capital(&verdict.subject)),
+            grade_words(verdict.grade),
+            listed(&verdict.listed),
+            reasons(identification, verdict),
+            others(verdict)
         );
     }
     html.push_str("</div>\n");
     html
 }
 
-/// What is suspicious in the data, and every other warning.
-fn findings(identification: &Identification) -> String {
-    let found: Vec<&Check> = identification
-        .checks
-        .iter()
-        .filter(|check| !check.passed)
-        .collect();
-    if identification.warnings.is_empty() && found.is_empty() {
+/// The parameters that may be used, where not all may.
+fn listed(names: &[String]) -> String {
+    if names.is_empty() {
         return String::new();
     }
-    let mut html = String::from("<h3 id=\"warnings\">Warnings</h3>\n<ul class=\"warnings\">\n");
-    for check in &found {
-        let place = check.run.iter().chain(&check.actuator).cloned();
-        let place: Vec<String> = place.collect();
-        let _ = write!(html, "<li>");
-        if !place.is_empty() {
-            let _ = write!(html, "<b>{}:</b> ", escape(&place.join(", ")));
-        }
-        let _ = writeln!(html, "{}</li>", prose(&check.words));
-    }
-    let rest = identification
-        .warnings
-        .iter()
-        .filter(|warning| !found.iter().any(|check| warning.contains(&check.words)));
-    for warning in rest {
-        let _ = writeln!(html, "<li>{}</li>", prose(&capital(warning)));
-    }
-    html.push_str("</ul>\n");
-    html
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    format!("<p>To be used: {}.</p>", prose(&names.join(", ")))
 }
 
-/// Every threshold with what it decides.
-fn thresholds(identification: &Identification) -> String {
-    let thresholds = &identification.thresholds;
-    let rows = [
-        (
-            "Condition of the kept actuators",
-            significant(thresholds.partition_condition, 4),
-            "above it, case 2 is too close to a singularity of its choice of actuators",
-        ),
-        (
-            "Significance |χ|/σ",
-            significant(thresholds.significance, 4),
-            "above it, the data speak for a parameter; σ is that of correlated residuals",
-        ),
-        (
-            "Growth of the held-out error",
-            format!("{} %", significant(thresholds.held_out_growth_percent, 4)),
-            "above it, a significant parameter is not cancelled",
-        ),
-        (
-            "Move of another parameter",
-            format!("{} %", significant(thresholds.drift_percent, 4)),
-            "above it, a significant parameter is not cancelled",
-        ),
-        (
-            "r_σ, largest by smallest relative deviation",
-            significant(identification.settings.r_sigma, 4),
-            "below it, the elimination of parameters ends",
-        ),
-    ];
-    let cell = |(name, value, what): (&str, String, &str)| {
-        vec![Cell::text(name), Cell::number(value), Cell::prose(what)]
-    };
-    Table {
-        caption: String::from("Thresholds and what they decide"),
-        header: vec![vec![
-            Cell::text("threshold"),
-            Cell::text("value").class("n"),
-            Cell::text("what it decides"),
-        ]],
-        rows: rows.into_iter().map(cell).collect(),
+/// What speaks against a model, each with a link to what shows it; else that nothing does.
+fn reasons(identification: &Identification, verdict: &Verdict) -> String {
+    let objections = objections(identification, verdict.model, verdict.stage);
+    if objections.is_empty() {
+        let count = passed(identification, verdict.model, verdict.stage);
+        return match count {
+            0 => String::new(),
+            1 => String::from(
+                "<p>Nothing speaks against it: the <a href=\"#checks\">one check</a> that was made found nothing.</p>",
+            ),
+            _ => format!(
+                "<p>Nothing speaks against it: none of <a href=\"#checks\">{count} checks</a> found anything.</p>"
+            ),
+        };
     }
-    .html()
+    let reason = |(number, check): &(usize, &Check)| {
+        format!(
+            "<li>{} <a href=\"#{}\">Shown here.</a></li>",
+            prose(&capital(&check.located())),
+            checks::id(*number)
+        )
+    };
+    let reasons: String = objections.iter().map(reason).collect();
+    format!("<ul>{reasons}</ul>")
+}
+
+/// The other stages, where something else is to be said of them.
+fn others(verdict: &Verdict) -> String {
+    let differs = |one: &&StageVerdict| one.stage != verdict.stage && one.grade != verdict.grade;
+    let told = |one: &StageVerdict| {
+        let which = if one.listed.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", one.listed.join(", "))
+        };
+        let text = format!(
+            "{}: {}{which}.",
+            capital(stage_name(one.stage)),
+            grade_words(one.grade)
+        );
+        format!("<p class=\"note\">{}</p>", prose(&text))
+    };
+    verdict.stages.iter().filter(differs).map(told).collect()
+}
+
+/// Every warning that is not that of a check.
+fn warnings(identification: &Identification) -> String {
+    let failed = identification.checks.iter().filter(|check| !check.passed);
+    let told: Vec<&str> = failed.map(|check| check.words.as_str()).collect();
+    let rest: Vec<&String> = identification
+        .warnings
+        .iter()
+        .filter(|warning| !told.iter().any(|words| warning.contains(words)))
+        .collect();
+    if rest.is_empty() {
+        return String::new();
+    }
+    let items: String = rest
+        .iter()
+        .map(|warning| format!("<li>{}</li>\n", prose(&capital(warning))))
+        .collect();
+    format!("<h3 id=\"warnings\">Warnings</h3>\n<ul class=\"warnings\">\n{items}</ul>\n")
+}
+
+/// What every result rests on.
+fn assumptions(identification: &Identification) -> String {
+    if identification.assumptions.is_empty() {
+        return String::new();
+    }
+    let items: String = identification
+        .assumptions
+        .iter()
+        .map(|one| format!("<li>{}</li>\n", prose(&capital(one))))
+        .collect();
+    format!(
+        "<h3 id=\"assumptions\">What no data can show</h3>\n{}<ul class=\"plain\">\n{items}</ul>\n",
+        paragraph("Whatever the checks say, the result rests on this:")
+    )
 }

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use super::{
     WIDTH,
     axis::{Axis, Scale},
-    fitted, short,
+    short,
 };
-use crate::escape::escape;
+use crate::text::{escape, fitted};
 
 /// Characters that stand side by side above a chart.
 const TITLE_CHARACTERS: usize = 46;
@@ -76,6 +76,8 @@ pub(crate) struct Line {
     pub(crate) points: Vec<(f64, f64)>,
     /// Whether each point has a dot.
     pub(crate) dots: bool,
+    /// Whether the points are joined.
+    pub(crate) joined: bool,
 }
 
 impl Line {
@@ -86,7 +88,14 @@ impl Line {
             label: label.into(),
             points: x.iter().copied().zip(y.iter().copied()).collect(),
             dots: false,
+            joined: true,
         }
+    }
+
+    /// The same points as dots alone.
+    pub(crate) const fn as_dots(mut self) -> Self {
+        (self.dots, self.joined) = (true, false);
+        self
     }
 
     /// The same line with dots.
@@ -293,8 +302,10 @@ fn drawn_line(line: &Line, x: &Scale, y: &Scale) -> String {
             continue;
         };
         let (x, y) = (short(x), short(y));
-        let _ = write!(path, "{pen}{x} {y}");
-        pen = 'L';
+        if line.joined {
+            let _ = write!(path, "{pen}{x} {y}");
+            pen = 'L';
+        }
         if line.dots {
             let _ = write!(dots, "<circle cx=\"{x}\" cy=\"{y}\" r=\"3\"/>");
         }

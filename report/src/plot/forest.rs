@@ -6,9 +6,9 @@ use super::{
     WIDTH,
     axis::{Axis, Scale},
     chart::{Look, opening},
-    fitted, short,
+    short,
 };
-use crate::escape::escape;
+use crate::text::{escape, fitted};
 
 /// Where the rows begin at the left, and where they end.
 const LEFT: f64 = 112.0;

@@ -21,30 +21,3 @@ fn short(value: f64) -> String {
     let text = text.strip_suffix(".0").unwrap_or(&text);
     if text == "-0" { "0" } else { text }.to_owned()
 }
-
-/// A text of so many characters at most: what is too long loses its middle, since names differ at their
-/// ends.
-fn fitted(text: &str, most: usize) -> String {
-    let length = text.chars().count();
-    if length <= most {
-        return text.to_owned();
-    }
-    let kept = most.max(3) - 1;
-    let (first, last) = (kept.div_ceil(2), kept / 2);
-    let begin = text.chars().take(first);
-    let end = text.chars().skip(length - last);
-    begin.chain(['…']).chain(end).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::fitted;
-
-    #[test]
-    fn a_long_name_keeps_its_ends() {
-        assert_eq!(fitted("fs_1_leg1", 9), "fs_1_leg1");
-        assert_eq!(fitted("fs_1_shoulder_left", 9), "fs_1…left");
-        assert_eq!(fitted("αβγδεζ", 4), "αβ…ζ");
-        assert_eq!(fitted("abcdef", 0), "a…f");
-    }
-}

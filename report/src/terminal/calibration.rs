@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use overact_identification::{Calibration, HeldParameter, significant};
 
-use super::table;
+use crate::layout::table;
 
 /// Digits of a deviation.
 const DIGITS: usize = 2;
@@ -13,7 +13,7 @@ const DIGITS: usize = 2;
 const WIDTH: usize = 100;
 
 /// What is changed, what stays as described, and what the data can't tell.
-pub(super) fn calibration(calibration: &Calibration) -> String {
+pub(crate) fn calibration(calibration: &Calibration) -> String {
     let mut text = format!(
         "\nCalibration from the closure of the loops ({} sensors, {} of the platform's coordinates)\n",
         calibration.sensors, calibration.coordinates

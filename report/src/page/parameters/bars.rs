@@ -5,12 +5,12 @@ use std::fmt::Write;
 use super::{find, names};
 use crate::{
     choice::{case_heading, of, stage_name},
-    escape::escape,
     page::{
         markup::{key, with_interval},
         select::look,
     },
     plot::{Axis, Bar, Forest},
+    text::escape,
 };
 use overact_identification::{Estimate, Identification, ParameterEstimate, Stage};
 

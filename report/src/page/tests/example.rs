@@ -6,15 +6,16 @@ use crate::{
 };
 use overact::{Info, Sizes};
 use overact_identification::{
-    About, BaseParameter, Check, CheckKind, ConditionSeries, CrossValidation, Drift, Estimate,
-    Estimator, Figures, Grade, Identification, Instruments, LineError, LineResidual, ModelKind,
-    Normalisation, ParameterEstimate, PartitionCondition, PredictionFigures, Regrouping, Removal,
-    ResidualFigures, ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage, Thresholds,
-    TorqueComparison, TrackingError, Verdict,
+    About, Axis, BaseParameter, Check, CheckKind, ConditionSeries, CrossValidation, Curve, Drift,
+    Estimate, Estimator, Evidence, Figures, Grade, Identification, Instruments, LineError,
+    LineResidual, ModelKind, Normalisation, ParameterEstimate, PartitionCondition,
+    PredictionFigures, Regrouping, Removal, ResidualFigures, ResidualSeries, RunFigures,
+    RunSummary, Series, Settings, Stage, StageVerdict, Thresholds, TorqueComparison, TrackingError,
+    Verdict,
 };
 
 /// A name that breaks whatever does not escape it.
-pub(super) const HOSTILE: &str = "a<b>&\"'\u{1}</table><script>x</script>";
+pub(super) const HOSTILE: &str = "a<b>&\"'\u{1}</table><script>x</script>\u{1b}[31m\n\u{202e}`";
 
 pub(super) fn series(name: &str) -> Series {
     let time: Vec<f64> = (0..400).map(|index| f64::from(index) * 0.01).collect();
@@ -253,17 +254,12 @@ pub(super) fn identification() -> Identification {
             cross_validation(ModelKind::Actuators),
         ],
         warnings: vec![format!("beware of {HOSTILE}"), String::from("clipped")],
-        checks: vec![
-            Check::new(CheckKind::ClippedTorque, About::Data, "clipped")
-                .in_run(HOSTILE)
-                .of_actuator("leg1")
-                .allowing(Grade::DoNotUse),
-        ],
+        checks: checks(),
         calibration: None,
         assumptions: vec![String::from("the gains are right")],
         verdicts: vec![
-            verdict(ModelKind::Platform, Grade::Use, "the error 2.4 % is < 50 %"),
-            verdict(ModelKind::Actuators, Grade::DoNotUse, HOSTILE),
+            verdict(ModelKind::Platform, Grade::UseListed, &["m_platformR"]),
+            verdict(ModelKind::Actuators, Grade::DoNotUse, &[]),
         ],
         thresholds: Thresholds::default(),
         tracking: ["pd", "computed torque, case 1"]
@@ -282,17 +278,61 @@ pub(super) fn identification() -> Identification {
     }
 }
 
-fn verdict(model: ModelKind, grade: Grade, reason: &str) -> Verdict {
+fn verdict(model: ModelKind, grade: Grade, listed: &[&str]) -> Verdict {
     Verdict {
         subject: model.case().to_owned(),
         model,
-        stage: Stage::Base,
+        stage: Stage::Recommended,
         grade,
         trusted: grade == Grade::Use,
-        listed: Vec::new(),
-        reasons: vec![reason.to_owned()],
-        stages: Vec::new(),
+        listed: listed.iter().map(|name| (*name).to_owned()).collect(),
+        reasons: vec![HOSTILE.to_owned()],
+        stages: vec![StageVerdict {
+            stage: Stage::Base,
+            grade: Grade::Use,
+            listed: Vec::new(),
+            reasons: Vec::new(),
+        }],
     }
+}
+
+/// One check of each outcome: found in the data of case 2, found for one parameter, nothing found.
+fn checks() -> Vec<Check> {
+    let curve = |name: &str| Curve::new(name, &[0.0, 1.0, 2.0], &[0.1, f64::NAN, 0.3]);
+    let evidence = Evidence {
+        title: HOSTILE.to_owned(),
+        x: Axis::new("t", "s"),
+        y: Axis::new(HOSTILE, "N m"),
+        lines: vec![curve(HOSTILE), curve("other")],
+        points: vec![curve("points")],
+        limits: vec![0.2, -0.2],
+    };
+    vec![
+        Check::new(
+            CheckKind::RelativeError,
+            About::Fit,
+            "the error 2.4 % is < 50 %",
+        )
+        .measured(2.4, "%")
+        .against(50.0, "a published rule")
+        .shown_by(evidence.clone()),
+        Check::new(
+            CheckKind::RegressorErrors,
+            About::Model,
+            "one parameter is biased",
+        )
+        .of_model(ModelKind::Platform)
+        .measured(0.001, "probability")
+        .against(0.01, "false alarms in 1 % of all reports")
+        .spoiling(vec![HOSTILE.to_owned()])
+        .allowing(Grade::UseListed),
+        Check::new(CheckKind::ClippedTorque, About::Data, "clipped")
+            .in_run(HOSTILE)
+            .of_actuator("leg1")
+            .of_model(ModelKind::Actuators)
+            .allowing(Grade::DoNotUse)
+            .shown_by(evidence),
+    ]
 }
 
 pub(super) fn published() -> Published {

@@ -1,0 +1,106 @@
+//! Verdicts and checks in words that page and terminal share.
+
+use overact_identification::{
+    Check, CheckKind, Grade, Identification, ModelKind, Stage, significant,
+};
+
+/// The grade as what to do.
+pub(crate) const fn grade_words(grade: Grade) -> &'static str {
+    match grade {
+        Grade::Use => "use it",
+        Grade::UseListed => "use it for what is listed",
+        Grade::DoNotUse => "do not use it",
+    }
+}
+
+/// The checks that speak against an estimate, most serious first, with their numbers among all checks.
+pub(crate) fn objections(
+    identification: &Identification,
+    model: ModelKind,
+    stage: Stage,
+) -> Vec<(usize, &Check)> {
+    let checks = identification.checks.iter().enumerate();
+    let mut found: Vec<(usize, &Check)> = checks
+        .filter(|(_, check)| !check.passed && check.concerns(model, stage))
+        .collect();
+    found.sort_by_key(|(_, check)| std::cmp::Reverse(check.grade));
+    found
+}
+
+/// How many checks of an estimate found nothing.
+pub(crate) fn passed(identification: &Identification, model: ModelKind, stage: Stage) -> usize {
+    let checks = identification.checks.iter();
+    checks
+        .filter(|check| check.passed && check.concerns(model, stage))
+        .count()
+}
+
+/// What was checked, as a heading.
+pub(crate) const fn title(kind: CheckKind) -> &'static str {
+    match kind {
+        CheckKind::Degrees => "unit of the positions",
+        CheckKind::Closure => "closure of the loops",
+        CheckKind::WrongSign => "signs",
+        CheckKind::WrongGain => "gains of the drives",
+        CheckKind::PayloadLabel => "label of the payload",
+        CheckKind::Delay => "delay between torques and motion",
+        CheckKind::MissingParameter => "something that the model lacks",
+        CheckKind::Partition => "kept actuators of case 2",
+        CheckKind::RelativeError => "unexplained torques",
+        CheckKind::ResidualCorrelation => "residuals that hang together",
+        CheckKind::HeldOut => "held-out runs",
+        CheckKind::RegressorErrors => "noise of the positions in the model",
+        other => other.name(),
+    }
+}
+
+/// What a check is about, apart from its kind: models, stages, run and actuator.
+pub(crate) fn place(check: &Check) -> String {
+    let models = check.models.iter().map(|model| model.case().to_owned());
+    let stages = check
+        .stages
+        .iter()
+        .map(|stage| crate::choice::stage_name(*stage).to_owned());
+    let rest = check.run.iter().chain(&check.actuator).cloned();
+    let parts: Vec<String> = models.chain(stages).chain(rest).collect();
+    parts.join(", ")
+}
+
+/// What was measured, with its unit; none where nothing was.
+pub(crate) fn statistic(check: &Check) -> Option<String> {
+    quantity(check.statistic, check.unit)
+}
+
+/// What the statistic was held against, with its unit; none where there is no threshold.
+pub(crate) fn threshold(check: &Check) -> Option<String> {
+    quantity(check.threshold, check.unit)
+}
+
+fn quantity(value: f64, unit: &str) -> Option<String> {
+    if value.is_nan() {
+        return None;
+    }
+    let text = if value.is_infinite() {
+        String::from("infinite")
+    } else {
+        significant(value, 3)
+    };
+    Some(if unit.is_empty() {
+        text
+    } else {
+        format!("{text} {unit}")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quantity;
+
+    #[test]
+    fn a_quantity_has_its_unit_and_nothing_is_none() {
+        assert_eq!(quantity(0.001_234_5, "rad").as_deref(), Some("0.00123 rad"));
+        assert_eq!(quantity(2.0, "").as_deref(), Some("2"));
+        assert_eq!(quantity(f64::INFINITY, "").as_deref(), Some("infinite"));
+        assert_eq!(quantity(f64::NAN, "%"), None);
+    }
+}

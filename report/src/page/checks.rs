@@ -1,0 +1,218 @@
+//! The evidence behind the verdict: every check with what was measured, what it was held against, where
+//! that comes from, and the plot that shows it. Checks that found nothing are folded away.
+
+use std::fmt::Write;
+
+use super::{
+    Contents,
+    markup::{Section, capital, details, figure, key, paragraph, prose},
+    table::{Cell, Table},
+};
+use crate::{
+    judgement::{place, statistic, threshold, title},
+    plot::{Axis, Chart, Line, Look, Rule},
+    text::escape,
+    units::with_unit,
+};
+use overact_identification::{Axis as EvidenceAxis, Check, Evidence, Grade, Identification};
+
+/// The section.
+pub(super) fn section(contents: &Contents<'_>) -> Section {
+    let identification = contents.identification;
+    let body = if identification.checks.is_empty() {
+        String::new()
+    } else {
+        failed(identification) + &passed(identification)
+    };
+    Section {
+        id: "checks",
+        title: "What the verdict rests on",
+        body,
+    }
+}
+
+/// The place of a check on the page, by its number among all.
+pub(super) fn id(number: usize) -> String {
+    format!("check-{}", number + 1)
+}
+
+/// All checks of one outcome with their numbers.
+fn numbered(
+    identification: &Identification,
+    passed: bool,
+) -> impl Iterator<Item = (usize, &Check)> {
+    let checks = identification.checks.iter().enumerate();
+    checks.filter(move |(_, check)| check.passed == passed)
+}
+
+/// What was found, most serious first, each with its plot.
+fn failed(identification: &Identification) -> String {
+    let mut all: Vec<(usize, &Check)> = numbered(identification, false).collect();
+    all.sort_by_key(|(_, check)| std::cmp::Reverse(check.grade));
+    if all.is_empty() {
+        return paragraph("No check found anything.");
+    }
+    let mut html = String::new();
+    for (number, check) in all {
+        let class = match check.grade {
+            Grade::Use => "note-worthy",
+            Grade::UseListed => "partly",
+            Grade::DoNotUse => "bad",
+        };
+        let _ = writeln!(
+            html,
+            "<div class=\"check {class}\" id=\"{}\"><h3>{}</h3>\n<p>{}</p>\n{}{}{}</div>",
+            id(number),
+            escape(&heading(check)),
+            prose(&capital(&check.words)),
+            measured(check),
+            spoiled(check),
+            shown(number, check)
+        );
+    }
+    html
+}
+
+/// What was checked, and of what.
+fn heading(check: &Check) -> String {
+    let place = place(check);
+    let title = capital(title(check.kind));
+    if place.is_empty() {
+        title
+    } else {
+        format!("{title}: {place}")
+    }
+}
+
+/// What was measured, and what it was held against.
+fn measured(check: &Check) -> String {
+    let mut parts = Vec::new();
+    if let Some(statistic) = statistic(check) {
+        parts.push(format!("Measured: {statistic}."));
+    }
+    if let Some(threshold) = threshold(check) {
+        parts.push(format!("Limit: {threshold}."));
+    }
+    if !check.origin.is_empty() {
+        let origin = check.origin.trim_end_matches('.');
+        parts.push(format!("Where the limit comes from: {origin}."));
+    }
+    if parts.is_empty() {
+        return String::new();
+    }
+    format!("<p class=\"note\">{}</p>\n", prose(&parts.join(" ")))
+}
+
+/// The parameters that are not to be used.
+fn spoiled(check: &Check) -> String {
+    if check.spoiled.is_empty() {
+        return String::new();
+    }
+    let names: Vec<String> = check
+        .spoiled
+        .iter()
+        .map(|name| format!("`{name}`"))
+        .collect();
+    paragraph(&format!("Not to be used: {}.", names.join(", ")))
+}
+
+/// What was checked and found in order, on demand: a table, and below it what has a plot.
+fn passed(identification: &Identification) -> String {
+    let all: Vec<(usize, &Check)> = numbered(identification, true).collect();
+    if all.is_empty() {
+        return String::new();
+    }
+    let or_nothing = |text: Option<String>| text.map_or_else(Cell::nothing, Cell::number);
+    let rows = all.iter().map(|(_, check)| {
+        vec![
+            Cell::prose(&heading(check)),
+            or_nothing(statistic(check)),
+            or_nothing(threshold(check)),
+            Cell::prose(&check.origin),
+            Cell::prose(&capital(&check.words)),
+        ]
+    });
+    let titles = [
+        ("check", ""),
+        ("measured", "n"),
+        ("limit", "n"),
+        ("where the limit comes from", ""),
+        ("in words", ""),
+    ];
+    let table = Table {
+        caption: String::from("Checks that found nothing"),
+        header: vec![
+            titles
+                .iter()
+                .map(|(title, class)| Cell::text(title).class(class))
+                .collect(),
+        ],
+        rows: rows.collect(),
+    };
+    let plots: String = all
+        .iter()
+        .filter(|(_, check)| check.evidence.is_some())
+        .map(|(number, check)| {
+            let heading = escape(&heading(check));
+            format!("<h3>{heading}</h3>\n{}", shown(*number, check))
+        })
+        .collect();
+    let summary = match all.len() {
+        1 => String::from("One check found nothing"),
+        count => format!("{count} checks found nothing"),
+    };
+    details(&summary, &(table.html() + &plots))
+}
+
+/// The plot that shows the result of a check.
+fn shown(number: usize, check: &Check) -> String {
+    let Some(evidence) = &check.evidence else {
+        return String::new();
+    };
+    let lines = curves(evidence);
+    let names: Vec<(&str, &str)> = lines
+        .iter()
+        .filter(|line| !line.label.is_empty())
+        .map(|line| (line.look.class(), line.label.as_str()))
+        .collect();
+    let names = if names.len() > 1 {
+        key(&names)
+    } else {
+        String::new()
+    };
+    let rules = evidence.limits.iter().enumerate();
+    let plot = Chart {
+        title: capital(&evidence.title),
+        description: heading(check),
+        x: Axis::linear(axis(&evidence.x)),
+        y: Axis::linear(axis(&evidence.y)),
+        rules: rules
+            .map(|(order, limit)| Rule::horizontal(*limit, if order == 0 { "limit" } else { "" }))
+            .collect(),
+        lines,
+    };
+    figure(
+        &format!("figure-{}", id(number)),
+        &[plot.svg()],
+        &names,
+        &escape(&format!("{}.", capital(&evidence.title))),
+    )
+}
+
+/// The curves of an evidence: lines, then points.
+fn curves(evidence: &Evidence) -> Vec<Line> {
+    let lines = evidence.lines.iter().map(|curve| (curve, false));
+    let points = evidence.points.iter().map(|curve| (curve, true));
+    let curves = lines.chain(points).enumerate();
+    curves
+        .map(|(order, (curve, is_points))| {
+            let line = Line::new(Look::nth(order), &curve.name, &curve.x, &curve.y);
+            if is_points { line.as_dots() } else { line }
+        })
+        .collect()
+}
+
+/// The label of an axis.
+fn axis(axis: &EvidenceAxis) -> String {
+    with_unit(&axis.label, &axis.unit)
+}

@@ -1,0 +1,253 @@
+//! What a person who has just identified a robot reads in the terminal: what may be used, why, the
+//! recommended parameters, and what to do next. All tables are in `terminal`.
+
+use crate::{
+    choice::{answers, projection, stage_name},
+    intervals::half_width_percent,
+    judgement::{grade_words, objections, passed},
+    layout::{line, table},
+    terminal::calibration,
+    text::{fitted, visible},
+};
+use overact_identification::{
+    Estimate, Grade, Identification, ParameterEstimate, Verdict, significant,
+};
+
+/// Characters of a line of prose.
+const WIDTH: usize = 100;
+
+/// The summary; `page` is where the page with all evidence has been written.
+#[must_use]
+pub fn summary(identification: &Identification, page: Option<&str>) -> String {
+    let mut text = String::new();
+    paragraph(&mut text, "", &headline(identification));
+    if let Some(calibration) = &identification.calibration {
+        for told in calibration::calibration(calibration).lines() {
+            line(&mut text, told);
+        }
+    }
+    for estimate in answers(identification) {
+        text.push('\n');
+        text.push_str(&model(identification, estimate));
+    }
+    text.push_str(&parameters(identification));
+    text.push_str(&next(identification, page));
+    text
+}
+
+/// What was identified from what.
+fn headline(identification: &Identification) -> String {
+    let seconds = identification
+        .runs
+        .iter()
+        .map(|run| run.samples as f64 / run.sampling_frequency);
+    let seconds: f64 = seconds.sum();
+    let runs = identification.runs.len();
+    format!(
+        "{}: identified from {runs} run{}, {} s",
+        identification.robot,
+        if runs == 1 { "" } else { "s" },
+        significant(seconds, 3)
+    )
+}
+
+/// The verdict on one model and its reasons.
+fn model(identification: &Identification, estimate: &Estimate) -> String {
+    let mut text = String::new();
+    let mut verdicts = identification.verdicts.iter();
+    let verdict = verdicts.find(|one| one.model == estimate.model);
+    let grade = verdict.map_or_else(String::new, |one| {
+        format!(": {}", grade_words(one.grade).to_uppercase())
+    });
+    line(
+        &mut text,
+        &format!(
+            "{} ({}){grade}",
+            estimate.model.case(),
+            projection(estimate)
+        ),
+    );
+    paragraph(
+        &mut text,
+        "  ",
+        &format!(
+            "{} {} leave {:.4} % of the torques unexplained.{}",
+            estimate.parameters.len(),
+            stage_name(estimate.stage),
+            estimate.relative_error_percent,
+            held_out(identification, estimate)
+        ),
+    );
+    if let Some(verdict) = verdict {
+        text.push_str(&reasons(identification, verdict));
+    }
+    text
+}
+
+/// How well held-out runs are predicted.
+fn held_out(identification: &Identification, estimate: &Estimate) -> String {
+    let errors = identification
+        .cross_validation
+        .iter()
+        .filter(|one| one.model == estimate.model && one.stage == estimate.stage)
+        .map(|one| one.relative_error_percent);
+    errors.reduce(f64::max).map_or_else(String::new, |worst| {
+        format!(" Of held-out runs: at most {} %.", significant(worst, 3))
+    })
+}
+
+/// What speaks against an estimate, or that nothing does.
+fn reasons(identification: &Identification, verdict: &Verdict) -> String {
+    let mut text = String::new();
+    if verdict.grade == Grade::UseListed {
+        paragraph(
+            &mut text,
+            "  ",
+            &format!("To be used: {}.", verdict.listed.join(", ")),
+        );
+    }
+    let objections = objections(identification, verdict.model, verdict.stage);
+    for (_, check) in &objections {
+        paragraph(&mut text, "  - ", &check.located());
+    }
+    let count = passed(identification, verdict.model, verdict.stage);
+    if objections.is_empty() && count > 0 {
+        let s = if count == 1 { "" } else { "s" };
+        line(&mut text, &format!("  {count} check{s} found nothing."));
+    }
+    text
+}
+
+/// The parameters of all answers side by side.
+fn parameters(identification: &Identification) -> String {
+    let answers = answers(identification);
+    let Some(first) = answers.first() else {
+        return String::new();
+    };
+    let all = || answers.iter().flat_map(|one| &one.parameters);
+    let truth = all().any(|one| one.true_value.is_some());
+    let mut names: Vec<&str> = Vec::new();
+    for one in all() {
+        if !names.contains(&one.name.as_str()) {
+            names.push(&one.name);
+        }
+    }
+    let base = &identification.base_parameters;
+    names.sort_by_key(|name| base.iter().position(|one| one.name == *name));
+    let mut header = vec!["parameter"];
+    if truth {
+        header.push("true value");
+    }
+    for answer in &answers {
+        header.extend([answer.model.case(), "+-%"]);
+    }
+    header.push("unit");
+    let rows = names.iter().map(|name| {
+        let find = |estimate: &&Estimate| -> Option<ParameterEstimate> {
+            estimate
+                .parameters
+                .iter()
+                .find(|one| one.name == *name)
+                .cloned()
+        };
+        let some = answers.iter().find_map(find);
+        let mut row = vec![(*name).to_owned()];
+        let number = |value: Option<f64>, digits| {
+            value.map_or_else(|| String::from("-"), |value| significant(value, digits))
+        };
+        if truth {
+            row.push(number(some.as_ref().and_then(|one| one.true_value), 6));
+        }
+        for answer in &answers {
+            let own = find(answer);
+            row.push(number(own.as_ref().map(|one| one.value), 6));
+            row.push(number(own.as_ref().and_then(half_width_percent), 2));
+        }
+        row.push(some.map_or_else(String::new, |one| one.unit));
+        row
+    });
+    let title = match stage_name(first.stage).split_at_checked(1) {
+        Some((letter, rest)) => letter.to_uppercase() + rest,
+        None => String::new(),
+    };
+    format!(
+        "\n{title}, with half the 95 % interval in percent\n{}",
+        table(&header, rows.collect())
+    )
+}
+
+/// Warnings that no check tells of, and what to do next.
+fn next(identification: &Identification, page: Option<&str>) -> String {
+    let mut text = String::new();
+    let told: Vec<&str> = identification
+        .checks
+        .iter()
+        .filter(|check| !check.passed)
+        .map(|check| check.words.as_str())
+        .collect();
+    let is_told = |warning: &&String| told.iter().any(|words| warning.contains(words));
+    for warning in identification.warnings.iter().filter(|one| !is_told(one)) {
+        text.push('\n');
+        paragraph(&mut text, "", &format!("warning: {warning}"));
+    }
+    text.push('\n');
+    if identification.cross_validation.is_empty() {
+        line(
+            &mut text,
+            "No run was held out: give one with --cross-validate, and the verdict knows how well the model predicts.",
+        );
+    }
+    line(
+        &mut text,
+        &match page {
+            Some(page) => format!("The evidence behind each line, with plots: {page}"),
+            None => String::from(
+                "--report report.html writes the evidence behind each line, with plots; --tables prints all tables.",
+            ),
+        },
+    );
+    text
+}
+
+/// A paragraph of lines that are not too long, behind `lead` and indented like it.
+fn paragraph(text: &mut String, lead: &str, words: &str) {
+    let indent = " ".repeat(lead.chars().count());
+    let mut current = lead.to_owned();
+    let mut is_empty = true;
+    // A number keeps its percent sign beside it.
+    let words = visible(words).replace(" %", "\u{a0}%");
+    for word in words.split(' ').filter(|word| !word.is_empty()) {
+        let word = fitted(&word.replace('\u{a0}', " "), WIDTH);
+        if !is_empty && current.chars().count() + 1 + word.chars().count() > WIDTH {
+            line(text, &current);
+            current.clone_from(&indent);
+            is_empty = true;
+        }
+        if !is_empty {
+            current.push(' ');
+        }
+        current.push_str(&word);
+        is_empty = false;
+    }
+    line(text, &current);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::paragraph;
+
+    #[test]
+    fn a_paragraph_is_broken_between_words_and_loses_none() {
+        let words = "one two three ".repeat(30);
+        let mut text = String::new();
+        paragraph(&mut text, "  - ", &words);
+        assert!(text.lines().count() > 3);
+        assert!(
+            text.lines()
+                .all(|line| line.chars().count() <= super::WIDTH)
+        );
+        assert!(text.lines().skip(1).all(|line| line.starts_with("    ")));
+        let told: Vec<&str> = text.split_whitespace().skip(1).collect();
+        assert_eq!(told, words.split_whitespace().collect::<Vec<_>>());
+    }
+}
