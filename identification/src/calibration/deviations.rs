@@ -6,7 +6,10 @@
 //! within one step of an encoder for many samples), and what the geometry does not explain never is: so
 //! the variance of the sum is estimated from the scores themselves, by equally weighted cosines as for the
 //! dynamic parameters (Lazarus, Lewis, Stock and Watson, *J. Business & Economic Statistics* 36, 2018), run
-//! by run. The larger of the two deviations is the one that is told.
+//! by run. The larger of the two deviations is the one that is told. That takes many more samples than the
+//! noise hangs together over: of 100 draws of a DualV with an offset and a long link, 95 % intervals cover 95 %
+//! under white noise (96 and 94 % where all parameters are estimated), but 77 to 79 % where noise is correlated
+//! over ten of 300 samples.
 
 use nalgebra::{DMatrix, DVector};
 
