@@ -8,5 +8,5 @@ mod alter;
 mod list;
 mod outcome;
 
-pub use list::{Trap, traps};
+pub use list::{Change, Trap, traps};
 pub use outcome::{Outcome, clean, identified, outcome, prepared};
