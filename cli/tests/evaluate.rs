@@ -207,3 +207,31 @@ fn a_tree_takes_its_motion_under_any_name() {
         json!([3.0, 3.0, 2.0, 1.0, 1.0])
     );
 }
+
+#[test]
+fn quaternions_of_any_length_are_one_rotation() {
+    let bench = Bench::new();
+    let state = |q: [f64; 4]| json!({ "pose": [0.0, 0.0, 0.5, q[0], q[1], q[2], q[3]] });
+    let states = [[0.8, 0.6, 0.0, 0.0], [0.08, 0.06, 0.0, 0.0]].map(state);
+    bench.write("states.json", &Value::from(states.to_vec()).to_string());
+    let platform = robot("spherical_4rrr.toml");
+    let free = robot("hexapod.toml");
+    let ask = |robot: &str| {
+        let function = ["inverse_jacobian", "--states", "states.json"];
+        bench.json(&[&["evaluate", robot], &function[..]].concat())["results"].clone()
+    };
+    let answers = ask(&free);
+    assert_eq!(answers[0], answers[1]);
+
+    let zero = json!([{ "pose": [0.0, 0.0, 0.0, 0.0] }]);
+    bench.write("zero.json", &zero.to_string());
+    let run = bench.run(&[
+        "evaluate",
+        &platform,
+        "inverse_jacobian",
+        "--states",
+        "zero.json",
+    ]);
+    assert_eq!(run.code, Some(1), "{}", run.err);
+    assert!(run.err.contains("quaternion"), "{}", run.err);
+}

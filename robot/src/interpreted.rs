@@ -283,6 +283,18 @@ impl InterpretedRobot {
         kinds.filter_map(of).min_by_key(|error| error.sample)
     }
 
+    /// A pose as the programs take it: a quaternion at its end is scaled to length 1.
+    ///
+    /// # Errors
+    /// A quaternion of length zero.
+    pub fn unit_pose(&self, pose: &[f64]) -> Result<Vec<f64>, Error> {
+        let mut unit = pose.to_vec();
+        if self.has_quaternion() {
+            guard::normalise(&mut unit, Input::Pose.name())?;
+        }
+        Ok(unit)
+    }
+
     /// Poses whose quaternions have length 1, and the first one that has none.
     fn unit_quaternions(&self, poses: &[f64]) -> (Vec<f64>, Option<SampleError>) {
         let mut unit = poses.to_vec();

@@ -130,7 +130,8 @@ impl Gatherer<'_> {
         if self.from != MotionInput::Actuators
             && let Some(pose) = self.states.get(at, "pose", sizes.pose)?
         {
-            return Ok(pose.to_vec());
+            let unit = self.robot.unit_pose(pose);
+            return Ok(unit.map_err(|error| self.states.problem(at, &error.to_string()))?);
         }
         let mut actuators = self
             .states
