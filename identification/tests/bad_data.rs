@@ -7,7 +7,7 @@ mod dualv;
 use std::sync::LazyLock;
 
 use dualv::{DualV, experiment, log, records, settings};
-use overact_identification::{Check, CheckKind, Dataset, Error, Identification, Log, identify};
+use overact_identification::{Check, CheckKind, Dataset, Error, Grade, Identification, Log, identify};
 use overact_simulation::Record;
 
 /// Two unloaded and two loaded runs of five seconds.
@@ -357,4 +357,63 @@ fn a_payload_run_that_is_labelled_unloaded_is_named() {
         found(&result)[0],
         (CheckKind::PayloadLabel, Some("loaded 1"), None)
     );
+}
+
+/// The first check of a kind.
+fn check(result: &Identification, kind: CheckKind) -> &Check {
+    let mut checks = result.checks.iter();
+    checks.find(|one| one.kind == kind).expect("the check")
+}
+
+#[test]
+fn late_torques_are_named_with_their_delay() {
+    // One millisecond is one sample.
+    let result = with(|_, positions, torques| {
+        torques.truncate(torques.len() - 4);
+        positions.drain(..4);
+    });
+    let result = result.expect("an identification");
+    let delay = check(&result, CheckKind::Delay);
+    assert!(!delay.passed && delay.grade != Grade::Use, "{delay:?}");
+    let told = delay.words.strip_prefix("the torques come ");
+    let told = told.and_then(|text| text.split_once(" ms behind the motion"));
+    let size: f64 = told.expect("a size").0.parse().expect("a number");
+    assert!((size - 1.0).abs() < 0.05, "{size}");
+    assert!(!trusted(&result, "case 1"));
+}
+
+#[test]
+fn a_gain_ten_percent_low_is_named() {
+    let result = with(|_, _, torques| torques.chunks_exact_mut(4).for_each(|row| row[2] *= 0.9));
+    let result = result.expect("an identification");
+    let mut gains = result.checks.iter();
+    let gain = gains.find(|one| one.kind == CheckKind::WrongGain && !one.passed);
+    let gain = gain.expect("a wrong gain");
+    assert_eq!(gain.actuator.as_deref(), Some("leg3"));
+    assert!(gain.words.contains("too small"), "{}", gain.words);
+    assert_ne!(result.grade(), Grade::Use);
+}
+
+#[test]
+fn an_encoder_that_is_off_misses_the_closure() {
+    let off = 0.2_f64.to_radians();
+    let result = with(|_, positions, _| {
+        positions.chunks_exact_mut(4).for_each(|row| row[0] += off);
+    });
+    let result = result.expect("an identification");
+    let closure = check(&result, CheckKind::Closure);
+    assert_eq!(closure.grade, Grade::DoNotUse, "{closure:?}");
+    assert!(closure.statistic > 10.0 * closure.threshold);
+    assert_eq!(result.grade(), Grade::DoNotUse);
+}
+
+#[test]
+fn torques_that_were_not_recorded_are_named() {
+    let zero = with(|_, _, torques| torques.fill(0.0)).expect("an identification");
+    assert_eq!(zero.grade(), Grade::DoNotUse);
+    assert_eq!(found(&zero)[0].0, CheckKind::ZeroTorque);
+    let twice = with(|_, _, torques| torques.chunks_exact_mut(4).for_each(|row| row[1] = row[0]));
+    let twice = twice.expect("an identification");
+    assert_eq!(twice.grade(), Grade::DoNotUse);
+    assert_eq!(found(&twice)[0].0, CheckKind::DuplicateColumns);
 }
