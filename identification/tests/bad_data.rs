@@ -7,7 +7,9 @@ mod dualv;
 use std::sync::LazyLock;
 
 use dualv::{DualV, experiment, log, records, settings};
-use overact_identification::{Check, CheckKind, Dataset, Error, Grade, Identification, Log, identify};
+use overact_identification::{
+    Check, CheckKind, Dataset, Error, Grade, Identification, Log, identify,
+};
 use overact_simulation::Record;
 
 /// Two unloaded and two loaded runs of five seconds.
