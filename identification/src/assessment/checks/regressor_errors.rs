@@ -89,8 +89,13 @@ fn source(told: &ErrorsInRegressor) -> String {
 /// Whether the estimates agree, in words.
 fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
     let [k, rest] = agreement.degrees_of_freedom;
+    let whose = if agreement.together {
+        "which chance exceeds"
+    } else {
+        "for the parameter that differs most, which chance exceeds for one of them"
+    };
     let test = format!(
-        "Durbin, Wu and Hausman: F = {} on {k:.0} and {rest:.0} degrees of freedom, which chance exceeds with a probability of {}",
+        "Durbin, Wu and Hausman: F = {} on {k:.0} and {rest:.0} degrees of freedom, {whose} with a probability of {}",
         significant(agreement.statistic, 3),
         significant(agreement.probability, 2),
     );

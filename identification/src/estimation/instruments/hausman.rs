@@ -47,6 +47,8 @@ pub(crate) struct Hausman {
     pub(crate) freedoms: [f64; 2],
     /// Of a larger F by chance.
     pub(crate) probability: f64,
+    /// Whether all parameters are tested together, not the one that differs most.
+    pub(crate) together: bool,
     /// Each parameter.
     pub(crate) parameters: Vec<Difference>,
 }
@@ -108,6 +110,7 @@ impl Hausman {
                 statistic: 0.0,
                 freedoms: [0.0, f64::INFINITY],
                 probability: 1.0,
+                together: true,
                 parameters,
             };
         };
@@ -121,6 +124,7 @@ impl Hausman {
             statistic,
             freedoms: [rank, rest],
             probability: fisher_tail(statistic, rank, rest),
+            together: true,
             parameters,
         }
     }
@@ -142,6 +146,7 @@ impl Hausman {
             statistic: (own.difference / own.deviation).powi(2),
             freedoms: [1.0, covariance.freedoms[place]],
             probability: (count * own.probability).min(1.0),
+            together: false,
             parameters,
         }
     }

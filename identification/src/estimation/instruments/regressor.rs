@@ -80,6 +80,10 @@ pub struct Agreement {
     pub degrees_of_freedom: [f64; 2],
     /// With which chance exceeds it where the regressor has no errors.
     pub probability: f64,
+    /// Whether all parameters are tested together. Where these data have too few degrees of freedom for
+    /// that, F is that of the parameter that differs most, and its probability that of any parameter to
+    /// differ so much (Bonferroni).
+    pub together: bool,
     /// Below this probability the estimates differ.
     pub level: f64,
     /// Whether they do.
@@ -193,6 +197,7 @@ impl ErrorsInRegressor {
                 statistic: test.statistic,
                 degrees_of_freedom: test.freedoms,
                 probability: test.probability,
+                together: test.together,
                 level: LEVEL,
                 differs: test.rejects(),
                 weakest: weakest.fold(f64::INFINITY, f64::min),
