@@ -122,7 +122,10 @@ fn passed(identification: &Identification) -> String {
     if all.is_empty() {
         return String::new();
     }
-    let or_nothing = |text: Option<String>| text.map_or_else(Cell::nothing, Cell::number);
+    // Their units are words, which may be broken.
+    let or_nothing = |text: Option<String>| {
+        text.map_or_else(Cell::nothing, |text| Cell::prose(&text.replace('-', "−")))
+    };
     let rows = all.iter().map(|(_, check)| {
         vec![
             Cell::prose(&heading(check)),
@@ -134,8 +137,8 @@ fn passed(identification: &Identification) -> String {
     });
     let titles = [
         ("check", ""),
-        ("measured", "n"),
-        ("limit", "n"),
+        ("measured", ""),
+        ("limit", ""),
         ("where the limit comes from", ""),
         ("in words", ""),
     ];
