@@ -210,7 +210,7 @@ fn curves(evidence: &Evidence) -> Vec<Line> {
     curves
         .map(|(order, (curve, is_points))| {
             let line = Line::new(Look::nth(order), &curve.name, &curve.x, &curve.y);
-            if is_points { line.as_dots() } else { line }
+            if is_points { line.dots_alone() } else { line }
         })
         .collect()
 }

@@ -93,7 +93,7 @@ impl Line {
     }
 
     /// The same points as dots alone.
-    pub(crate) const fn as_dots(mut self) -> Self {
+    pub(crate) const fn dots_alone(mut self) -> Self {
         (self.dots, self.joined) = (true, false);
         self
     }
