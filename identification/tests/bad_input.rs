@@ -72,6 +72,24 @@ fn missing_columns_are_all_named() {
 }
 
 #[test]
+fn columns_of_one_name_are_refused() {
+    let (log, folder) = csv("# comment\ntime,q_1,other,q_1,other,tau_1\n0,0,0,0,0,0\n");
+    let text = text(log, folder.path());
+    let expected = "log.csv: the file has 2 columns `q_1`";
+    assert!(text.starts_with(expected), "{text}");
+    assert!(!text.contains("`other`"), "{text}");
+}
+
+#[test]
+fn other_separators_are_named() {
+    for (separator, words) in [(';', "semicolons"), ('\t', "tabs")] {
+        let (log, folder) = csv(&format!("time{separator}q_1{separator}tau_1\n"));
+        let text = text(log, folder.path());
+        assert!(text.contains(&format!("not by {words}")), "{text}");
+    }
+}
+
+#[test]
 fn cells_are_named_by_line_and_column() {
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0.1,abc,NaN\n0.2,1\n0.3,,2\n");
     let error = log.clone().expect_err("an error");

@@ -254,10 +254,44 @@ fn find_columns(file: &str, header: &StringRecord, names: &[&str]) -> Result<Vec
         }
     }
     if missing.is_empty() {
+        Error::check(repeated(file, header, names))?;
         return Ok(indices);
+    }
+    if let Some(separator) = other_separator(header) {
+        let help = format!("separate the columns by commas, not by {separator}");
+        return Err(missing_columns(file, &missing, &[], "column")
+            .help(help)
+            .into());
     }
     let existing: Vec<&str> = header.iter().filter(|cell| !cell.is_empty()).collect();
     Err(missing_columns(file, &missing, &existing, "column").into())
+}
+
+/// Columns that are asked for and stand in the header more than once: nobody knows which one is meant.
+fn repeated(file: &str, header: &StringRecord, names: &[&str]) -> Vec<Problem> {
+    let count = |name: &str| header.iter().filter(|cell| *cell == name).count();
+    let mut repeated: Vec<&str> = names
+        .iter()
+        .filter(|name| count(name) > 1)
+        .copied()
+        .collect();
+    repeated.sort_unstable();
+    repeated.dedup();
+    let problem = |name: &str| {
+        Problem::new(format!("the file has {} columns `{name}`", count(name)))
+            .file(file)
+            .column(name)
+            .help("give each column a name of its own")
+    };
+    repeated.into_iter().map(problem).collect()
+}
+
+/// What seems to separate the columns of a header that is one cell to a reader of commas.
+fn other_separator(header: &StringRecord) -> Option<&'static str> {
+    let only = header.get(0).filter(|_| header.len() == 1)?;
+    let separators = [(";", "semicolons"), ("\t", "tabs"), (" ", "blanks")];
+    let found = separators.into_iter().find(|(mark, _)| only.contains(mark));
+    found.map(|(_, words)| words)
 }
 
 /// A cell as a finite number, or what is wrong with it.
