@@ -1,6 +1,6 @@
 //! A robot as a Rust user has it: read, simulated, identified; and what is wrong, all of it at once.
 
-use overact_identification::{ModelKind, Stage};
+use overact_identification::{Estimator, ModelKind, Stage};
 use overact_robot::{Error, Identifier, Robot, Runs, tracking};
 use std::path::{Path, PathBuf};
 
@@ -34,9 +34,14 @@ fn a_description_that_asks_for_base_parameters_gets_no_others() {
     let stages: Vec<_> = result
         .estimates
         .iter()
-        .map(|e| (e.model, e.stage))
+        .map(|e| (e.model, e.stage, e.estimator))
         .collect();
-    assert_eq!(stages, [(ModelKind::Joints, Stage::Base)]);
+    let base = |estimator| (ModelKind::Joints, Stage::Base, estimator);
+    let both = [
+        base(Estimator::LeastSquares),
+        base(Estimator::InstrumentalVariables),
+    ];
+    assert_eq!(stages, both);
     assert!(
         result
             .cross_validation
