@@ -4,8 +4,12 @@
 //! J_k Δq = e. The iteration starts from the home configuration; when a leg does not follow, or changes
 //! its working mode (the sign of its determinant), the way from the home pose is walked in more and
 //! smaller steps.
+//!
+//! Nothing here can panic, whatever the lengths of the slices are: entries are read and written with `get`, and
+//! one that isn't there is no number, which ends the iteration with an error.
 
 use crate::{Error, SINGULAR};
+use core::ops::Range;
 
 /// A robot's legs and home configuration.
 #[derive(Debug, Clone, Copy)]
@@ -22,6 +26,18 @@ pub struct Legs<'a> {
     pub has_quaternion: bool,
 }
 
+impl<'a> Legs<'a> {
+    /// Each leg's name and the range of its joints.
+    fn ranges(&self) -> impl Iterator<Item = (&'static str, Range<usize>)> + use<'a> {
+        let named = self.names.iter().copied().zip(self.joints);
+        named.scan(0, |start, (leg, &count)| {
+            let range = *start..*start + count;
+            *start = range.end;
+            Some((leg, range))
+        })
+    }
+}
+
 /// Memory for [`solve`]: slices of lengths n_t, n_t², and of a pose.
 #[derive(Debug)]
 pub struct Workspace<'a> {
@@ -35,6 +51,8 @@ pub struct Workspace<'a> {
 
 const ITERATIONS: usize = 30;
 const TOLERANCE: f64 = 1e-13;
+/// A leg whose closure errors (m, rad) are smaller counts as closed when the iterations are used up.
+const CLOSED: f64 = 1e-10;
 const LONGEST_STEP: f64 = 0.5;
 
 /// Finds the joint positions of a pose in the working mode of the home configuration. `evaluate` writes
@@ -57,7 +75,10 @@ pub fn solve(
     } = workspace;
     let mut result = Ok(());
     for steps in [1_u32, 8, 64] {
-        joints.copy_from_slice(legs.home_joints);
+        joints
+            .iter_mut()
+            .zip(legs.home_joints)
+            .for_each(|(q, home)| *q = *home);
         result = Ok(());
         for step in 1..=steps {
             between(&legs, pose, f64::from(step) / f64::from(steps), way);
@@ -82,9 +103,9 @@ fn between(legs: &Legs<'_>, pose: &[f64], part: f64, way: &mut [f64]) {
         *w = if part >= 1.0 { *p } else { h + part * (p - h) };
     }
     if legs.has_quaternion {
-        let start = way.len().saturating_sub(4);
-        let norm = crate::math::sqrt(way[start..].iter().map(|q| q * q).sum());
-        way[start..].iter_mut().for_each(|q| *q /= norm);
+        let before = way.len().saturating_sub(4);
+        let norm = crate::math::sqrt(way.iter().skip(before).map(|q| q * q).sum());
+        way.iter_mut().skip(before).for_each(|q| *q /= norm);
     }
 }
 
@@ -96,57 +117,44 @@ fn newton(
     jacobian: &mut [f64],
     evaluate: &mut impl FnMut(&[f64], &[f64], &mut [f64], &mut [f64]) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let total = joints.len();
     for _ in 0..ITERATIONS {
         evaluate(pose, joints, error, jacobian)?;
-        let mut start = 0;
         let mut largest = 0.0_f64;
-        for (leg, &count) in legs.joints.iter().enumerate() {
-            let range = start..start + count;
-            let (_, condition) = eliminate(jacobian, error, total, range.clone());
+        for (leg, range) in legs.ranges() {
+            let mut system = System::new(joints.len(), jacobian, error);
+            let (_, condition) = system.eliminate(range.clone());
             if condition.is_nan() || condition * SINGULAR > 1.0 {
-                return Err(Error::SingularLeg {
-                    leg: legs.names[leg],
-                    condition,
-                });
+                return Err(Error::SingularLeg { leg, condition });
             }
-            let step = error[range.clone()]
-                .iter()
-                .fold(0.0_f64, |m, s| m.max(s.abs()));
+            let step = largest_of(part(error, range.clone()));
             let scale = if step > LONGEST_STEP {
                 LONGEST_STEP / step
             } else {
                 1.0
             };
-            for (q, s) in joints[range.clone()].iter_mut().zip(&error[range]) {
+            let moved = joints.iter_mut().zip(error.iter());
+            for (q, s) in moved.skip(range.start).take(range.len()) {
                 *q += scale * s;
             }
             largest = largest.max(step);
-            start += count;
         }
         if largest < TOLERANCE {
             return Ok(());
         }
     }
-    // The leg whose error is the largest is the one that cannot follow.
     evaluate(pose, joints, error, jacobian)?;
-    let mut start = 0;
-    let mut worst = (0, 0.0);
-    for (leg, &count) in legs.joints.iter().enumerate() {
-        let size = error[start..start + count]
-            .iter()
-            .fold(0.0_f64, |m, e| m.max(e.abs()));
-        if size > worst.1 {
-            worst = (leg, size);
-        }
-        start += count;
-    }
-    if worst.1 < 1e-10 {
-        Ok(())
-    } else {
-        Err(Error::OutOfReach {
-            leg: legs.names[worst.0],
-        })
+    closed(legs, error)
+}
+
+/// Whether all legs are closed; the leg whose error is the largest is the one that cannot follow.
+fn closed(legs: &Legs<'_>, error: &[f64]) -> Result<(), Error> {
+    let sizes = legs
+        .ranges()
+        .map(|(leg, range)| (leg, largest_of(part(error, range))));
+    let open = sizes.filter(|(_, size)| *size >= CLOSED);
+    match open.reduce(|worst, next| if next.1 > worst.1 { next } else { worst }) {
+        Some((leg, _)) => Err(Error::OutOfReach { leg }),
+        None => Ok(()),
     }
 }
 
@@ -160,70 +168,117 @@ fn same_mode(
     evaluate: &mut impl FnMut(&[f64], &[f64], &mut [f64], &mut [f64]) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let total = joints.len();
-    let mut start = 0;
-    for (leg, &count) in legs.joints.iter().enumerate() {
-        let range = start..start + count;
+    for (leg, range) in legs.ranges() {
         evaluate(legs.home_pose, legs.home_joints, error, jacobian)?;
-        let (home, _) = eliminate(jacobian, error, total, range.clone());
+        let (home, _) = System::new(total, jacobian, error).eliminate(range.clone());
         evaluate(pose, joints, error, jacobian)?;
-        let (here, condition) = eliminate(jacobian, error, total, range);
+        let (here, condition) = System::new(total, jacobian, error).eliminate(range);
         if home * here <= 0.0 {
-            return Err(Error::SingularLeg {
-                leg: legs.names[leg],
-                condition,
-            });
+            return Err(Error::SingularLeg { leg, condition });
         }
-        start += count;
     }
     Ok(())
 }
 
-/// Solves the diagonal block `range` of a system in place by Gaussian elimination with row pivoting;
-/// returns the sign of the block's determinant and the ratio of its largest and smallest pivots.
-fn eliminate(
-    matrix: &mut [f64],
-    vector: &mut [f64],
-    total: usize,
-    range: core::ops::Range<usize>,
-) -> (f64, f64) {
-    let mut sign = 1.0;
-    let (mut largest, mut smallest) = (0.0_f64, f64::INFINITY);
-    for k in range.clone() {
+fn part(numbers: &[f64], range: Range<usize>) -> &[f64] {
+    numbers.get(range).unwrap_or_default()
+}
+
+fn largest_of(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(0.0, |largest, x| largest.max(x.abs()))
+}
+
+/// A square matrix, row-major, and a right-hand side; entries outside of them are no numbers.
+struct System<'a> {
+    size: usize,
+    matrix: &'a mut [f64],
+    vector: &'a mut [f64],
+}
+
+impl<'a> System<'a> {
+    fn new(size: usize, matrix: &'a mut [f64], vector: &'a mut [f64]) -> Self {
+        Self {
+            size,
+            matrix,
+            vector,
+        }
+    }
+
+    fn entry(&self, row: usize, column: usize) -> f64 {
+        let entry = self.matrix.get(row * self.size + column);
+        entry.copied().unwrap_or(f64::NAN)
+    }
+
+    fn side(&self, row: usize) -> f64 {
+        self.vector.get(row).copied().unwrap_or(f64::NAN)
+    }
+
+    fn set_entry(&mut self, row: usize, column: usize, value: f64) {
+        if let Some(entry) = self.matrix.get_mut(row * self.size + column) {
+            *entry = value;
+        }
+    }
+
+    fn set_side(&mut self, row: usize, value: f64) {
+        if let Some(side) = self.vector.get_mut(row) {
+            *side = value;
+        }
+    }
+
+    /// Solves the diagonal block `range` in place by Gaussian elimination with row pivoting; returns the
+    /// sign of the block's determinant and the ratio of its largest and smallest pivots.
+    fn eliminate(&mut self, range: Range<usize>) -> (f64, f64) {
+        let mut sign = 1.0;
+        let (mut largest, mut smallest) = (0.0_f64, f64::INFINITY);
+        for k in range.clone() {
+            if self.bring_pivot_up(k, &range) {
+                sign = -sign;
+            }
+            let pivot = self.entry(k, k);
+            largest = largest.max(pivot.abs());
+            smallest = smallest.min(pivot.abs());
+            if pivot == 0.0 || !pivot.is_finite() {
+                return (0.0, f64::INFINITY);
+            }
+            if pivot < 0.0 {
+                sign = -sign;
+            }
+            for row in k + 1..range.end {
+                let factor = self.entry(row, k) / pivot;
+                for column in k..range.end {
+                    let rest = self.entry(row, column) - factor * self.entry(k, column);
+                    self.set_entry(row, column, rest);
+                }
+                self.set_side(row, self.side(row) - factor * self.side(k));
+            }
+        }
+        for k in range.clone().rev() {
+            let known = (k + 1..range.end).map(|column| self.entry(k, column) * self.side(column));
+            let rest = known.fold(self.side(k), |rest, product| rest - product);
+            self.set_side(k, rest / self.entry(k, k));
+        }
+        (sign, largest / smallest)
+    }
+
+    /// Swaps row k of a block with the one below whose entry in column k is the largest; whether there is one.
+    fn bring_pivot_up(&mut self, k: usize, range: &Range<usize>) -> bool {
         let mut pivot_row = k;
         for row in k + 1..range.end {
-            if matrix[row * total + k].abs() > matrix[pivot_row * total + k].abs() {
+            if self.entry(row, k).abs() > self.entry(pivot_row, k).abs() {
                 pivot_row = row;
             }
         }
-        if pivot_row != k {
-            for column in range.clone() {
-                matrix.swap(k * total + column, pivot_row * total + column);
-            }
-            vector.swap(k, pivot_row);
-            sign = -sign;
+        if pivot_row == k {
+            return false;
         }
-        let pivot = matrix[k * total + k];
-        largest = largest.max(pivot.abs());
-        smallest = smallest.min(pivot.abs());
-        if pivot == 0.0 || !pivot.is_finite() {
-            return (0.0, f64::INFINITY);
+        for column in range.clone() {
+            let (here, there) = (self.entry(k, column), self.entry(pivot_row, column));
+            self.set_entry(k, column, there);
+            self.set_entry(pivot_row, column, here);
         }
-        if pivot < 0.0 {
-            sign = -sign;
-        }
-        for row in k + 1..range.end {
-            let factor = matrix[row * total + k] / pivot;
-            for column in k..range.end {
-                matrix[row * total + column] -= factor * matrix[k * total + column];
-            }
-            vector[row] -= factor * vector[k];
-        }
+        let (here, there) = (self.side(k), self.side(pivot_row));
+        self.set_side(k, there);
+        self.set_side(pivot_row, here);
+        true
     }
-    for k in range.clone().rev() {
-        for column in k + 1..range.end {
-            vector[k] -= matrix[k * total + column] * vector[column];
-        }
-        vector[k] /= matrix[k * total + k];
-    }
-    (sign, largest / smallest)
 }
