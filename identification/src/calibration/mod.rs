@@ -21,10 +21,11 @@
 //! - `geometry`: the robot as seen from here;
 //! - `samples`: samples of the runs, and the noise of the sensors;
 //! - `elimination`, `fit`: the equations without poses, and their solution;
-//! - `deviations`: how sure it is;
+//! - `correlation`, `deviations`: how the noise hangs together over time, and how sure the solution is;
 //! - `selection`: which parameters are changed;
 //! - `result`: what is told.
 
+mod correlation;
 mod deviations;
 mod elimination;
 mod fit;

@@ -1,6 +1,6 @@
 //! Intervals of calibrated parameters contain the truth as often as they say.
 
-use super::runs::{Encoder, Reading, faulty, robot, run, text};
+use super::runs::{Colour, Encoder, Reading, faulty, robot, run, text};
 use overact_identification::CalibrationScope;
 use overact_tier::{by_tier, is_full};
 
@@ -12,22 +12,29 @@ const OFFSET: (&str, f64) = ("offset_leg3", 3.490_658_503_988_659e-3);
 /// those of all parameters together cover, too.
 #[test]
 fn intervals_cover_under_white_noise() {
-    cover(0.0, by_tier([(0.5, 3.0), (0.88, 1.25)]));
+    cover(Colour::White, by_tier([(0.5, 3.0), (0.88, 1.25)]));
 }
 
-/// Noise that is correlated over some ten of three hundred samples leaves some thirty that are independent:
-/// too few for deviations that are honest about it. The intervals cover 77 to 79 % of 100 draws; they shall
-/// not become worse.
+/// Noise that is correlated over some ten of three hundred samples. So few that are independent make errors in
+/// units of the deviations as large as Student's distribution of few degrees of freedom has them.
 #[test]
 fn intervals_cover_under_correlated_noise() {
     if is_full() {
-        cover(0.9, (0.7, 2.5));
+        cover(Colour::Remembered(0.9), (0.88, 1.4));
     }
 }
 
-/// Draws of noise of which a part is that of the sample before; the intervals cover at least so often, and
-/// errors in units of the deviations have at most so large a root mean square.
-fn cover(remembered: f64, (least, largest): (f64, f64)) {
+/// Noise of low frequencies alone.
+#[test]
+fn intervals_cover_under_band_limited_noise() {
+    if is_full() {
+        cover(Colour::BandLimited(0.2), (0.88, 1.25));
+    }
+}
+
+/// Draws of noise of a colour; the intervals cover at least so often, and errors in units of the deviations
+/// have at most so large a root mean square.
+fn cover(colour: Colour, (least, largest): (f64, f64)) {
     let draws = by_tier([3, 100]);
     let described = robot(&text("dualv.toml"));
     let real = faulty(&described, &[LINK]);
@@ -38,7 +45,7 @@ fn cover(remembered: f64, (least, largest): (f64, f64)) {
                 samples: 300,
                 encoder: Encoder::Noise {
                     deviation: 3e-6,
-                    remembered,
+                    colour,
                 },
                 offsets: vec![0.0, 0.0, OFFSET.1],
                 seed: 1 + draw as u64,
@@ -58,7 +65,7 @@ fn cover(remembered: f64, (least, largest): (f64, f64)) {
         let part = |count: usize| count as f64 / draws as f64;
         let sizes = squares.map(|sum| (sum / draws as f64).sqrt());
         println!(
-            "noise remembered {remembered}, {scope:?}: coverage {:?}, errors in deviations {sizes:?}, exactly the two {}",
+            "{colour:?}, {scope:?}: coverage {:?}, errors in deviations {sizes:?}, exactly the two {}",
             covered.map(part),
             part(right)
         );
@@ -66,7 +73,7 @@ fn cover(remembered: f64, (least, largest): (f64, f64)) {
             assert!(covered >= least, "{covered}");
             assert!(size < largest, "{size}");
         }
-        if scope == CalibrationScope::Smallest && remembered == 0.0 {
+        if scope == CalibrationScope::Smallest && colour == Colour::White {
             assert!(part(right) >= by_tier([0.6, 0.95]), "{right} of {draws}");
         }
     }

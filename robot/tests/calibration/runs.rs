@@ -3,7 +3,11 @@
 use overact::{Function, Model};
 use overact_identification::{CalibratedParameter, Calibration, CalibrationScope, Log};
 use overact_robot::Robot;
-use std::{f64::consts::TAU, path::Path};
+use std::{
+    collections::VecDeque,
+    f64::consts::{PI, TAU},
+    path::Path,
+};
 
 /// The text of a description of `robots/`.
 pub(crate) fn text(name: &str) -> String {
@@ -21,8 +25,20 @@ pub(crate) fn robot(text: &str) -> Robot {
 pub(crate) enum Encoder {
     /// Steps of so many rad or m.
     Resolution(f64),
-    /// Normal noise of a deviation (rad, m), of which a part is that of the sample before.
-    Noise { deviation: f64, remembered: f64 },
+    /// Normal noise of a deviation (rad, m).
+    Noise { deviation: f64, colour: Colour },
+}
+
+/// How noise hangs together over time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Colour {
+    /// Not at all.
+    White,
+    /// A part is that of the sample before.
+    Remembered(f64),
+    /// White noise through a filter of linear phase that leaves frequencies below a part of half the sampling
+    /// frequency.
+    BandLimited(f64),
 }
 
 /// How a robot moves and is read.
@@ -55,7 +71,7 @@ pub(crate) fn run(robot: &Robot, of: &Reading) -> Log {
     let info = model.info();
     let n = info.sizes.actuators;
     let mut positions = vec![0.0; of.samples * n];
-    let mut noise = Noise::new(of.seed, n);
+    let mut noise = Noise::new(of.seed, n, of.encoder);
     for (sample, row) in positions.chunks_exact_mut(n).enumerate() {
         let time = sample as f64 / of.samples as f64;
         let coordinates = info.coordinates.iter().enumerate();
@@ -86,16 +102,33 @@ pub(crate) fn run(robot: &Robot, of: &Reading) -> Log {
 /// The errors of encoders.
 struct Noise {
     state: u64,
-    last: Vec<f64>,
+    /// Factors of the last white values, and these of each sensor.
+    factors: Vec<f64>,
+    white: Vec<VecDeque<f64>>,
 }
 
+/// Values of which filtered noise is made.
+const LONGEST: usize = 121;
+
 impl Noise {
-    fn new(seed: u64, sensors: usize) -> Self {
-        Self {
+    fn new(seed: u64, sensors: usize, encoder: Encoder) -> Self {
+        let factors = match encoder {
+            Encoder::Resolution(_) => Vec::new(),
+            Encoder::Noise { colour, .. } => factors(colour),
+        };
+        let mut noise = Self {
             // Not a multiple of the step of the sequence, so that no two seeds have one sequence shifted.
             state: seed.wrapping_mul(0xd134_2543_de82_ef95),
-            last: vec![0.0; sensors],
+            white: vec![VecDeque::new(); sensors],
+            factors,
+        };
+        for sensor in 0..sensors {
+            for _ in 0..noise.factors.len() {
+                let value = noise.normal();
+                noise.white[sensor].push_back(value);
+            }
         }
+        noise
     }
 
     /// A number between 0 and 1.
@@ -116,17 +149,36 @@ impl Noise {
         for (sensor, position) in row.iter_mut().enumerate() {
             match encoder {
                 Encoder::Resolution(step) => *position = (*position / step).round() * step,
-                Encoder::Noise {
-                    deviation,
-                    remembered,
-                } => {
-                    let new = (1.0 - remembered * remembered).sqrt() * self.normal();
-                    self.last[sensor] = remembered * self.last[sensor] + new;
-                    *position += deviation * self.last[sensor];
+                Encoder::Noise { deviation, .. } => {
+                    let value = self.normal();
+                    let white = &mut self.white[sensor];
+                    white.pop_back();
+                    white.push_front(value);
+                    let terms = self.factors.iter().zip(white.iter());
+                    *position += deviation * terms.map(|(a, b)| a * b).sum::<f64>();
                 }
             }
         }
     }
+}
+
+/// Factors of successive white values that make noise of a colour and of variance one.
+fn factors(colour: Colour) -> Vec<f64> {
+    let factors: Vec<f64> = match colour {
+        Colour::White => vec![1.0],
+        Colour::Remembered(part) => (0..LONGEST as i32).map(|lag| part.powi(lag)).collect(),
+        Colour::BandLimited(part) => (0..LONGEST)
+            .map(|lag| {
+                let middle = 0.5 * (LONGEST - 1) as f64;
+                let from = PI * part * (lag as f64 - middle);
+                let ideal = if from == 0.0 { 1.0 } else { from.sin() / from };
+                let window = (PI * (lag as f64 + 0.5) / LONGEST as f64).sin().powi(2);
+                ideal * window
+            })
+            .collect(),
+    };
+    let size = factors.iter().map(|one| one * one).sum::<f64>().sqrt();
+    factors.into_iter().map(|one| one / size).collect()
 }
 
 /// The parameters that calibration knows of a robot, with their places.
