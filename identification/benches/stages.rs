@@ -13,7 +13,7 @@ use dualv::{DualV, experiment, logs, records, truth};
 use overact::Model;
 use overact_identification::{
     Dataset, Log, Mapping, Motions, Projection, Settings,
-    data::read_csv,
+    data::read,
     estimate_projection,
     filters::{Decimator, ZeroPhase, butterworth},
     identify, prepare,
@@ -61,7 +61,7 @@ fn stages(criterion: &mut Criterion) {
         Mapping::for_robot(&robot.info()),
     );
     group.bench_function("read one run of CSV", |bench| {
-        bench.iter(|| read_csv(black_box(&file), &mapping, false).expect("a log"));
+        bench.iter(|| read(black_box(&file), &mapping, false).expect("a log"));
     });
     let low_pass = butterworth(4, 0.04).expect("a design");
     let rows: Vec<f64> = (0..4 * SAMPLES).map(|k| (0.01 * k as f64).sin()).collect();

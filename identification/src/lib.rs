@@ -11,7 +11,7 @@
 //! |---|---|
 //! | `error`, `significant`, `blocks` | problems with a place and a way out; numbers in sentences; a model evaluated in blocks |
 //! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series that are plotted |
-//! | [`data`] | a run is read from CSV or MATLAB and checked; a mapping names its columns and units |
+//! | [`data`] | a run is read from text or MATLAB and checked; a mapping names its columns and units |
 //! | [`filters`] | zero-phase filtering, decimation, differences |
 //! | `settings` | what an identification is told beside the data |
 //! | `monitor` | what raw numbers tell by themselves while they are gone through |
@@ -51,7 +51,7 @@ pub use calibration::{
     CalibratedParameter, Calibration, CalibrationScope, ChangedGeometry, DescribedGeometry,
     Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
-pub use data::{Dataset, Gain, Log, Mapping, Periods};
+pub use data::{Dataset, Gain, Log, Mapping, Periods, Time};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},

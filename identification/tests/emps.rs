@@ -4,22 +4,22 @@ mod common;
 
 use common::EMPS;
 use overact_identification::{
-    Dataset, Gain, Identification, Log, Mapping, ModelKind, Normalisation, Settings, Stage,
-    data::read_mat, identify,
+    Dataset, Gain, Identification, Log, Mapping, ModelKind, Normalisation, Settings, Stage, Time,
+    data::read, identify,
 };
 
 /// Reads one of the benchmark's files.
 fn log(file: &str) -> Option<Log> {
     let path = common::shared(&format!("data/emps/{file}"))?;
     let mapping = Mapping {
-        time: String::from("t"),
+        time: Time::Column(String::from("t")),
         positions: vec![String::from("qm")],
         torques: vec![String::from("vir")],
         position_scale: vec![1.0],
         position_offset: Vec::new(),
         torque_gain: vec![Gain::Variable(String::from("gtau"))],
     };
-    Some(read_mat(&path, &mapping, false).unwrap_or_else(|error| panic!("{error}")))
+    Some(read(&path, &mapping, false).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// The settings of the published recipe.

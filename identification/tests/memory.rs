@@ -17,7 +17,7 @@ use std::{
 use dualv::{DualV, experiment, records, settings};
 use overact::Model;
 use overact_identification::{
-    Dataset, Instruments, Mapping, Progress, Settings, data::read_csv, identify,
+    Dataset, Instruments, Mapping, Progress, Settings, data::read, identify,
 };
 use overact_simulation::Record;
 use overact_tier::by_tier;
@@ -54,7 +54,7 @@ fn identified(robot: &DualV, folder: &Path, record: &Record, times: usize) -> f6
     let path = folder.join("long.csv");
     write(&path, record, times);
     ALLOCATOR.reset_peak_usage();
-    let log = read_csv(&path, &Mapping::for_robot(&robot.info()), false).expect("a log");
+    let log = read(&path, &Mapping::for_robot(&robot.info()), false).expect("a log");
     assert!(!log.in_memory());
     let settings = Settings {
         // Few equations, so that what is kept of them to judge their residuals is small beside the log.

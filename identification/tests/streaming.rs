@@ -6,9 +6,7 @@ use std::{fmt::Write as _, fs, path::Path};
 
 use common::EMPS;
 use overact::Model;
-use overact_identification::{
-    Dataset, Identification, Log, Mapping, Settings, data::read_csv, identify,
-};
+use overact_identification::{Dataset, Identification, Log, Mapping, Settings, data, identify};
 
 const SAMPLES: usize = 530_000;
 const FREQUENCY: f64 = 1000.0;
@@ -42,7 +40,7 @@ fn identified(log: Log) -> Identification {
 }
 
 fn read(path: &Path) -> Log {
-    read_csv(path, &Mapping::for_robot(&EMPS.info()), false).expect("a log")
+    data::read(path, &Mapping::for_robot(&EMPS.info()), false).expect("a log")
 }
 
 #[test]
@@ -95,7 +93,7 @@ fn a_time_that_is_not_uniform_far_inside_is_located() {
         let _ = writeln!(text, "{},0,0", (k + missing) as f64 / FREQUENCY);
     }
     fs::write(&path, text).expect("written");
-    let error = read_csv(&path, &Mapping::for_robot(&EMPS.info()), false).expect_err("a gap");
+    let error = data::read(&path, &Mapping::for_robot(&EMPS.info()), false).expect_err("a gap");
     assert_eq!(error.problems[0].line, Some(8002));
     assert!(error.to_string().contains("between samples 7999 and 8000"));
 }

@@ -2,8 +2,10 @@
 
 use crate::robot::Robot;
 use overact::{Info, Model};
-use overact_codegen::description::{self, Description, Factor, Friction, Normalisation, Reversals};
-use overact_identification::{Gain, Instruments, Mapping, Settings};
+use overact_codegen::description::{
+    self, Clock, Description, Factor, Friction, Normalisation, Reversals,
+};
+use overact_identification::{Gain, Instruments, Mapping, Settings, Time};
 
 impl Robot {
     /// The settings of an identification from runs sampled at `frequency` (Hz).
@@ -24,7 +26,10 @@ impl Robot {
             Factor::Variable(name) => Gain::Variable(name.clone()),
         };
         Mapping {
-            time: data.time.clone(),
+            time: match &data.time {
+                Clock::Column(name) => Time::Column(name.clone()),
+                Clock::Frequency(frequency) => Time::Frequency(*frequency),
+            },
             positions: data.positions.clone(),
             torques: data.torques.clone(),
             position_scale: data.position_scale.clone(),

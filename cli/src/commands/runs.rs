@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 #[group(id = "runs")]
 pub(super) struct Arguments {
-    /// Logs (CSV with a header, or MATLAB v5 .mat); without any, the virtual experiment is made
+    /// Logs (CSV and other text, or MATLAB's .mat up to version 7); without any, the virtual experiment is made
     #[arg(long, value_name = "LOG", num_args = 1..)]
     data: Vec<PathBuf>,
     /// Logs of runs with the payload on the platform

@@ -46,7 +46,9 @@ pub use inventory::Body;
 pub use model::{End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned};
 pub use overact_core::StandardParameter;
 pub use place::place;
-pub use settings::{Data, Factor, Friction, Identification, Instruments, Normalisation, Reversals};
+pub use settings::{
+    Clock, Data, Factor, Friction, Identification, Instruments, Normalisation, Reversals,
+};
 
 use crate::diagnostic::{Diagnostics, Source};
 

@@ -10,8 +10,8 @@ use crate::diagnostic::Span;
 /// How a measured log maps on the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Data {
-    /// Column of the time, s.
-    pub time: String,
+    /// How samples follow one another.
+    pub time: Clock,
     /// Columns of the actuators' positions.
     pub positions: Vec<String>,
     /// Columns of the actuators' torques, forces or drive signals.
@@ -24,6 +24,15 @@ pub struct Data {
     pub torque_gain: Vec<Factor>,
     /// Place of the table.
     pub span: Span,
+}
+
+/// How the samples of a log follow one another.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Clock {
+    /// The column of the time, s.
+    Column(String),
+    /// No column: one sample after the other at this frequency, Hz.
+    Frequency(f64),
 }
 
 /// The factor of a column.
@@ -137,16 +146,14 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
             factors.into_iter().collect()
         })
     };
-    let time = table
-        .require("time", "time = \"t\", the column of the time")
-        .and_then(|i| i.string());
+    let time = clock(&table, robot);
     let (positions, torques) = (columns("positions"), columns("torques"));
     let (position_scale, torque_gain) = (factors("position_scale"), factors("torque_gain"));
     let position_scale = position_scale.and_then(|scales| numbers(&table, &scales));
     let position_offset = offsets(&table, robot);
     table.finish();
     Some(Data {
-        time: time?.value,
+        time: time?,
         positions: positions?,
         torques: torques?,
         position_scale: position_scale?,
@@ -154,6 +161,23 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         torque_gain: torque_gain?,
         span: table.span.clone(),
     })
+}
+
+/// The column of the time, or the frequency of logs without one.
+fn clock(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Clock> {
+    let Some(sampling) = table.get("sampling") else {
+        let help =
+            "time = \"t\", the column of the time, or sampling = \"1 kHz\" where there is none";
+        let column = table.require("time", help)?.string()?;
+        return Some(Clock::Column(column.value));
+    };
+    if table.get("time").is_some() {
+        let error = sampling.error("`sampling` is for logs without a column of the time");
+        let help = "leave out one of `time` and `sampling`";
+        table.context.report(error.help(help));
+    }
+    let frequency = sampling.positive(Dimension::FREQUENCY, robot.scope)?;
+    Some(Clock::Frequency(frequency))
 }
 
 /// Factors that are numbers: of positions no log says how they are scaled.

@@ -4,16 +4,11 @@
 use std::sync::Arc;
 
 use super::{
-    csv_file,
     periods::{self, Periods},
+    samples::Samples,
+    source::{self, Files},
 };
 use crate::error::{Error, Problem};
-
-/// A step of time may differ from the usual one by this fraction.
-const STEP_TOLERANCE: f64 = 1e-3;
-
-/// Steps from which the usual one is told.
-const FIRST_STEPS: usize = 4096;
 
 /// Rows of a block.
 const BLOCK_ROWS: usize = 4096;
@@ -37,8 +32,8 @@ pub struct Log {
 enum Source {
     /// Positions and torques, samples x n each.
     Memory(Arc<[f64]>, Arc<[f64]>),
-    /// A CSV file that has been looked through before.
-    Csv(csv_file::Source),
+    /// Files that have been looked through before.
+    Files(Files),
     /// At each sample the mean position of the other periods of a run.
     Others(Box<Log>, Arc<Periods>),
 }
@@ -124,20 +119,20 @@ impl Log {
         }
     }
 
-    /// A run that stays in its file.
-    pub(super) fn in_file(
-        source: csv_file::Source,
+    /// A run that stays in its files.
+    pub(super) fn in_files(
+        files: Files,
         sampling_frequency: f64,
         samples: usize,
         payload: bool,
     ) -> Self {
         Self {
-            name: source.file().to_owned(),
+            name: files.name().to_owned(),
             sampling_frequency,
-            offsets: vec![0.0; source.actuators()],
-            actuators: source.actuators(),
+            offsets: vec![0.0; files.actuators()],
+            actuators: files.actuators(),
             samples,
-            source: Source::Csv(source),
+            source: Source::Files(files),
             payload,
             instruments: None,
         }
@@ -228,7 +223,7 @@ impl Log {
     pub fn reader(&self) -> Result<Reader<'_>, Error> {
         let rows = match &self.source {
             Source::Memory(positions, torques) => Rows::Memory(positions, torques),
-            Source::Csv(source) => Rows::Csv(Box::new(source.open()?)),
+            Source::Files(files) => Rows::Files(Box::new(files.open()?)),
             Source::Others(log, periods) => {
                 Rows::Others(Box::new(log.reader()?), periods::Others::new(periods))
             }
@@ -256,15 +251,6 @@ impl Log {
     }
 }
 
-/// Some successive samples of a run.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Samples {
-    /// Positions, samples x n, row-major (m, rad).
-    pub positions: Vec<f64>,
-    /// Torques, samples x n, row-major (N, N m).
-    pub torques: Vec<f64>,
-}
-
 /// A run that is gone through.
 #[derive(Debug)]
 pub struct Reader<'a> {
@@ -280,7 +266,7 @@ pub struct Reader<'a> {
 #[derive(Debug)]
 enum Rows<'a> {
     Memory(&'a [f64], &'a [f64]),
-    Csv(Box<csv_file::Rows<'a>>),
+    Files(Box<source::Rows<'a>>),
     Others(Box<Reader<'a>>, periods::Others<'a>),
 }
 
@@ -319,7 +305,7 @@ impl Reader<'_> {
                 *torques = &torques[size..];
                 Ok(block)
             }
-            Rows::Csv(rows) => {
+            Rows::Files(rows) => {
                 let mut block = Samples::default();
                 for _ in 0..count {
                     if !rows.next(&mut block)? {
@@ -335,101 +321,5 @@ impl Reader<'_> {
                 Ok(block)
             }
         }
-    }
-}
-
-/// Checks that times are uniform, one after the other, and tells the sampling frequency.
-#[derive(Debug, Default)]
-pub(super) struct Clock {
-    samples: usize,
-    first: f64,
-    last: f64,
-    /// The first times with the lines of the file on which they stand, until the usual step is told
-    /// from them.
-    beginning: Vec<(f64, Option<usize>)>,
-    /// The usual step.
-    expected: Option<f64>,
-    /// The first step that is not the usual one.
-    bad: Option<Problem>,
-}
-
-impl Clock {
-    /// Takes the next time, s.
-    pub(super) fn push(&mut self, time: f64, line: Option<usize>) {
-        if self.samples == 0 {
-            self.first = time;
-        } else if self.expected.is_some() {
-            self.check(self.samples - 1, time - self.last, line);
-        }
-        self.samples += 1;
-        self.last = time;
-        if self.expected.is_none() {
-            self.beginning.push((time, line));
-            if self.samples > FIRST_STEPS {
-                self.settle();
-            }
-        }
-    }
-
-    /// Number of samples so far.
-    pub(super) const fn samples(&self) -> usize {
-        self.samples
-    }
-
-    /// The sampling frequency (Hz), from the mean step.
-    ///
-    /// # Errors
-    /// Fewer than two samples, or the first step that is not the usual one.
-    pub(super) fn frequency(mut self, file: &str) -> Result<f64, Error> {
-        if self.expected.is_none() {
-            self.settle();
-        }
-        let problem = match self.samples {
-            0 => Some(Problem::new("the run is empty")),
-            1 => Some(Problem::new("the run has a single sample")),
-            _ => self.bad,
-        };
-        match problem {
-            Some(problem) => Err(problem.file(file).into()),
-            None => Ok((self.samples - 1) as f64 / (self.last - self.first)),
-        }
-    }
-
-    /// Tells the usual step from the beginning and checks the beginning by it.
-    fn settle(&mut self) {
-        let beginning = std::mem::take(&mut self.beginning);
-        let found: Vec<f64> = beginning
-            .windows(2)
-            .map(|pair| pair[1].0 - pair[0].0)
-            .collect();
-        let mut steps = found.clone();
-        steps.sort_by(f64::total_cmp);
-        // The median stays right when samples are missing; the mean would not.
-        let Some(expected) = steps.get(steps.len() / 2) else {
-            return;
-        };
-        self.expected = Some(*expected);
-        for (index, step) in found.into_iter().enumerate() {
-            self.check(index, step, beginning[index + 1].1);
-        }
-    }
-
-    /// Checks the step after sample `index`.
-    fn check(&mut self, index: usize, step: f64, line: Option<usize>) {
-        let expected = self.expected.unwrap_or(step);
-        // Written so that a step that is not a number counts as bad.
-        let uniform = expected > 0.0 && (step - expected).abs() <= STEP_TOLERANCE * expected;
-        if uniform || self.bad.is_some() {
-            return;
-        }
-        let problem = Problem::new(format!(
-            "the time is not uniform: between samples {index} and {} it steps by {step:.9} s, expected {expected:.9} s",
-            index + 1,
-        ))
-        .help("resample the run at a constant frequency, or cut it where samples are missing");
-        self.bad = Some(match line {
-            Some(line) => problem.line(line),
-            None => problem,
-        });
     }
 }

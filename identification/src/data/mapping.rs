@@ -15,13 +15,23 @@ pub enum Gain {
     Variable(String),
 }
 
-/// Columns of a CSV file, or variables of a `.mat` file (`q` for a vector, `q(:,2)` for a column
+/// How the samples of a run follow one another.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Time {
+    /// The column of the time, s, which steps uniformly.
+    Column(String),
+    /// No column: one sample after the other at this frequency, Hz.
+    Frequency(f64),
+}
+
+/// Columns of a text by name or number (`$1` is the first one), or variables of a `.mat` file (`q` for a vector, `q(:,2)` for a column
 /// of a matrix, counted from 1 as in MATLAB).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mapping {
-    /// Time, s.
-    pub time: String,
+    /// How the samples follow one another.
+    pub time: Time,
     /// Positions of the n actuators.
     pub positions: Vec<String>,
     /// Torques, forces or drive signals of the n actuators.
@@ -47,7 +57,7 @@ impl Mapping {
                 .collect()
         };
         Self {
-            time: String::from("time"),
+            time: Time::Column(String::from("time")),
             positions: named("q_"),
             torques: named("tau_"),
             position_scale: vec![1.0; info.actuators.len()],
@@ -94,6 +104,12 @@ impl Mapping {
             let message = format!("an offset of `position_offset` is {offset}");
             problems.push(Problem::new(message).column("position_offset"));
         }
+        if let Time::Frequency(frequency) = self.time
+            && !(frequency.is_finite() && frequency > 0.0)
+        {
+            let message = format!("the sampling frequency is {frequency} Hz");
+            problems.push(Problem::new(message).column("sampling"));
+        }
         if actuators == 0 {
             problems.push(Problem::new("the mapping names no position").column("positions"));
         }
@@ -115,13 +131,5 @@ impl Mapping {
             }
         }
         Error::check(problems)
-    }
-
-    /// All names that the file must have: time, positions, torques.
-    pub(super) fn names(&self) -> Vec<&str> {
-        std::iter::once(self.time.as_str())
-            .chain(self.positions.iter().map(String::as_str))
-            .chain(self.torques.iter().map(String::as_str))
-            .collect()
     }
 }

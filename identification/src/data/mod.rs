@@ -1,39 +1,47 @@
 //! Measured runs: a [`Log`] holds the actuator positions and torques of one run, uniformly sampled;
 //! a [`Mapping`] says which columns of a file they are and what turns them into SI units.
 //!
-//! Readers for CSV with a header and MATLAB v5 `.mat` files report every missing column, every
-//! cell that is not a number (up to twenty) and the first step of a time that is not uniform. A large
-//! CSV file stays on the disk and is read block by block whenever its run is gone through.
+//! Text and MATLAB's `.mat` files up to version 7 are read, told apart by their first bytes. Text may
+//! separate its columns by commas, semicolons, tabs or blanks, have decimal commas, a header, names in a
+//! comment or none. Readers report every missing column, every cell that is not a number (up to twenty)
+//! and the first step of a time that is not uniform. A large text stays on the disk and is read block
+//! by block whenever its run is gone through.
 
-mod csv_file;
+mod arrays;
+mod clock;
 mod dataset;
+mod format;
 mod log;
 mod mapping;
 mod mat_file;
 pub(crate) mod periods;
+mod problems;
+mod samples;
+mod signals;
+mod source;
+mod table;
+mod text;
 
 use std::{
     path::Path,
     sync::atomic::{AtomicU64, Ordering},
 };
 
-pub use csv_file::read_csv;
 pub use dataset::Dataset;
-pub use log::{Log, Reader, Samples};
-pub use mapping::{Gain, Mapping};
-pub use mat_file::read_mat;
+pub use log::{Log, Reader};
+pub use mapping::{Gain, Mapping, Time};
 pub use periods::Periods;
 use rayon::prelude::*;
+pub use samples::Samples;
 
-use crate::error::{Error, Problem, suggestion};
+use crate::error::Error;
+use source::Files;
 
-/// Cells that are reported one by one; a file of text would else fill the screen.
-const LARGEST_NUMBER_OF_PROBLEMS: usize = 20;
-
-/// Reads a run from a file whose extension tells its format: `.mat` is MATLAB v5, all else CSV.
+/// Reads a run from a file, whatever its format.
 ///
 /// # Errors
-/// See [`read_csv`] and [`read_mat`].
+/// A file that can't be read or is of no format that is, missing columns, cells that are not finite
+/// numbers, a time that is not uniform, or a mapping that is not right.
 pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
     read_telling(path, mapping, payload, &|_| {})
 }
@@ -45,14 +53,17 @@ fn read_telling(
     payload: bool,
     advance: &dyn Fn(u64),
 ) -> Result<Log, Error> {
-    let is_mat = path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("mat"));
-    if is_mat {
-        read_mat(path, mapping, payload)
-    } else {
-        csv_file::read_telling(path, mapping, payload, advance)
-    }
+    let files = Files::new(path, mapping)?;
+    let summary = files.look_through(&mapping.time, advance)?;
+    let (frequency, count) = (summary.frequency, summary.count);
+    let log = match summary.samples {
+        Some(Samples { positions, torques }) => {
+            let (name, actuators) = (files.name(), files.actuators());
+            Log::new(name, frequency, actuators, positions, torques, payload)?
+        }
+        None => Log::in_files(files, frequency, count, payload),
+    };
+    Ok(log.without_offsets(&mapping.position_offset))
 }
 
 /// Reads several runs at once, each with a word on its payload. `progress` is told the part of all bytes
@@ -73,56 +84,4 @@ pub fn read_all(
     };
     let read = |&(path, payload): &(&Path, bool)| read_telling(path, mapping, payload, &advance);
     files.par_iter().map(read).collect()
-}
-
-/// The name by which a file is called in messages: as the caller gave it.
-fn display_name(path: &Path) -> String {
-    path.display().to_string()
-}
-
-/// A file that can't be opened or read.
-fn unreadable(file: &str, error: &std::io::Error) -> Problem {
-    let problem = Problem::new(format!("the file can't be read: {error}")).file(file);
-    if error.kind() == std::io::ErrorKind::NotFound {
-        problem.help("check the path; it is taken from the folder in which the program was started")
-    } else {
-        problem
-    }
-}
-
-/// The error that names all columns that are missing and all that are there.
-fn missing_columns(file: &str, missing: &[&str], existing: &[&str], what: &str) -> Problem {
-    let quoted = |names: &[&str]| -> String {
-        names
-            .iter()
-            .map(|name| format!("`{name}`"))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
-    let mut problem = Problem::new(format!(
-        "there {} no {what}{} {}; the file has {}",
-        if missing.len() == 1 { "is" } else { "are" },
-        if missing.len() == 1 { "" } else { "s" },
-        quoted(missing),
-        if existing.is_empty() {
-            String::from("none")
-        } else {
-            quoted(existing)
-        }
-    ))
-    .file(file);
-    if let Some(first) = missing.first() {
-        problem = problem.column(*first);
-    }
-    let guesses: Vec<String> = missing
-        .iter()
-        .filter_map(|name| {
-            suggestion(name, existing.iter().copied()).map(|near| format!("`{near}` for `{name}`"))
-        })
-        .collect();
-    if guesses.is_empty() {
-        problem.help("name the columns in the mapping")
-    } else {
-        problem.help(format!("did you mean {}?", guesses.join(", ")))
-    }
 }

@@ -1,7 +1,7 @@
 //! Errors in the tables about experiments, data and identification.
 
 use super::{good, listed, single};
-use crate::description::Factor;
+use crate::description::{Clock, Factor};
 
 /// The errors of a robot of one joint with these tables, which start at line 2.
 fn errors(tables: &str) -> Vec<String> {
@@ -79,6 +79,29 @@ fn data() {
         "5:16 a factor of 0 loses the signal",
     ];
     assert_eq!(found, expected);
+}
+
+#[test]
+fn logs_have_a_column_of_the_time_or_a_frequency() {
+    let columns = "positions = [\"$1\"]\ntorques = [\"$2\"]\n";
+    let data = |text: &str| good(&single(text, "")).data.unwrap();
+    let sampled = data(&format!("[data]\n{columns}sampling = \"5 kHz\""));
+    assert_eq!(sampled.time, Clock::Frequency(5000.0));
+    let timed = data(&format!("[data]\n{columns}time = \"t\""));
+    assert_eq!(timed.time, Clock::Column("t".to_owned()));
+    assert_eq!(
+        errors(&format!("[data]\n{columns}")),
+        [
+            "2:1 the table `[data]` has no `time`; time = \"t\", the column of the time, or sampling = \"1 kHz\" where there is none"
+        ]
+    );
+    assert_eq!(
+        errors(&format!("[data]\n{columns}time = \"t\"\nsampling = 0")),
+        [
+            "6:12 `sampling` is for logs without a column of the time; leave out one of `time` and `sampling`",
+            "6:12 `sampling`: expected a value greater than zero, found 0",
+        ]
+    );
 }
 
 #[test]

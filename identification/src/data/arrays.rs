@@ -1,0 +1,158 @@
+//! Arrays of a file as columns of samples: vectors, and the columns of matrices.
+
+use std::sync::Arc;
+
+use super::problems::{missing_columns, shown};
+use crate::error::{Error, Problem};
+
+/// A vector, or a column of a matrix.
+#[derive(Debug, Clone, PartialEq)]
+struct Series {
+    name: String,
+    values: Arc<[f64]>,
+}
+
+/// All arrays of a file, in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Arrays {
+    /// The file as the caller named it.
+    file: String,
+    /// Names of the arrays.
+    names: Vec<String>,
+    series: Vec<Series>,
+}
+
+impl Arrays {
+    /// No arrays so far.
+    pub(super) const fn new(file: String) -> Self {
+        Self {
+            file,
+            names: Vec::new(),
+            series: Vec::new(),
+        }
+    }
+
+    /// The file as the caller named it.
+    pub(super) fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Adds an array of `rows` x `columns` whose `values` follow one another down its columns. Samples
+    /// follow one another along its longer side.
+    pub(super) fn push(&mut self, name: &str, (rows, columns): (usize, usize), values: &[f64]) {
+        self.names.push(name.to_owned());
+        let mut add = |name: String, values: Arc<[f64]>| self.series.push(Series { name, values });
+        if rows <= 1 || columns <= 1 {
+            add(name.to_owned(), values.into());
+        } else if rows >= columns {
+            for (column, values) in values.chunks_exact(rows).enumerate() {
+                add(format!("{name}(:,{})", column + 1), values.into());
+            }
+        } else {
+            for row in 0..rows {
+                let values = values.iter().skip(row).step_by(rows).copied().collect();
+                add(format!("{name}({},:)", row + 1), values);
+            }
+        }
+    }
+
+    /// Number of vectors and columns of matrices.
+    pub(super) fn columns(&self) -> usize {
+        self.series.len()
+    }
+
+    /// The place of a vector, or of a column of a matrix written `name(:,2)`, or of a row, `name(2,:)`.
+    pub(super) fn find(&self, name: &str) -> Option<usize> {
+        let bare: String = name.chars().filter(|c| !c.is_whitespace()).collect();
+        // A vector is a matrix of one column.
+        let vector = bare
+            .strip_suffix("(:,1)")
+            .or_else(|| bare.strip_suffix("(1,:)"));
+        let is = |name: &str| self.series.iter().position(|series| series.name == name);
+        is(&bare).or_else(|| vector.and_then(is))
+    }
+
+    /// The only number of an array.
+    pub(super) fn scalar(&self, name: &str) -> Option<&[f64]> {
+        self.find(name).map(|place| &*self.series[place].values)
+    }
+
+    /// What is said of vectors that are not there.
+    pub(super) fn missing(&self, missing: &[&str], what: &str) -> Problem {
+        let existing: Vec<&str> = self.names.iter().map(String::as_str).collect();
+        let problem = missing_columns(&self.file, missing, &existing, (what, 0));
+        let matrix = missing.iter().find_map(|name| {
+            let start = format!("{name}(");
+            let mut parts = self.series.iter();
+            parts.find(|series| series.name.starts_with(&start))
+        });
+        match matrix {
+            Some(part) => problem.help(format!(
+                "it is a matrix: name its columns one by one, `{}` the first",
+                shown(&part.name)
+            )),
+            None => problem,
+        }
+    }
+
+    /// Goes through some series, whose names are for messages.
+    ///
+    /// # Errors
+    /// Series of different lengths.
+    pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
+        let columns: Vec<(&[f64], &str)> = wanted
+            .iter()
+            .map(|&(place, name)| (&*self.series[place].values, name))
+            .collect();
+        let mut problems = Vec::new();
+        if let Some(((first, reference), others)) = columns.split_first() {
+            for (values, name) in others.iter().filter(|(own, _)| own.len() != first.len()) {
+                let message = format!(
+                    "`{name}` has {} samples, but `{reference}` has {}",
+                    values.len(),
+                    first.len()
+                );
+                let problem = Problem::new(message).file(self.file.as_str());
+                problems.push(problem.column(*name));
+            }
+        }
+        Error::check(problems)?;
+        Ok(Rows {
+            file: &self.file,
+            columns,
+            next: 0,
+        })
+    }
+}
+
+/// Series that are gone through.
+#[derive(Debug)]
+pub(super) struct Rows<'a> {
+    file: &'a str,
+    columns: Vec<(&'a [f64], &'a str)>,
+    next: usize,
+}
+
+impl Rows<'_> {
+    /// Puts the numbers of the next sample into `values`; `false` at the end.
+    ///
+    /// # Errors
+    /// Numbers that are not finite.
+    pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
+        let sample = self.next;
+        self.next += 1;
+        let mut problems = Vec::new();
+        for ((column, name), value) in self.columns.iter().zip(values) {
+            let Some(found) = column.get(sample) else {
+                return Ok(false);
+            };
+            if !found.is_finite() {
+                let message = format!("`{name}`: sample {sample} is not a finite number");
+                problems.push(Problem::new(message).file(self.file).column(*name));
+            }
+            *value = *found;
+        }
+        Error::check(problems)?;
+        Ok(!self.columns.is_empty())
+    }
+}

@@ -1,0 +1,141 @@
+//! What kind of file a log is: told from its first bytes, never from its name.
+
+use std::{fs::File, io::Read, path::Path};
+
+use super::problems::unreadable;
+use crate::error::{Error, Problem};
+
+/// Bytes that tell the format.
+const BEGINNING: usize = 4096;
+
+/// Formats that are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    /// Lines of numbers.
+    Text,
+    /// MATLAB's versions 5 to 7.2.
+    Mat,
+}
+
+/// A beginning, what it is the beginning of, and the way out.
+const REFUSED: [(&[u8], &str, &str); 14] = [
+    (
+        b"MATLAB 7.3",
+        "the file is of MATLAB's version 7.3, which is HDF5",
+        "save it in MATLAB with `save(..., '-v7')`, or export CSV",
+    ),
+    (
+        b"\x89HDF\r\n\x1a\n",
+        "the file is HDF5, which is not read",
+        "export CSV; a `.mat` file of version 7.3 can be saved with `save(..., '-v7')`",
+    ),
+    (
+        b"\x89MCAP0\r\n",
+        "the file is MCAP, which is not read",
+        "export the messages of the joints as CSV",
+    ),
+    (
+        b"#ROSBAG",
+        "the file is a ROS bag, which is not read",
+        "export the messages of the joints as CSV",
+    ),
+    (
+        b"SQLite format 3\0",
+        "the file is a database of SQLite (a ROS 2 bag?), which is not read",
+        "export the messages of the joints as CSV",
+    ),
+    (
+        b"PAR1",
+        "the file is Parquet, which is not read",
+        "export CSV",
+    ),
+    (
+        b"ARROW1",
+        "the file is Arrow, which is not read",
+        "export CSV",
+    ),
+    (
+        b"\x93NUMPY",
+        "the file is NumPy's `.npy`, which is not read",
+        "write CSV with `numpy.savetxt`",
+    ),
+    (
+        b"PK\x03\x04",
+        "the file is a zip archive (`.npz`, `.xlsx`?), which is not read",
+        "export CSV",
+    ),
+    (
+        b"\xd0\xcf\x11\xe0",
+        "the file is an old document of Office, which is not read",
+        "export CSV",
+    ),
+    (
+        b"\x1f\x8b",
+        "the file is compressed by gzip",
+        "unpack it first",
+    ),
+    (
+        b"\x28\xb5\x2f\xfd",
+        "the file is compressed by zstd",
+        "unpack it first",
+    ),
+    (
+        b"\xff\xfe",
+        "the file is text in UTF-16, which is not read",
+        "save it in UTF-8",
+    ),
+    (
+        b"\xfe\xff",
+        "the file is text in UTF-16, which is not read",
+        "save it in UTF-8",
+    ),
+];
+
+/// Tells the format of a file.
+///
+/// # Errors
+/// A file that can't be read, or one that is named and not read.
+pub(super) fn recognise(file: &str, path: &Path) -> Result<Format, Error> {
+    let mut beginning = Vec::new();
+    File::open(path)
+        .and_then(|input| input.take(BEGINNING as u64).read_to_end(&mut beginning))
+        .map_err(|error| unreadable(file, &error))?;
+    of(&beginning).map_err(|problem| problem.file(file).into())
+}
+
+/// Tells the format from the first bytes.
+fn of(beginning: &[u8]) -> Result<Format, Problem> {
+    let mut refused = REFUSED.iter();
+    if let Some((_, what, help)) = refused.find(|(magic, ..)| beginning.starts_with(magic)) {
+        return Err(Problem::new(*what).help(*help));
+    }
+    // The header of a `.mat` file ends with its version and the order of its bytes.
+    let is_mat = matches!(beginning.get(124..128), Some(b"\x00\x01IM" | b"\x01\x00MI"));
+    if is_mat || beginning.starts_with(b"MATLAB 5.0") {
+        return Ok(Format::Mat);
+    }
+    let is_text = |byte: &u8| !byte.is_ascii_control() || b"\t\n\r\x0c\x1a".contains(byte);
+    if beginning.iter().all(is_text) {
+        return Ok(Format::Text);
+    }
+    let message = "the file is neither text nor of a format that is known";
+    Err(Problem::new(message).help("logs are text (CSV) or MATLAB's `.mat` up to version 7"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Format, of};
+
+    #[test]
+    fn first_bytes_tell_the_format() {
+        assert_eq!(of(b""), Ok(Format::Text));
+        assert_eq!(of("time;q\u{e9}\n".as_bytes()), Ok(Format::Text));
+        let mut mat = vec![b' '; 128];
+        mat[124..].copy_from_slice(b"\x00\x01IM");
+        assert_eq!(of(&mat), Ok(Format::Mat));
+        let unknown = of(b"\x00\x01\x02").expect_err("unknown");
+        assert!(unknown.message.contains("neither text nor"), "{unknown}");
+        let parquet = of(b"PAR1\x15\x04").expect_err("Parquet");
+        assert!(parquet.message.contains("Parquet"), "{parquet}");
+    }
+}

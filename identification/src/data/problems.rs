@@ -1,0 +1,99 @@
+//! What is said of files that can't be used.
+
+use std::path::Path;
+
+use crate::error::{Problem, suggestion};
+
+/// Cells that are reported one by one; a file of text would else fill the screen.
+pub(super) const LARGEST_NUMBER_OF_PROBLEMS: usize = 20;
+
+/// Names that are listed, at most.
+const LARGEST_NUMBER_OF_NAMES: usize = 40;
+
+/// Characters of a cell or a name that are shown, at most.
+const LONGEST_SHOWN: usize = 40;
+
+/// A piece of a file as it can be shown in a terminal: short, and without control characters.
+pub(super) fn shown(piece: &str) -> String {
+    let mut text: String = piece
+        .chars()
+        .take(LONGEST_SHOWN)
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .collect();
+    if piece.chars().nth(LONGEST_SHOWN).is_some() {
+        text.push('…');
+    }
+    text
+}
+
+/// The name by which a file is called in messages: as the caller gave it.
+pub(super) fn display_name(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// A file that can't be opened or read.
+pub(super) fn unreadable(file: &str, error: &std::io::Error) -> Problem {
+    let problem = Problem::new(format!("the file can't be read: {error}")).file(file);
+    if error.kind() == std::io::ErrorKind::NotFound {
+        problem.help("check the path; it is taken from the folder in which the program was started")
+    } else {
+        problem
+    }
+}
+
+/// Several names between marks of quotation.
+fn quoted<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let all: Vec<String> = names
+        .into_iter()
+        .map(|name| format!("`{}`", shown(name)))
+        .collect();
+    match all.len().checked_sub(LARGEST_NUMBER_OF_NAMES) {
+        Some(more) if more > 0 => format!(
+            "{} and {more} more",
+            all[..LARGEST_NUMBER_OF_NAMES].join(", ")
+        ),
+        _ => all.join(", "),
+    }
+}
+
+/// The error that names all columns that are missing and all that are there. `what` a column is called
+/// in this format; `unnamed` columns have no names.
+pub(super) fn missing_columns(
+    file: &str,
+    missing: &[&str],
+    existing: &[&str],
+    (what, unnamed): (&str, usize),
+) -> Problem {
+    let mut problem = Problem::new(format!(
+        "there {} no {what}{} {}; the file has {}",
+        if missing.len() == 1 { "is" } else { "are" },
+        if missing.len() == 1 { "" } else { "s" },
+        quoted(missing.iter().copied()),
+        match (existing.is_empty(), unnamed) {
+            (false, _) => quoted(existing.iter().copied()),
+            (true, 0) => String::from("none"),
+            (true, 1) => String::from("one column, without a name"),
+            (true, count) => format!("{count} columns, without names"),
+        }
+    ))
+    .file(file);
+    if let Some(first) = missing.first() {
+        problem = problem.column(*first);
+    }
+    let guesses: Vec<String> = missing
+        .iter()
+        .filter_map(|name| {
+            suggestion(name, existing.iter().copied())
+                .map(|near| format!("`{}` for `{name}`", shown(near)))
+        })
+        .collect();
+    if !guesses.is_empty() {
+        problem.help(format!("did you mean {}?", guesses.join(", ")))
+    } else if existing.is_empty() && unnamed > 0 {
+        problem.help(
+            "name the columns in the table [data] by their numbers: `$1` is the first one, `$2` the next",
+        )
+    } else {
+        problem.help("name the columns in the mapping")
+    }
+}

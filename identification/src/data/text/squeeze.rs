@@ -1,0 +1,79 @@
+//! Columns that stand apart by any number of blanks and tabs, as if there were one blank between two.
+
+use std::io::{BufRead, BufReader, Read, Result};
+
+/// Passes a text on with each run of blanks and tabs as one blank, and none at the ends of a line.
+#[derive(Debug)]
+pub(super) struct Squeeze<R> {
+    input: BufReader<R>,
+    /// Whether nothing has been passed on of this line.
+    at_start: bool,
+    /// Whether blanks were seen that are passed on once something follows them in the line.
+    waiting: bool,
+}
+
+impl<R: Read> Squeeze<R> {
+    pub(super) fn new(input: R, buffer: usize) -> Self {
+        Self {
+            input: BufReader::with_capacity(buffer, input),
+            at_start: true,
+            waiting: false,
+        }
+    }
+}
+
+impl<R: Read> Read for Squeeze<R> {
+    fn read(&mut self, output: &mut [u8]) -> Result<usize> {
+        let mut written = 0;
+        while written < output.len() {
+            let available = self.input.fill_buf()?;
+            if available.is_empty() {
+                break;
+            }
+            let mut used = 0;
+            while used < available.len() && written < output.len() {
+                let byte = available[used];
+                let passed = match byte {
+                    b' ' | b'\t' => {
+                        self.waiting = !self.at_start;
+                        used += 1;
+                        continue;
+                    }
+                    b'\r' | b'\n' => {
+                        (self.at_start, self.waiting) = (true, false);
+                        used += 1;
+                        byte
+                    }
+                    // The byte itself comes behind its blank.
+                    _ if std::mem::take(&mut self.waiting) => b' ',
+                    _ => {
+                        self.at_start = false;
+                        used += 1;
+                        byte
+                    }
+                };
+                output[written] = passed;
+                written += 1;
+            }
+            self.input.consume(used);
+        }
+        Ok(written)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Squeeze;
+    use std::io::Read;
+
+    #[test]
+    fn runs_of_blanks_are_one_and_none_is_left_at_the_ends_of_a_line() {
+        let text = "  1.0 \t 2.0  \r\n\t3.0 4.0\n\n   \n5";
+        for buffer in [1, 3, 64] {
+            let mut squeezed = String::new();
+            let mut input = Squeeze::new(text.as_bytes(), buffer);
+            input.read_to_string(&mut squeezed).expect("text");
+            assert_eq!(squeezed, "1.0 2.0\r\n3.0 4.0\n\n\n5");
+        }
+    }
+}
