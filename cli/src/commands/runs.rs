@@ -3,7 +3,7 @@
 use super::simulate;
 use crate::{failure::Failure, progress::Progress};
 use clap::ValueEnum;
-use overact_identification::{Progress as Doing, Settings};
+use overact_identification::{Progress as Doing, Settings, data};
 use overact_robot::{Robot, Runs};
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 #[group(id = "runs")]
 pub(super) struct Arguments {
-    /// Logs (CSV and other text, or MATLAB's .mat up to version 7); without any, the virtual experiment is made
+    /// Logs (CSV and other text, or MATLAB's .mat up to version 7), `a.csv+b.csv` one run whose columns stand
+    /// in two files; without any, the virtual experiment is made
     #[arg(long, value_name = "LOG", num_args = 1..)]
     data: Vec<PathBuf>,
     /// Logs of runs with the payload on the platform
@@ -55,7 +56,7 @@ impl Arguments {
         let held_out = held_out.into_iter().filter(|_| !self.are_virtual());
         let all = logs.into_iter().chain(held_out).flatten();
         std::iter::once(description)
-            .chain(all.map(PathBuf::as_path))
+            .chain(all.flat_map(|path| data::parts(path)))
             .collect()
     }
 

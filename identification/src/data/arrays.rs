@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::problems::{missing_columns, shown};
+use super::problems::Existing;
 use crate::error::{Error, Problem};
 
 /// A vector, or a column of a matrix.
@@ -72,27 +72,26 @@ impl Arrays {
         is(&bare).or_else(|| vector.and_then(is))
     }
 
-    /// The only number of an array.
-    pub(super) fn scalar(&self, name: &str) -> Option<&[f64]> {
+    /// The numbers of a vector or of a column of a matrix.
+    pub(super) fn values(&self, name: &str) -> Option<&[f64]> {
         self.find(name).map(|place| &*self.series[place].values)
     }
 
-    /// What is said of vectors that are not there.
-    pub(super) fn missing(&self, missing: &[&str], what: &str) -> Problem {
-        let existing: Vec<&str> = self.names.iter().map(String::as_str).collect();
-        let problem = missing_columns(&self.file, missing, &existing, (what, 0));
-        let matrix = missing.iter().find_map(|name| {
-            let start = format!("{name}(");
-            let mut parts = self.series.iter();
-            parts.find(|series| series.name.starts_with(&start))
-        });
-        match matrix {
-            Some(part) => problem.help(format!(
-                "it is a matrix: name its columns one by one, `{}` the first",
-                shown(&part.name)
-            )),
-            None => problem,
+    /// What arrays there are.
+    pub(super) fn existing(&self) -> Existing<'_> {
+        Existing {
+            names: self.names.iter().map(String::as_str).collect(),
+            columns: self.series.len(),
+            what: "variable",
         }
+    }
+
+    /// The first column of a matrix that is called as if it were a vector.
+    pub(super) fn first_column(&self, name: &str) -> Option<&str> {
+        let start = format!("{name}(");
+        let mut parts = self.series.iter();
+        let part = parts.find(|series| series.name.starts_with(&start));
+        part.map(|series| series.name.as_str())
     }
 
     /// Goes through some series, whose names are for messages.

@@ -9,7 +9,9 @@
 
 mod arrays;
 mod clock;
+mod columns;
 mod dataset;
+mod expression;
 mod format;
 mod log;
 mod mapping;
@@ -37,11 +39,29 @@ pub use samples::Samples;
 use crate::error::Error;
 use source::Files;
 
-/// Reads a run from a file, whatever its format.
+/// The files of a run: `a.csv+b.csv` are two that are joined sample by sample, unless there is a file of
+/// this name.
+#[must_use]
+pub fn parts(path: &Path) -> Vec<&Path> {
+    let text = path.to_str().filter(|_| !path.exists());
+    let parts: Vec<&Path> = text
+        .into_iter()
+        .flat_map(|text| text.split('+'))
+        .map(Path::new)
+        .collect();
+    if parts.iter().any(|part| part.exists()) {
+        parts
+    } else {
+        vec![path]
+    }
+}
+
+/// Reads a run from a file, whatever its format, or from several that are joined ([`parts`]).
 ///
 /// # Errors
-/// A file that can't be read or is of no format that is, missing columns, cells that are not finite
-/// numbers, a time that is not uniform, or a mapping that is not right.
+/// A file that can't be read or is of no format that is, missing columns, expressions that are none, cells
+/// that are not finite numbers, a time that is not uniform, files of different lengths, or a mapping that
+/// is not right.
 pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
     read_telling(path, mapping, payload, &|_| {})
 }
@@ -53,7 +73,7 @@ fn read_telling(
     payload: bool,
     advance: &dyn Fn(u64),
 ) -> Result<Log, Error> {
-    let files = Files::new(path, mapping)?;
+    let files = Files::new(path, &parts(path), mapping)?;
     let summary = files.look_through(&mapping.time, advance)?;
     let (frequency, count) = (summary.frequency, summary.count);
     let log = match summary.samples {
@@ -76,7 +96,8 @@ pub fn read_all(
 ) -> Vec<Result<Log, Error>> {
     // A file that can't be asked for its size can't be read either, which is told then.
     let size = |path: &Path| std::fs::metadata(path).map_or(0, |file| file.len());
-    let total: u64 = files.iter().map(|(path, _)| size(path)).sum();
+    let parts = files.iter().flat_map(|(path, _)| parts(path));
+    let total: u64 = parts.map(size).sum();
     let done = AtomicU64::new(0);
     let advance = |bytes: u64| {
         let now = bytes + done.fetch_add(bytes, Ordering::Relaxed);

@@ -56,21 +56,30 @@ fn quoted<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// The error that names all columns that are missing and all that are there. `what` a column is called
-/// in this format; `unnamed` columns have no names.
-pub(super) fn missing_columns(
-    file: &str,
-    missing: &[&str],
-    existing: &[&str],
-    (what, unnamed): (&str, usize),
-) -> Problem {
+/// What a file has in the way of columns.
+pub(super) struct Existing<'a> {
+    pub(super) names: Vec<&'a str>,
+    /// Number of columns, of which all or none have a name.
+    pub(super) columns: usize,
+    /// What a column is called in this format.
+    pub(super) what: &'static str,
+}
+
+/// The error that names all columns that are missing and all that are there, in one file or several
+/// that are joined.
+pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<'_>) -> Problem {
+    let Existing {
+        names,
+        columns,
+        what,
+    } = existing;
     let mut problem = Problem::new(format!(
         "there {} no {what}{} {}; the file has {}",
         if missing.len() == 1 { "is" } else { "are" },
         if missing.len() == 1 { "" } else { "s" },
         quoted(missing.iter().copied()),
-        match (existing.is_empty(), unnamed) {
-            (false, _) => quoted(existing.iter().copied()),
+        match (names.is_empty(), columns) {
+            (false, _) => quoted(names.iter().copied()),
             (true, 0) => String::from("none"),
             (true, 1) => String::from("one column, without a name"),
             (true, count) => format!("{count} columns, without names"),
@@ -83,13 +92,13 @@ pub(super) fn missing_columns(
     let guesses: Vec<String> = missing
         .iter()
         .filter_map(|name| {
-            suggestion(name, existing.iter().copied())
+            suggestion(name, names.iter().copied())
                 .map(|near| format!("`{}` for `{name}`", shown(near)))
         })
         .collect();
     if !guesses.is_empty() {
         problem.help(format!("did you mean {}?", guesses.join(", ")))
-    } else if existing.is_empty() && unnamed > 0 {
+    } else if names.is_empty() && *columns > 0 {
         problem.help(
             "name the columns in the table [data] by their numbers: `$1` is the first one, `$2` the next",
         )

@@ -1,113 +1,151 @@
-//! What a mapping asks of a file: which columns are read, and how they become time, positions and torques.
+//! What a mapping asks of the files of a run: which columns are read, and how they become time, positions
+//! and torques.
 
 use super::{
+    columns::{Columns, Found},
+    expression::Expression,
     mapping::{Gain, Mapping, Time},
+    problems::missing_columns,
     table::Table,
 };
 use crate::error::{Error, Problem};
 
-/// A column that is read and its factor to SI units.
+/// A column or an expression of columns, and the factor to SI units.
 #[derive(Debug, Clone, PartialEq)]
 struct Signal {
-    /// Its place among the columns that are read.
-    column: usize,
+    /// As the mapping writes it.
+    text: String,
+    expression: Expression,
     scale: f64,
 }
 
-/// What is read of a file.
+impl Signal {
+    fn value(&self, columns: &[f64]) -> f64 {
+        self.expression.evaluate(columns) * self.scale
+    }
+}
+
+/// What is read of the files.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Signals {
-    /// Columns that are read, each with the name by which it was asked for.
-    columns: Vec<(usize, String)>,
-    /// The time, where there is a column of it; then positions, then torques.
+    /// Of each file the columns that are read, with the names by which they were asked for.
+    columns: Vec<Vec<(usize, String)>>,
+    /// The time in each file that has a column of it.
+    times: Vec<Expression>,
+    /// Positions, then torques.
     signals: Vec<Signal>,
-    has_time: bool,
 }
 
 impl Signals {
-    /// Finds what the mapping asks for.
+    /// Finds what the mapping asks for in the files of `run`.
     ///
     /// # Errors
-    /// All columns that are not there, or gains that are no numbers.
-    pub(super) fn new(table: &Table, mapping: &Mapping) -> Result<Self, Error> {
-        let gains = gains(table, mapping)?;
-        let time = match &mapping.time {
-            Time::Column(name) => Some((name, 1.0)),
-            Time::Frequency(_) => None,
+    /// All columns that are not there, expressions that are none, or gains that are no numbers.
+    pub(super) fn new(run: &str, tables: &[Table], mapping: &Mapping) -> Result<Self, Error> {
+        let gains = gains(run, tables, mapping)?;
+        let mut columns = Columns::new(run, tables);
+        let mut times = match &mapping.time {
+            Time::Column(name) => columns.all(name),
+            Time::Frequency(_) => Vec::new(),
         };
         let positions = mapping.positions.iter().zip(&mapping.position_scale);
         let torques = mapping.torques.iter().zip(&gains);
-        let all = positions.chain(torques).map(|(name, scale)| (name, *scale));
-        let (mut missing, mut problems) = (Vec::new(), Vec::new());
-        let (mut columns, mut signals): (Vec<(usize, String)>, Vec<Signal>) = Default::default();
-        for (name, scale) in time.into_iter().chain(all) {
-            match table.find(name) {
-                Ok(Some(place)) => {
-                    let known = columns.iter().position(|(other, _)| *other == place);
-                    let column = known.unwrap_or(columns.len());
-                    if known.is_none() {
-                        columns.push((place, name.clone()));
-                    }
-                    signals.push(Signal { column, scale });
-                }
-                Ok(None) if missing.contains(&name.as_str()) => {}
-                Ok(None) => missing.push(name.as_str()),
-                Err(problem) if problems.contains(&problem) => {}
-                Err(problem) => problems.push(problem),
-            }
+        let mut signals: Vec<Signal> = positions
+            .chain(torques)
+            .map(|(text, scale)| Signal {
+                text: text.clone(),
+                expression: columns.ask(text),
+                scale: *scale,
+            })
+            .collect();
+        let Found { columns, places } = columns.finish()?;
+        times.iter_mut().for_each(|time| time.renumber(&places));
+        for signal in &mut signals {
+            signal.expression.renumber(&places);
         }
-        if !missing.is_empty() {
-            problems.insert(0, table.missing(&missing));
-        }
-        Error::check(problems)?;
         Ok(Self {
             columns,
+            times,
             signals,
-            has_time: time.is_some(),
         })
     }
 
-    /// The columns that are read, with their names.
-    pub(super) fn columns(&self) -> Vec<(usize, &str)> {
-        let columns = self.columns.iter();
-        columns
-            .map(|(place, name)| (*place, name.as_str()))
-            .collect()
+    /// Of each file the columns that are read, with their names.
+    pub(super) fn columns(&self) -> impl Iterator<Item = Vec<(usize, &str)>> {
+        self.columns.iter().map(|own| named(own))
     }
 
-    /// The time (s), if there is a column of it, and positions and torques in SI units, of the numbers in
-    /// the columns that are read.
-    pub(super) fn evaluate<'a>(
-        &'a self,
-        values: &'a [f64],
-    ) -> (Option<f64>, impl Iterator<Item = f64> + 'a) {
-        let (time, others) = self.signals.split_at(usize::from(self.has_time));
-        let value = |signal: &Signal| values[signal.column] * signal.scale;
-        (time.first().map(value), others.iter().map(value))
+    /// The times of a row in all files that have one, s.
+    pub(super) fn times<'a>(&'a self, columns: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        self.times.iter().map(|time| time.evaluate(columns))
+    }
+
+    /// Positions and torques in SI units, of the numbers in the columns that are read.
+    pub(super) fn values<'a>(&'a self, columns: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        self.signals.iter().map(|signal| signal.value(columns))
+    }
+
+    /// The first signal that has no finite value, as the mapping writes it.
+    pub(super) fn not_finite(&self, columns: &[f64]) -> Option<&str> {
+        let mut signals = self.signals.iter();
+        let bad = signals.find(|signal| !signal.value(columns).is_finite());
+        bad.map(|signal| signal.text.as_str())
     }
 }
 
-/// The gains as numbers, read from the file where the mapping names them.
-fn gains(table: &Table, mapping: &Mapping) -> Result<Vec<f64>, Error> {
+/// Columns with their names, borrowed.
+fn named(columns: &[(usize, String)]) -> Vec<(usize, &str)> {
+    let columns = columns.iter();
+    columns
+        .map(|(place, name)| (*place, name.as_str()))
+        .collect()
+}
+
+/// The gains as numbers, read from the files where the mapping names them.
+fn gains(run: &str, tables: &[Table], mapping: &Mapping) -> Result<Vec<f64>, Error> {
     let mut problems = Vec::new();
     let mut gains = Vec::new();
     for gain in &mapping.torque_gain {
-        match gain {
-            Gain::Value(value) => gains.push(*value),
-            Gain::Variable(name) => match table.variable(name) {
-                Some([value]) if value.is_finite() && *value != 0.0 => gains.push(*value),
-                Some(values) => problems.push(
-                    Problem::new(format!(
-                        "the torque gain `{name}` is not one finite number but {} numbers",
-                        values.len()
-                    ))
-                    .file(table.file())
-                    .column(name.as_str()),
-                ),
-                None => problems.push(table.missing_gain(name)),
-            },
-        }
+        let name = match gain {
+            Gain::Value(value) => {
+                gains.push(*value);
+                continue;
+            }
+            Gain::Variable(name) => name,
+        };
+        let found = tables.iter().find_map(|table| table.variable(name));
+        let problem = match found {
+            Some([value]) if value.is_finite() && *value != 0.0 => {
+                gains.push(*value);
+                continue;
+            }
+            Some(values) => Problem::new(format!(
+                "the torque gain `{name}` is not one finite number but {} numbers",
+                values.len()
+            ))
+            .file(run)
+            .column(name.as_str()),
+            None => missing_gain(run, tables, name),
+        };
+        problems.push(problem);
     }
     Error::check(problems)?;
     Ok(gains)
+}
+
+/// What is said of a gain that no file has.
+fn missing_gain(run: &str, tables: &[Table], name: &str) -> Problem {
+    let with_variables = tables.iter().find(|table| table.in_memory());
+    match with_variables.map(Table::existing) {
+        Some(mut existing) => {
+            existing.what = "scalar variable";
+            missing_columns(run, &[name], &existing)
+        }
+        None => Problem::new(format!(
+            "the torque gain is the variable `{name}`, but a text has no variables"
+        ))
+        .file(run)
+        .column(name)
+        .help("give the gain as a number"),
+    }
 }

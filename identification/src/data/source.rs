@@ -1,17 +1,17 @@
-//! The file of a run: opened, gone through once to check and count everything, and again whenever its
-//! run is gone through.
+//! The files of a run: opened, gone through once to check and count everything, and again whenever the
+//! run is gone through. Several files are joined sample by sample.
 
 use std::path::Path;
 
 use super::{
     clock::Clock,
     mapping::{Mapping, Time},
-    problems::LARGEST_NUMBER_OF_PROBLEMS,
+    problems::{LARGEST_NUMBER_OF_PROBLEMS, display_name},
     samples::Samples,
     signals::Signals,
     table::{self, Table},
 };
-use crate::error::Error;
+use crate::error::{Error, Problem};
 
 /// Numbers of one run that are kept in memory (8 MB); arrays are in memory anyhow.
 const LARGEST_IN_MEMORY: usize = 1 << 20;
@@ -19,10 +19,12 @@ const LARGEST_IN_MEMORY: usize = 1 << 20;
 /// Bytes after which progress is told.
 const STEP: u64 = 1 << 18;
 
-/// A file and what its columns mean.
+/// The files of a run and what their columns mean.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Files {
-    table: Table,
+    /// The run as the caller named it.
+    name: String,
+    tables: Vec<Table>,
     signals: Signals,
     actuators: usize,
 }
@@ -37,23 +39,32 @@ pub(super) struct Summary {
 }
 
 impl Files {
-    /// Opens a file and finds its columns.
+    /// Opens the files of the run `path` and finds their columns.
     ///
     /// # Errors
-    /// A mapping that is not right, a file that can't be read, missing columns.
-    pub(super) fn new(path: &Path, mapping: &Mapping) -> Result<Self, Error> {
+    /// A mapping that is not right, files that can't be read, missing columns.
+    pub(super) fn new(path: &Path, files: &[&Path], mapping: &Mapping) -> Result<Self, Error> {
         mapping.check()?;
-        let table = Table::open(path)?;
+        let (mut tables, mut problems) = (Vec::new(), Vec::new());
+        for file in files {
+            match Table::open(file) {
+                Ok(table) => tables.push(table),
+                Err(error) => problems.extend(error.problems),
+            }
+        }
+        Error::check(problems)?;
+        let name = display_name(path);
         Ok(Self {
-            signals: Signals::new(&table, mapping)?,
-            table,
+            signals: Signals::new(&name, &tables, mapping)?,
+            name,
+            tables,
             actuators: mapping.positions.len(),
         })
     }
 
     /// The run as the caller named it.
     pub(super) fn name(&self) -> &str {
-        self.table.file()
+        &self.name
     }
 
     /// Number of actuators.
@@ -66,19 +77,25 @@ impl Files {
     /// # Errors
     /// A file that can't be read any more.
     pub(super) fn open(&self) -> Result<Rows<'_>, Error> {
-        let columns = self.signals.columns();
+        let (mut tables, mut columns) = (Vec::new(), 0);
+        for (table, own) in self.tables.iter().zip(self.signals.columns()) {
+            tables.push((table.rows(&own)?, own.len()));
+            columns += own.len();
+        }
         Ok(Rows {
             files: self,
-            table: self.table.rows(&columns)?,
-            values: vec![0.0; columns.len()],
-            time: None,
+            tables,
+            values: vec![0.0; columns],
+            samples: 0,
+            has_ended: false,
         })
     }
 
     /// Goes through the whole run; `advance` is told every now and then how many bytes more have been read.
     ///
     /// # Errors
-    /// Cells that are not finite numbers, a time that is not uniform, fewer than two samples.
+    /// Cells that are not finite numbers, a time that is not uniform, fewer than two samples, files of
+    /// different lengths or with different times.
     pub(super) fn look_through(
         &self,
         time: &Time,
@@ -88,28 +105,30 @@ impl Files {
         let mut clock = Clock::default();
         let mut samples = Samples::default();
         let mut problems = Vec::new();
-        let (mut fits, mut told, mut count) = (true, 0, 0);
+        let (mut fits, mut told, mut last) = (true, 0, None);
+        let in_memory = self.tables.iter().all(Table::in_memory);
         loop {
-            let bytes = rows.table.bytes();
+            let bytes = rows.bytes();
             if bytes - told >= STEP {
                 advance(bytes - told);
                 told = bytes;
             }
             match rows.next(&mut samples) {
                 Ok(true) => {
-                    count += 1;
-                    if let Some(time) = rows.time {
-                        clock.push(time, rows.table.line());
+                    let time = self.signals.times(&rows.values).next();
+                    if let Some(time) = time {
+                        clock.push(time, rows.line());
+                        problems.extend(last.and_then(|last| rows.other_time(time - last)));
                     }
+                    last = time;
                 }
                 Ok(false) => break,
                 Err(error) => problems.extend(error.problems),
             }
-            if rows.table.is_broken() || problems.len() >= LARGEST_NUMBER_OF_PROBLEMS {
+            if rows.has_ended || problems.len() >= LARGEST_NUMBER_OF_PROBLEMS {
                 break;
             }
-            let few = self.table.in_memory() || 2 * samples.positions.len() <= LARGEST_IN_MEMORY;
-            fits &= few;
+            fits &= in_memory || 2 * samples.positions.len() <= LARGEST_IN_MEMORY;
             if !fits {
                 samples.positions.clear();
                 samples.torques.clear();
@@ -117,15 +136,15 @@ impl Files {
         }
         Error::check(problems)?;
         let frequency = match time {
-            Time::Column(_) => clock.frequency(self.name())?,
+            Time::Column(_) => clock.frequency(&self.name)?,
             Time::Frequency(frequency) => {
-                Clock::check_count(count, self.name())?;
+                Clock::check_count(rows.samples, &self.name)?;
                 *frequency
             }
         };
         Ok(Summary {
             frequency,
-            count,
+            count: rows.samples,
             samples: fits.then_some(samples),
         })
     }
@@ -135,27 +154,117 @@ impl Files {
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
     files: &'a Files,
-    table: table::Rows<'a>,
+    /// The rest of each file, and the number of its columns that are read.
+    tables: Vec<(table::Rows<'a>, usize)>,
     /// The numbers of a row, in the columns that are read.
     values: Vec<f64>,
-    /// Time of the last row, s, if there is a column of it.
-    time: Option<f64>,
+    /// Number of samples that have been read.
+    samples: usize,
+    /// Whether nothing more can be read.
+    has_ended: bool,
 }
 
 impl Rows<'_> {
     /// Appends the next sample; `false` at the end.
     ///
     /// # Errors
-    /// Every cell of the row that is no finite number, or a file that can't be read on.
+    /// Every cell of the row that is no finite number, a file that can't be read on or that ends before
+    /// the others.
     pub(super) fn next(&mut self, samples: &mut Samples) -> Result<bool, Error> {
-        if !self.table.next(&mut self.values)? {
+        let (mut problems, mut goes_on, mut ended) = (Vec::new(), None, None);
+        let mut rest = self.values.as_mut_slice();
+        for (number, (table, columns)) in self.tables.iter_mut().enumerate() {
+            let (own, others) = rest.split_at_mut(*columns);
+            rest = others;
+            // A file of which nothing is read has no part in the run.
+            match table.next(own) {
+                _ if own.is_empty() => {}
+                Ok(true) => goes_on = Some(number),
+                Ok(false) => ended = Some(number),
+                Err(error) => {
+                    goes_on = Some(number);
+                    self.has_ended |= table.is_broken();
+                    problems.extend(error.problems);
+                }
+            }
+        }
+        self.has_ended |= ended.is_some();
+        if let (Some(on), Some(ended)) = (goes_on, ended) {
+            problems.push(self.shorter(ended, on));
+        }
+        Error::check(problems)?;
+        if self.has_ended || goes_on.is_none() {
             return Ok(false);
         }
+        self.samples += 1;
         let n = self.files.actuators;
-        let (time, mut values) = self.files.signals.evaluate(&self.values);
+        let mut values = self.files.signals.values(&self.values);
+        let before = samples.positions.len();
         samples.positions.extend(values.by_ref().take(n));
         samples.torques.extend(values);
-        self.time = time;
-        Ok(true)
+        let new = samples.positions[before..]
+            .iter()
+            .chain(&samples.torques[before..]);
+        if new.into_iter().all(|value| value.is_finite()) {
+            return Ok(true);
+        }
+        let text = self
+            .files
+            .signals
+            .not_finite(&self.values)
+            .unwrap_or_default();
+        let message = format!(
+            "sample {}: `{text}` is not a finite number",
+            self.samples - 1
+        );
+        let problem = Problem::new(message)
+            .file(self.files.name.as_str())
+            .column(text);
+        Err(match self.line() {
+            Some(line) => problem.line(line),
+            None => problem,
+        }
+        .into())
+    }
+
+    /// What is said of a file that ends while another one goes on.
+    fn shorter(&self, ended: usize, on: usize) -> Problem {
+        let file = |number: usize| self.files.tables[number].file();
+        let message = format!(
+            "the file ends after {} samples, while {} goes on",
+            self.samples,
+            file(on)
+        );
+        Problem::new(message).file(file(ended)).help(
+            "files are joined sample by sample: cut them to the same samples, or check that they are of one run",
+        )
+    }
+
+    /// What is said if the last row has, in another file, a time that is off by half a `step` or more.
+    fn other_time(&self, step: f64) -> Option<Problem> {
+        let mut times = self.files.signals.times(&self.values);
+        let first = times.next()?;
+        let other = times.find(|time| (time - first).abs() > 0.5 * step.abs())?;
+        let message = format!(
+            "sample {}: the time is {first} s in one file and {other} s in another one",
+            self.samples - 1
+        );
+        let problem = Problem::new(message).file(self.files.name.as_str());
+        Some(problem.help(
+            "files are joined sample by sample: cut them to the same samples, or take one of the times, `file1.NAME`",
+        ))
+    }
+
+    /// Line of the last sample, where the run is one file that has lines.
+    fn line(&self) -> Option<usize> {
+        match &self.tables[..] {
+            [(table, _)] => table.line(),
+            _ => None,
+        }
+    }
+
+    /// Bytes of all files that have been read.
+    fn bytes(&self) -> u64 {
+        self.tables.iter().map(|(table, _)| table.bytes()).sum()
     }
 }

@@ -6,7 +6,7 @@ use super::{
     arrays::{self, Arrays},
     format::{self, Format},
     mat_file,
-    problems::display_name,
+    problems::{Existing, display_name},
     text::{self, Text},
 };
 use crate::error::{Error, Problem};
@@ -46,50 +46,46 @@ impl Table {
         matches!(self, Self::Arrays(_))
     }
 
-    /// The place of a column by its name, or by its number: `$1` is the first one.
+    /// Number of columns.
+    pub(super) fn columns(&self) -> usize {
+        match self {
+            Self::Text(text) => text.columns(),
+            Self::Arrays(arrays) => arrays.columns(),
+        }
+    }
+
+    /// The place of a column that is called by its name.
     ///
     /// # Errors
     /// Several columns of this name.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
-        let (named, columns) = match self {
-            Self::Text(text) => (text.find(name)?, text.columns()),
-            Self::Arrays(arrays) => (arrays.find(name), arrays.columns()),
-        };
-        let number = name
-            .strip_prefix('$')
-            .and_then(|number| number.parse::<usize>().ok());
-        let numbered = number
-            .and_then(|number| number.checked_sub(1))
-            .filter(|place| *place < columns);
-        Ok(named.or(numbered))
+        match self {
+            Self::Text(text) => text.find(name),
+            Self::Arrays(arrays) => Ok(arrays.find(name)),
+        }
     }
 
-    /// The values of a variable that may be a single number.
+    /// The values of a variable, which may be a single number; a text has no variables.
     pub(super) fn variable(&self, name: &str) -> Option<&[f64]> {
         match self {
             Self::Text(_) => None,
-            Self::Arrays(arrays) => arrays.scalar(name),
+            Self::Arrays(arrays) => arrays.values(name),
         }
     }
 
-    /// What is said of columns that are not there.
-    pub(super) fn missing(&self, missing: &[&str]) -> Problem {
+    /// What columns there are.
+    pub(super) fn existing(&self) -> Existing<'_> {
         match self {
-            Self::Text(text) => text.missing(missing),
-            Self::Arrays(arrays) => arrays.missing(missing, "variable"),
+            Self::Text(text) => text.existing(),
+            Self::Arrays(arrays) => arrays.existing(),
         }
     }
 
-    /// What is said of a gain that is not there.
-    pub(super) fn missing_gain(&self, name: &str) -> Problem {
+    /// The first column of a matrix that is called as if it were a vector.
+    pub(super) fn first_column(&self, name: &str) -> Option<&str> {
         match self {
-            Self::Text(text) => Problem::new(format!(
-                "the torque gain is the variable `{name}`, but a text has no variables"
-            ))
-            .file(text.file())
-            .column(name)
-            .help("give the gain as a number"),
-            Self::Arrays(arrays) => arrays.missing(&[name], "scalar variable"),
+            Self::Text(_) => None,
+            Self::Arrays(arrays) => arrays.first_column(name),
         }
     }
 

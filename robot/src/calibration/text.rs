@@ -11,7 +11,7 @@ use crate::{
     robot::Robot,
 };
 use overact::Model;
-use overact_identification::{CalibratedParameter, Calibration};
+use overact_identification::{CalibratedParameter, Calibration, Time};
 use std::collections::BTreeMap;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value, value};
 
@@ -228,7 +228,10 @@ fn offsets(document: &mut DocumentMut, robot: &Robot, calibration: &Calibration)
     let data = document.entry("data").or_insert(Item::Table(Table::new()));
     let data = data.as_table_like_mut()?;
     if data.is_empty() {
-        data.insert("time", value(mapping.time));
+        match mapping.time {
+            Time::Column(name) => data.insert("time", value(name)),
+            Time::Frequency(frequency) => data.insert("sampling", value(frequency)),
+        };
         data.insert("positions", value(Array::from_iter(mapping.positions)));
         data.insert("torques", value(Array::from_iter(mapping.torques)));
     }

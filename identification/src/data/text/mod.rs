@@ -19,7 +19,7 @@ use self::{
     dialect::{BEGINNING, Dialect},
     squeeze::Squeeze,
 };
-use super::problems::{missing_columns, shown, unreadable};
+use super::problems::{Existing, shown, unreadable};
 use crate::error::{Error, Problem};
 
 /// Bytes that are read at once.
@@ -82,11 +82,14 @@ impl Text {
         }
     }
 
-    /// What is said of columns that are not there.
-    pub(super) fn missing(&self, missing: &[&str]) -> Problem {
+    /// What columns there are.
+    pub(super) fn existing(&self) -> Existing<'_> {
         let names = self.dialect.names.iter().map(String::as_str);
-        let existing: Vec<&str> = names.filter(|name| !name.is_empty()).collect();
-        missing_columns(&self.file, missing, &existing, ("column", self.columns()))
+        Existing {
+            names: names.filter(|name| !name.is_empty()).collect(),
+            columns: self.columns(),
+            what: "column",
+        }
     }
 
     /// Goes through some columns, whose names are for messages, from the first row on.
