@@ -103,10 +103,16 @@ fn clipped_torques_are_named() {
         }
     });
     let result = result.expect("an identification");
-    assert_eq!(
-        found(&result),
-        [(CheckKind::ClippedTorque, Some("loaded 1"), Some("leg2"))]
-    );
+    // Torques that are missing make the run carry something else, too.
+    let clipped = |result: &Identification| {
+        let mut found = found(result);
+        found.retain(|(kind, _, _)| *kind != CheckKind::PayloadLabel);
+        assert_eq!(
+            found,
+            [(CheckKind::ClippedTorque, Some("loaded 1"), Some("leg2"))]
+        );
+    };
+    clipped(&result);
     assert!(!trusted(&result, "case 1"));
     // The same with the noise of a measurement on top.
     let result = with(|run, _, torques| {
@@ -121,10 +127,7 @@ fn clipped_torques_are_named() {
                 });
         }
     });
-    assert_eq!(
-        found(&result.expect("an identification")),
-        [(CheckKind::ClippedTorque, Some("loaded 1"), Some("leg2"))]
-    );
+    clipped(&result.expect("an identification"));
 }
 
 #[test]

@@ -30,7 +30,10 @@ use prepare::{check_runs, prepared_warnings};
 
 use crate::{
     assessment::{
-        self, Context, Watched, assumptions::assumptions, check::Check, suspects::scores,
+        self, Context, Watched,
+        assumptions::assumptions,
+        check::Check,
+        suspects::{Reach, scores},
         verdict::verdicts,
     },
     data::Dataset,
@@ -79,7 +82,8 @@ pub fn identify(
     let base = estimates.iter().find(|(_, one)| one.stage == Stage::Base);
     let scores = base.map(|(_, base)| {
         let columns = (&prepared.columns, prepared.base.columns.as_slice());
-        scores(model, dataset.runs, columns, base, settings)
+        let reaches = reaches(&watched[..dataset.runs.len()]);
+        scores(model, dataset.runs, columns, (base, &reaches), settings)
     });
     let scores = scores.transpose()?;
     let checks = assessment::checks(&Context {
@@ -125,6 +129,22 @@ pub fn identify(
         cross_validation,
         errors_in_regressor,
     })
+}
+
+/// Where the actuators moved in all runs.
+fn reaches(watched: &[Watched]) -> Vec<Reach> {
+    let of_run = |one: &Watched| -> Vec<Reach> {
+        let bounds = one.monitor.bounds().into_iter();
+        let speeds = one.monitor.speeds();
+        bounds
+            .zip(speeds)
+            .map(|((low, high), speed)| Reach { low, high, speed })
+            .collect()
+    };
+    let all = watched.iter().map(of_run);
+    let united =
+        all.reduce(|all, own| all.into_iter().zip(own).map(|(a, b)| a.united(b)).collect());
+    united.unwrap_or_default()
 }
 
 /// What is known of errors in the regressors, and the estimates by instruments.

@@ -165,6 +165,21 @@ impl Monitor {
             .collect()
     }
 
+    /// The least and the largest position of each actuator (m, rad).
+    pub(crate) fn bounds(&self) -> Vec<(f64, f64)> {
+        let positions = self.positions.iter();
+        positions.map(|one| (one.low, one.high)).collect()
+    }
+
+    /// The largest speed of each actuator over a few samples (m/s, rad/s).
+    pub(crate) fn speeds(&self) -> Vec<f64> {
+        let per_second = self.frequency / SPEED_SAMPLES as f64;
+        self.positions
+            .iter()
+            .map(|one| one.speed * per_second)
+            .collect()
+    }
+
     /// Whether no torque is anything but zero.
     fn zeros(&self, names: &[&str]) -> Vec<Suspicion> {
         let is_zero = |[low, high]: &[Extreme; 2]| {

@@ -105,19 +105,45 @@ pub(super) struct Moment {
     pub(super) time: f64,
 }
 
-/// Adds a torque that depends on the motion, of so large a part of the actuator's root mean square
-/// torque.
-pub(super) fn add(record: &mut Record, actuator: usize, shape: impl Fn(&Moment) -> f64, part: f64) {
-    let n = record.actuators.len();
-    let positions: Vec<f64> = record.positions[actuator..]
+/// Adds a torque that depends on the motion, of so large a part of the actuator's root mean square torque
+/// in all records.
+pub(super) fn add(
+    records: &mut [Record],
+    actuator: usize,
+    shape: impl Fn(&Moment) -> f64,
+    part: f64,
+) {
+    let added: Vec<Vec<f64>> = records
         .iter()
-        .step_by(n)
-        .copied()
+        .map(|record| shaped(record, actuator, &shape))
         .collect();
+    let size = |values: &mut dyn Iterator<Item = f64>| -> f64 {
+        let (sum, count) = values.fold((0.0, 0), |(sum, count), x| (sum + x * x, count + 1));
+        (sum / f64::from(count)).sqrt()
+    };
+    let torques = records.iter().flat_map(|record| {
+        let n = record.actuators.len();
+        record.torques[actuator..].iter().step_by(n).copied()
+    });
+    let whole = size(&mut { torques });
+    let scale = part * whole / size(&mut added.iter().flatten().copied());
+    for (record, added) in records.iter_mut().zip(added) {
+        let n = record.actuators.len();
+        let own = record.torques[actuator..].iter_mut().step_by(n);
+        own.zip(added)
+            .for_each(|(torque, added)| *torque += scale * added);
+    }
+}
+
+/// A shape at all samples of a record.
+fn shaped(record: &Record, actuator: usize, shape: &impl Fn(&Moment) -> f64) -> Vec<f64> {
+    let n = record.actuators.len();
+    let own = record.positions[actuator..].iter().step_by(n);
+    let positions: Vec<f64> = own.copied().collect();
     // Over a few milliseconds, so that the resolution of the encoder does not count.
     let reach = ((2e-3 * record.sampling_hz) as usize).max(1);
     let last = positions.len() - 1;
-    let added: Vec<f64> = (0..positions.len())
+    (0..positions.len())
         .map(|k| {
             let (before, behind) = (k.saturating_sub(reach), (k + reach).min(last));
             let span = (behind - before) as f64 / record.sampling_hz;
@@ -127,14 +153,5 @@ pub(super) fn add(record: &mut Record, actuator: usize, shape: impl Fn(&Moment) 
                 time: k as f64 / record.sampling_hz,
             })
         })
-        .collect();
-    let size = |values: &mut dyn Iterator<Item = f64>| -> f64 {
-        let (sum, count) = values.fold((0.0, 0), |(sum, count), x| (sum + x * x, count + 1));
-        (sum / f64::from(count)).sqrt()
-    };
-    let whole = size(&mut record.torques[actuator..].iter().step_by(n).copied());
-    let scale = part * whole / size(&mut added.iter().copied());
-    let own = record.torques[actuator..].iter_mut().step_by(n);
-    own.zip(added)
-        .for_each(|(torque, added)| *torque += scale * added);
+        .collect()
 }

@@ -165,31 +165,31 @@ fn encoders() -> Vec<Trap> {
 
 fn missing() -> Vec<Trap> {
     vec![
-        Trap::each("a spring at actuator 1", |run| {
-            alter::add(run, 0, |at| at.position, 0.2);
+        Trap::new("a spring at actuator 1", |runs| {
+            alter::add(runs, 0, |at| at.position, 0.2);
         }),
-        Trap::each("friction of actuator 1 grows with time", |run| {
-            alter::add(run, 0, |at| at.velocity.signum() * at.time, 0.1);
+        Trap::new("friction of actuator 1 grows with time", |runs| {
+            alter::add(runs, 0, |at| at.velocity.signum() * at.time, 0.1);
         }),
-        Trap::each("friction of actuator 1 rises towards standstill", |run| {
+        Trap::new("friction of actuator 1 rises towards standstill", |runs| {
             alter::add(
-                run,
+                runs,
                 0,
                 |at| at.velocity.signum() * (-5.0 * at.velocity.abs()).exp(),
                 0.1,
             );
         }),
-        Trap::each(
+        Trap::new(
             "drag with the square of the velocity at actuator 2",
-            |run| {
-                alter::add(run, 1, |at| at.velocity * at.velocity.abs(), 0.1);
+            |runs| {
+                alter::add(runs, 1, |at| at.velocity * at.velocity.abs(), 0.1);
             },
         ),
-        Trap::each("cogging at actuator 1", |run| {
-            alter::add(run, 0, |at| (24.0 * at.position).sin(), 0.1);
+        Trap::new("cogging at actuator 1", |runs| {
+            alter::add(runs, 0, |at| (24.0 * at.position).sin(), 0.1);
         }),
-        Trap::each("torque 1 drifts with time", |run| {
-            alter::add(run, 0, |at| at.time, 0.1);
+        Trap::new("torque 1 drifts with time", |runs| {
+            alter::add(runs, 0, |at| at.time, 0.1);
         }),
     ]
 }

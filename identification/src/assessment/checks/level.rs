@@ -7,7 +7,7 @@
 pub(crate) const FALSE_ALARMS: f64 = 0.01;
 
 /// Families of tests: closure, delay, clock, gains, encoders, labels, missing parameters, held-out runs,
-/// errors in the regressor, and one to spare.
+/// errors in the regressor, residuals that hang together.
 const FAMILIES: f64 = 10.0;
 
 /// The level of each of so many tests of a family.

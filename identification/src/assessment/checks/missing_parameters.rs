@@ -37,7 +37,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let (tests, level) = (found.len(), level(found.len()));
     let check = Check::new(CheckKind::MissingParameter, About::Model, "")
         .shown_by(evidence(&suspects, &found, level));
-    let ratio = |one: &Tested| one.accused.size().abs() / one.accused.deviation;
+    let ratio = |one: &Tested| one.accused.strength();
     let Some(worst) = guilty(&found, level) else {
         let largest = found.iter().map(ratio).fold(0.0, f64::max);
         let words = format!(
@@ -65,7 +65,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let words = format!(
         "the {what} `{name}` depends on {} beyond the model, by {} ({:.1} standard deviations), which explains {} % of the residual's square; {}. Add what is missing to the description, or look for what else differs from it",
         shape.words(),
-        significant(worst.accused.size(), 3),
+        significant(worst.accused.largest(), 3),
         ratio(worst),
         significant(100.0 * worst.accused.explained, 2),
         harm.words()
@@ -94,7 +94,9 @@ fn evidence(suspects: &[(Suspect, Shape)], found: &[Tested], level: f64) -> Evid
         });
         let curve = &mut points[place].1;
         curve.x.push((number + 1) as f64);
-        curve.y.push(one.accused.size() / one.accused.deviation);
+        curve
+            .y
+            .push(one.accused.strength() * one.accused.largest().signum());
     }
     let limit = found.first().map_or(0.0, |one| one.accused.quantile(level));
     Evidence {

@@ -15,6 +15,7 @@ mod payload_labels;
 pub(super) mod raw_numbers;
 mod regressor_errors;
 mod relative_error;
+mod residual_correlation;
 mod suspected;
 mod torque_faults;
 
@@ -91,7 +92,7 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 14] = [
+const CHECKS: [Function; 15] = [
     raw_numbers::check,
     closure::check,
     torque_faults::check,
@@ -103,6 +104,7 @@ const CHECKS: [Function; 14] = [
     missing_parameters::check,
     negative_parameters::check,
     relative_error::check,
+    residual_correlation::check,
     regressor_errors::check,
     partition::check,
     held_out::check,

@@ -20,7 +20,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .parameters
             .iter()
             .filter(|one| is_positive(context, one.column));
-        let below = |one: &ParameterEstimate| -one.value / one.correlated_standard_deviation;
+        // The half width of a 95 % interval is 1.96 deviations, and more where few instants tell it.
+        let below = |one: &ParameterEstimate| -1.96 * one.value / (one.interval_95[1] - one.value);
         let worst = positive
             .clone()
             .map(below)

@@ -54,7 +54,8 @@ pub(super) fn guilty(all: &[Tested], level: f64) -> Option<&Tested> {
     beyond.max_by(|a, b| a.accused.explained.total_cmp(&b.accused.explained))
 }
 
-/// What suspects that may well be there do to the parameters: the worst of them.
+/// What suspects that may well be there do to the parameters: the worst of it, and all that any of them
+/// spoils.
 pub(super) fn worst_harm(
     context: &Context<'_>,
     scores: &Scores,
@@ -65,10 +66,26 @@ pub(super) fn worst_harm(
         one.accused.probability < level
             && one.accused.explained >= LIKELY * guilty.accused.explained
     });
-    let harms = likely.map(|one| harm(context, scores, one));
-    harms
+    let harms: Vec<Harm> = likely.map(|one| harm(context, scores, one)).collect();
+    let count = context
+        .estimates_of(Stage::Base)
+        .next()
+        .map_or(0, |one| one.parameters.len());
+    let mut spoiled: Vec<String> = Vec::new();
+    for name in harms.iter().flat_map(|harm| &harm.spoiled) {
+        if !spoiled.contains(name) {
+            spoiled.push(name.clone());
+        }
+    }
+    let worst = harms
+        .into_iter()
         .max_by(|a, b| a.worst.total_cmp(&b.worst))
-        .unwrap_or_else(Harm::none)
+        .unwrap_or_else(Harm::none);
+    Harm {
+        grade: Harm::grade(spoiled.len(), count),
+        spoiled,
+        ..worst
+    }
 }
 
 /// What a suspect does to the base and the recommended parameters of the first model.
@@ -76,27 +93,16 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
     let Some(base) = context.estimates_of(Stage::Base).next() else {
         return Harm::none();
     };
-    let deviation = |column: usize| {
-        let own = base.parameters.iter().find(|one| one.column == column);
-        let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
-        half.map_or(f64::INFINITY, |half| half / HALF_WIDTH)
-    };
     let mut recommended = context.estimates_of(Stage::Recommended);
-    let smaller = recommended
-        .find(|one| one.model == base.model)
-        .and_then(|one| {
-            let beside = scores.test(&tested.group, &one.columns())?;
-            Some(beside.moves)
-        });
-    let moves = tested
-        .accused
-        .moves
-        .iter()
-        .copied()
-        .chain(smaller.into_iter().flatten());
-    let mut all: Vec<(f64, usize)> = moves
-        .map(|(column, by)| (by.abs() / deviation(column), column))
-        .collect();
+    let smaller = recommended.find(|one| one.model == base.model);
+    let beside =
+        smaller.and_then(|one| Some((one, scores.test(&tested.group, &one.columns())?.moves)));
+    let mut all = by_deviation(base, &tested.accused.moves);
+    all.extend(
+        beside
+            .iter()
+            .flat_map(|(one, moves)| by_deviation(one, moves)),
+    );
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     let Some(&(worst, column)) = all.first() else {
         return Harm::none();
@@ -116,11 +122,7 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
             harm.spoiled.push(name);
         }
     }
-    harm.grade = if 2 * harm.spoiled.len() > base.parameters.len() {
-        Grade::DoNotUse
-    } else {
-        Grade::UseListed
-    };
+    harm.grade = Harm::grade(harm.spoiled.len(), base.parameters.len());
     harm
 }
 
@@ -143,6 +145,15 @@ impl Harm {
         }
     }
 
+    /// What so many spoiled ones of so many parameters leave.
+    fn grade(spoiled: usize, parameters: usize) -> Grade {
+        match spoiled {
+            0 => Grade::Use,
+            _ if 2 * spoiled > parameters => Grade::DoNotUse,
+            _ => Grade::UseListed,
+        }
+    }
+
     /// Whether it is worth a remark: not where no parameter moves by one deviation.
     pub(super) fn counts(&self) -> bool {
         self.worst > SPOILING
@@ -161,6 +172,19 @@ impl Harm {
             self.parameter, self.worst
         )
     }
+}
+
+/// Moves of an estimate's parameters by their deviations, each with its column.
+fn by_deviation(estimate: &Estimate, moves: &[(usize, f64)]) -> Vec<(f64, usize)> {
+    let deviation = |column: usize| {
+        let own = estimate.parameters.iter().find(|one| one.column == column);
+        let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
+        half.map_or(f64::INFINITY, |half| half / HALF_WIDTH)
+    };
+    let moves = moves.iter();
+    moves
+        .map(|(column, by)| (by.abs() / deviation(*column), *column))
+        .collect()
 }
 
 fn name(estimate: &Estimate, column: usize) -> String {

@@ -1,7 +1,10 @@
 //! The suspects and their columns.
 
+use std::ops::Range;
+
 use overact::{Info, Model};
 
+use super::shapes::{Moment, Reach, SHAPES, Shape, WAVES};
 use crate::{kinematics::Motion, regression::projection::ModelKind};
 
 /// A fault of one unknown size.
@@ -23,107 +26,65 @@ pub(crate) enum Suspect {
     Force(usize, Shape),
 }
 
-/// How something that the model lacks depends on the motion of its actuator or coordinate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Shape {
-    /// 1: an offset of the torque, or friction that differs by direction.
-    Constant,
-    /// The velocity.
-    Velocity,
-    /// The sign of the velocity.
-    Sign,
-    /// The magnitude of the velocity: viscous friction that differs by direction.
-    Speed,
-    /// The square of the velocity, with its sign: a drag.
-    Drag,
-    /// The acceleration.
-    Acceleration,
-    /// The position: a spring.
-    Position,
-    /// The cosine of the position.
-    Cosine,
-    /// The sine of the position.
-    Sine,
-    /// The time since the beginning of the run: a drift.
-    Time,
-    /// The time where the velocity is positive, less the time where it is negative: friction that changes.
-    TimeSign,
-}
-
-/// Shapes of an actuator.
-const SHAPES: [Shape; 11] = [
-    Shape::Constant,
-    Shape::Velocity,
-    Shape::Sign,
-    Shape::Speed,
-    Shape::Drag,
-    Shape::Acceleration,
-    Shape::Position,
-    Shape::Cosine,
-    Shape::Sine,
-    Shape::Time,
-    Shape::TimeSign,
-];
-
-impl Shape {
-    /// What it is called in a sentence.
-    pub(crate) const fn words(self) -> &'static str {
+impl Suspect {
+    /// How many columns it has.
+    const fn width(self) -> usize {
         match self {
-            Self::Constant => "a constant, as an offset or friction that differs by direction",
-            Self::Velocity => "the velocity, as viscous friction",
-            Self::Sign => "the sign of the velocity, as dry friction",
-            Self::Speed => {
-                "the magnitude of the velocity, as viscous friction that differs by direction"
-            }
-            Self::Drag => "the square of the velocity, as drag",
-            Self::Acceleration => "the acceleration, as inertia",
-            Self::Position => "the position, as a spring",
-            Self::Cosine => "the cosine of the position, as gravity",
-            Self::Sine => "the sine of the position, as gravity",
-            Self::Time => "time, as a drift",
-            Self::TimeSign => "time and the sign of the velocity, as friction that changes",
+            Self::Torque(_, Shape::Waves) => WAVES,
+            _ => 1,
         }
     }
+}
 
-    /// Its value at a motion.
-    fn value(self, motion: Moment) -> f64 {
-        let Moment {
-            position,
-            velocity,
-            acceleration,
-            time,
-        } = motion;
-        let sign = if velocity == 0.0 {
-            0.0
-        } else {
-            velocity.signum()
+/// Where the columns of base parameters, suspects and the payload's parameters stand beside each other:
+/// first those of one column each, then waves.
+#[derive(Debug, Clone)]
+pub(crate) struct Layout {
+    /// Base parameters.
+    pub(super) base: usize,
+    /// Columns that are decimated: base parameters, suspects of one column, payload.
+    pub(super) decimated: usize,
+    /// The columns of each suspect, then of the payload.
+    pub(super) blocks: Vec<Range<usize>>,
+    /// Where the products of a block's columns with each other stand among those of all blocks.
+    pub(super) places: Vec<Range<usize>>,
+    /// How many such products there are.
+    pub(super) squares: usize,
+    /// All columns.
+    pub(super) columns: usize,
+}
+
+impl Layout {
+    pub(super) fn new(base: usize, suspects: &[Suspect], payload: usize) -> Self {
+        let narrow = suspects.iter().filter(|one| one.width() == 1).count();
+        let decimated = base + narrow + payload;
+        let (mut next, mut wide) = (base, decimated);
+        let place = |suspect: &Suspect| {
+            let width = suspect.width();
+            let at = if width == 1 { &mut next } else { &mut wide };
+            *at += width;
+            *at - width..*at
         };
-        match self {
-            Self::Constant => 1.0,
-            Self::Velocity => velocity,
-            Self::Sign => sign,
-            Self::Speed => velocity.abs(),
-            Self::Drag => velocity * velocity.abs(),
-            Self::Acceleration => acceleration,
-            Self::Position => position,
-            Self::Cosine => position.cos(),
-            Self::Sine => position.sin(),
-            Self::Time => time,
-            Self::TimeSign => time * sign,
+        let mut blocks: Vec<Range<usize>> = suspects.iter().map(place).collect();
+        blocks.push(base + narrow..decimated);
+        let mut squares = 0;
+        let place = |block: &Range<usize>| {
+            squares += block.len().pow(2);
+            squares - block.len().pow(2)..squares
+        };
+        let places = blocks.iter().map(place).collect();
+        Self {
+            base,
+            decimated,
+            places,
+            squares,
+            blocks,
+            columns: wide,
         }
     }
 }
 
-/// The motion of an actuator or a coordinate at one time.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Moment {
-    pub(super) position: f64,
-    pub(super) velocity: f64,
-    pub(super) acceleration: f64,
-    pub(super) time: f64,
-}
-
-/// The suspects of a robot whose estimate explains the inputs of a model.
+/// The suspects of a robot whose estimate explains the inputs of a model; waves come last.
 pub(super) fn suspects(model: &dyn Model, kind: ModelKind) -> Vec<Suspect> {
     let info = model.info();
     let sizes = info.sizes;
@@ -150,6 +111,7 @@ pub(super) fn suspects(model: &dyn Model, kind: ModelKind) -> Vec<Suspect> {
             }
         }
     }
+    all.extend((0..sizes.actuators).map(|i| Suspect::Torque(i, Shape::Waves)));
     all
 }
 
@@ -162,6 +124,8 @@ pub(super) struct Sample<'a> {
     pub(super) torque_rates: &'a [f64],
     /// The motion of the actuators.
     pub(super) actuators: &'a [Moment],
+    /// Where they move.
+    pub(super) reaches: &'a [Reach],
     /// The pose.
     pub(super) pose: &'a [f64],
     /// By how much Γ¹ would change with the clock, and with the position of each actuator, n x r; empty
@@ -175,6 +139,7 @@ impl Sample<'_> {
     pub(super) fn entry(&self, suspect: Suspect, line: usize) -> f64 {
         let r = self.jacobian.len() / self.torques.len();
         let share = |actuator: usize| self.jacobian[actuator * r + line];
+        let shaped = |i: usize, shape: Shape| shape.value(self.actuators[i], self.reaches[i]);
         match suspect {
             Suspect::Delay => {
                 let rates = self.torque_rates.iter().enumerate();
@@ -183,22 +148,25 @@ impl Sample<'_> {
             Suspect::Gain(i) => share(i) * self.torques[i],
             Suspect::Clock => self.clock[line],
             Suspect::Offset(i) => self.offsets[i * r + line],
-            Suspect::Play(i) => Shape::Sign.value(self.actuators[i]) * self.offsets[i * r + line],
-            Suspect::Torque(i, shape) => share(i) * shape.value(self.actuators[i]),
+            Suspect::Play(i) => shaped(i, Shape::Sign) * self.offsets[i * r + line],
+            Suspect::Torque(i, shape) => share(i) * shaped(i, shape),
             Suspect::Force(own, _) if own != line => 0.0,
-            Suspect::Force(own, shape) => shape.value(Moment {
-                position: self.pose.get(own).copied().unwrap_or(0.0),
-                ..Moment::default()
-            }),
+            Suspect::Force(own, shape) => {
+                let here = Moment {
+                    position: self.pose.get(own).copied().unwrap_or(0.0),
+                    ..Moment::default()
+                };
+                shape.value(here, Reach::default())
+            }
         }
     }
 }
 
-/// The motion of all actuators at all samples of a motion, samples x n.
+/// The motion of all actuators at all samples of a motion, samples x n, with these torques.
 pub(super) fn moments(
     info: &Info<'_>,
     motion: &Motion,
-    positions: &[f64],
+    (positions, torques): (&[f64], &[f64]),
     jacobians: &[f64],
 ) -> Vec<Moment> {
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
@@ -217,6 +185,7 @@ pub(super) fn moments(
             position: positions[place],
             velocity: velocities[place],
             acceleration: rates[place],
+            torque: torques[place],
             time: motion.time(place / n),
         })
         .collect()

@@ -2,19 +2,26 @@
 //!
 //! A suspect is a fault with one unknown size δ: the torques come by δ seconds late, the gain of a drive
 //! is wrong by a part δ, a joint has a spring of stiffness δ. To first order it adds a column z δ to
-//! Y = W χ. Whether δ is zero is a score test: z is freed of what the columns W explain,
+//! Y = W χ. Whether δ is zero is Wald's test: z is freed of what the columns W explain,
 //! z⊥ = z - W B with B = (Wᵀ W)^-1 Wᵀ z, and held against the residual ρ,
 //!
 //! ```text
 //! δ = z⊥ᵀ ρ/(z⊥ᵀ z⊥),   χ is off by B δ.
 //! ```
 //!
-//! The second equation says what the suspect does to the parameters: a fault that is there for sure and
-//! moves none of them is a remark, one that moves them by several of their deviations spoils them.
+//! The deviation of δ is told from ρ - z⊥ δ, as if the suspect were a parameter of the model: ρ itself
+//! holds the fault, which would hide itself. The second equation says what the suspect does to the
+//! parameters: a fault that is there for sure and moves none of them is a remark, one that moves them by
+//! several of their deviations spoils them.
 //!
+//! - `shapes`: how something missing may depend on the motion;
 //! - `columns`: the suspects and their columns;
 //! - `nearby`: what the model would explain of a motion that is slightly different;
+//! - `sections`: products of columns and residual, section by section of the time;
+//! - `pairs`: residuals of actuators that hang together;
 //! - `scores`: one pass over the runs;
+//! - `scaled`: equations between columns of different units;
+//! - `spread`: how far a score strays by chance;
 //! - `test`: sizes, deviations, probabilities.
 //!
 //! Columns that are made of torques use torques that are freed of the residual,
@@ -22,9 +29,16 @@
 
 mod columns;
 mod nearby;
+mod pairs;
+mod scaled;
 mod scores;
+mod sections;
+mod shapes;
+mod spread;
 mod test;
 
-pub(crate) use columns::{Shape, Suspect};
+pub(crate) use columns::Suspect;
+pub(crate) use pairs::Correlation;
 pub(crate) use scores::{Scores, scores};
+pub(crate) use shapes::{Reach, Shape};
 pub(crate) use test::{Accused, Group};

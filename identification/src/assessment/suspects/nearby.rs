@@ -3,7 +3,7 @@
 
 use overact::{Function, Model};
 
-use super::columns::Moment;
+use super::shapes::Moment;
 use crate::{
     blocks::{BLOCK, evaluate, slice},
     error::Error,

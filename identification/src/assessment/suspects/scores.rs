@@ -1,19 +1,19 @@
-//! One pass over the beginnings of the runs: products of all columns with each other and, section by
-//! section of the time, with the residual. What is kept does not grow with the data.
+//! One pass over the beginnings of the runs. What is kept does not grow with the data.
 
-use nalgebra::{DMatrix, DVector};
 use overact::{Function, Model};
 use rayon::prelude::*;
 
 use super::{
-    columns::{Sample, Shape, Suspect, moments, rates, suspects},
+    columns::{Layout, Sample, Suspect, moments, rates, suspects},
     nearby::Nearby,
+    pairs::{Correlation, correlations},
+    sections::{Frame, RunScores, Sink},
+    shapes::{Reach, Shape},
 };
 use crate::{
     blocks::{BLOCK, evaluate, slice},
     data::Log,
     error::Error,
-    estimation::intervals::scores::cosines,
     filters::{Decimation, Decimator},
     kinematics::{
         Motion, Motions,
@@ -28,31 +28,18 @@ use crate::{
 /// Samples of all runs together that are gone through, at most.
 const MOST_SAMPLES: usize = 100_000;
 
-/// Sections of a run for each cosine of the covariance.
-const SECTIONS: usize = 4;
-
 /// What all runs tell.
 #[derive(Debug, Clone)]
 pub(crate) struct Scores {
     /// The suspects, and the names of the payload's parameters, each of which is a suspect in each run.
     pub(crate) suspects: Vec<Suspect>,
     pub(crate) payload: Vec<String>,
+    /// Where their columns stand.
+    pub(super) layout: Layout,
     /// Places of the estimate's parameters among the base parameters.
     pub(super) selected: Vec<usize>,
     /// What each run tells.
     pub(super) runs: Vec<RunScores>,
-}
-
-/// What one run tells. Columns are the base parameters', the suspects', the payload's.
-#[derive(Debug, Clone)]
-pub(super) struct RunScores {
-    /// Products of all columns, weighted.
-    pub(super) gram: DMatrix<f64>,
-    /// Products of all columns with the residual in each section, columns x sections.
-    pub(super) sections: DMatrix<f64>,
-    /// Σ ρ², weighted, and number of equations of each line.
-    pub(super) square: f64,
-    pub(super) instants: usize,
 }
 
 /// What a pass needs.
@@ -60,14 +47,12 @@ struct Pass<'a> {
     model: &'a dyn Model,
     columns: &'a ColumnSet,
     base: &'a [usize],
-    estimate: &'a Estimate,
-    /// For each base parameter its estimate; zero for what is not estimated.
-    values: Vec<f64>,
-    suspects: &'a [Suspect],
+    kind: ModelKind,
+    frame: Frame<'a>,
     settings: &'a Settings,
 }
 
-/// Goes through the runs with an estimate of all base parameters.
+/// Goes through the runs with an estimate of all base parameters; `reaches` are those of the actuators.
 ///
 /// # Errors
 /// As [`Motions::next`]; the runs have been gone through before.
@@ -75,10 +60,12 @@ pub(crate) fn scores(
     model: &dyn Model,
     runs: &[Log],
     (columns, base): (&ColumnSet, &[usize]),
-    estimate: &Estimate,
+    (estimate, reaches): (&Estimate, &[Reach]),
     settings: &Settings,
 ) -> Result<Scores, Error> {
     let suspects = suspects(model, estimate.model);
+    let payload = model.info().payload_parameters;
+    let layout = Layout::new(base.len(), &suspects, payload.len());
     let mut values = vec![0.0; base.len()];
     for parameter in &estimate.parameters {
         values[parameter.column] = parameter.value;
@@ -87,9 +74,14 @@ pub(crate) fn scores(
         model,
         columns,
         base,
-        estimate,
-        values,
-        suspects: &suspects,
+        kind: estimate.model,
+        frame: Frame {
+            suspects: &suspects,
+            layout: &layout,
+            reaches,
+            weights: &estimate.weights,
+            values: &values,
+        },
         settings,
     };
     let most = (MOST_SAMPLES / runs.len().max(1)).max(settings.samples_needed());
@@ -98,10 +90,9 @@ pub(crate) fn scores(
         .par_iter()
         .map(run)
         .collect::<Result<Vec<_>, Error>>()?;
-    let info = model.info();
-    let payload = info.payload_parameters.iter();
     Ok(Scores {
-        payload: payload.map(|one| one.name.to_owned()).collect(),
+        payload: payload.iter().map(|one| one.name.to_owned()).collect(),
+        layout,
         selected: estimate.columns(),
         runs: scores,
         suspects,
@@ -109,6 +100,11 @@ pub(crate) fn scores(
 }
 
 impl Scores {
+    /// How the residuals of all pairs of actuators hang together; none where the motion does not tell.
+    pub(crate) fn correlations(&self) -> Option<Vec<Correlation>> {
+        correlations(self.runs.iter().map(|run| (&run.pairs, run.cosines)))
+    }
+
     /// The part of the squared residual that white noise of the torques explains, given its variance for
     /// each run and actuator at the full rate, of which decimation leaves the part `passed`.
     pub(crate) fn noise(&self, variances: &[Vec<f64>], passed: f64) -> f64 {
@@ -118,11 +114,10 @@ impl Scores {
         };
         let (mut noise, mut square) = (0.0, 0.0);
         for (run, variances) in self.runs.iter().zip(variances) {
-            let base = run.gram.nrows() - self.suspects.len() - self.payload.len();
             square += run.square;
             for (actuator, variance) in variances.iter().enumerate() {
                 // Σ λ² J² over all equations.
-                let shares = offset(actuator).map(|k| run.gram[(base + k, base + k)]);
+                let shares = offset(actuator).map(|k| run.own(&self.layout, k, 0)[(0, 0)]);
                 noise += shares.unwrap_or(0.0) * variance * passed;
             }
         }
@@ -131,10 +126,9 @@ impl Scores {
 }
 
 impl Pass<'_> {
-    /// Columns of a row: the base parameters', Y, the suspects', the payload's.
+    /// Columns of a row: the base parameters', Y, the suspects' of one column each, the payload's.
     fn width(&self) -> usize {
-        let payload = self.model.info().sizes.payload_parameters;
-        self.base.len() + 1 + self.suspects.len() + payload
+        self.frame.layout.decimated + 1
     }
 
     fn run(&self, log: &Log) -> Result<RunScores, Error> {
@@ -145,31 +139,24 @@ impl Pass<'_> {
         let mut streams: Vec<Decimation> = (0..lines)
             .map(|_| decimator.stream(self.width(), samples))
             .collect::<Result<_, _>>()?;
-        let equations = decimator.kept(samples);
-        let mut sinks = vec![Sink::new(self, equations); lines];
+        let actuators = self.model.info().sizes.actuators;
+        let mut places = decimator.stream(actuators, samples)?;
+        let mut sink = Sink::new(self.frame, decimator.kept(samples));
         while let Some(motion) = motions.next()? {
-            let rows = self.rows(&motion)?;
-            let streams = streams.par_iter_mut().zip(&mut sinks).zip(&rows);
-            streams
-                .enumerate()
-                .for_each(|(line, ((stream, sink), rows))| {
-                    let mut kept = Vec::new();
-                    stream.push(rows, &mut kept);
-                    sink.take(self, line, &kept);
-                });
+            let (rows, positions) = self.rows(&motion)?;
+            let mut kept: Vec<Vec<f64>> = vec![Vec::new(); lines];
+            let all = streams.par_iter_mut().zip(&mut kept).zip(&rows);
+            all.for_each(|((stream, kept), rows)| stream.push(rows, kept));
+            let mut at = Vec::new();
+            places.push(&positions, &mut at);
+            sink.take(&kept, &at);
         }
-        let mut all = sinks.into_iter().map(|sink| sink.scores);
-        let first = all.next().unwrap_or_else(|| Sink::new(self, 0).scores);
-        Ok(all.fold(first, |mut sum, one| {
-            sum.gram += one.gram;
-            sum.sections += one.sections;
-            sum.square += one.square;
-            sum
-        }))
+        Ok(sink.told())
     }
 
-    /// The rows of all samples of a motion, line by line of the estimate's inputs.
-    fn rows(&self, motion: &Motion) -> Result<Vec<Vec<f64>>, Error> {
+    /// The rows of all samples of a motion, line by line of the estimate's inputs, and the positions of the
+    /// actuators.
+    fn rows(&self, motion: &Motion) -> Result<(Vec<Vec<f64>>, Vec<f64>), Error> {
         let info = self.model.info();
         let (n, r) = (info.sizes.actuators, info.sizes.dof);
         let at =
@@ -211,15 +198,16 @@ impl Pass<'_> {
         }
         let torques = self.inputs(motion, &jacobians, &mut lines);
         let torque_rates = rates(&torques, n, motion.sampling_frequency);
-        let actuators = moments(&info, motion, &positions, &jacobians);
+        let actuators = moments(&info, motion, (&positions, &torques), &jacobians);
         let nearby = Nearby {
             model: self.model,
             columns: self.columns,
             base: self.base,
-            values: &self.values,
+            values: self.frame.values,
         };
         let clock = nearby.clock(motion)?;
         let moved = self
+            .frame
             .suspects
             .iter()
             .any(|one| matches!(one, Suspect::Offset(_)));
@@ -235,20 +223,23 @@ impl Pass<'_> {
                 torques: slice(&torques, n, sample, 1),
                 torque_rates: slice(&torque_rates, n, sample, 1),
                 actuators: &actuators[sample * n..(sample + 1) * n],
+                reaches: self.frame.reaches,
                 pose: slice(&motion.pose, info.sizes.pose, sample, 1),
                 clock: slice(&clock, r, sample, 1),
                 offsets: slice(&offsets, n * r, sample, 1),
             };
             for (line, rows) in lines.iter_mut().enumerate() {
                 let row = &mut rows[sample * width..(sample + 1) * width];
-                let (suspects, load) = row[own..].split_at_mut(self.suspects.len());
-                for (to, suspect) in suspects.iter_mut().zip(self.suspects) {
+                let narrow = row.len() - own - self.model.info().sizes.payload_parameters;
+                let (suspects, load) = row[own..].split_at_mut(narrow);
+                // Waves, which come last, are made of decimated positions.
+                for (to, suspect) in suspects.iter_mut().zip(self.frame.suspects) {
                     *to = here.entry(*suspect, line);
                 }
                 load.copy_from_slice(slice(&payload, load.len(), sample * r + line, 1));
             }
         }
-        Ok(self.kept(lines, &jacobians))
+        Ok((self.kept(lines, &jacobians), positions))
     }
 
     /// Puts the measured inputs into the rows, and gives the torques freed of the residual.
@@ -266,7 +257,11 @@ impl Pass<'_> {
                 let input: f64 = measured
                     .map(|(i, torque)| jacobian[i * r + line] * torque)
                     .sum();
-                let explained: f64 = row[..p].iter().zip(&self.values).map(|(w, x)| w * x).sum();
+                let explained: f64 = row[..p]
+                    .iter()
+                    .zip(self.frame.values)
+                    .map(|(w, x)| w * x)
+                    .sum();
                 row[p] = input;
                 residual[line] = input - explained;
             }
@@ -285,74 +280,12 @@ impl Pass<'_> {
     /// Rows of Γ¹ as the estimate's model takes them.
     fn kept(&self, lines: Vec<Vec<f64>>, jacobians: &[f64]) -> Vec<Vec<f64>> {
         let sizes = self.model.info().sizes;
-        let kept = match self.estimate.model {
+        let kept = match self.kind {
             ModelKind::Platform => return lines,
             ModelKind::Joints => (0..sizes.actuators).collect(),
             ModelKind::Actuators => self.settings.kept_actuators.clone(),
         };
         let mut choice = KeptActuators::new(kept, &home_scales(self.model));
         projected(&lines, &mut choice, jacobians, sizes.actuators * sizes.dof).0
-    }
-}
-
-/// Where the equations of one line go.
-#[derive(Debug, Clone)]
-struct Sink {
-    /// Equations that have come, and those to come in all.
-    taken: usize,
-    expected: usize,
-    scores: RunScores,
-}
-
-impl Sink {
-    fn new(pass: &Pass<'_>, equations: usize) -> Self {
-        let size = pass.width() - 1;
-        let sections = (SECTIONS * cosines(equations)).min(equations).max(1);
-        Self {
-            taken: 0,
-            expected: equations,
-            scores: RunScores {
-                gram: DMatrix::zeros(size, size),
-                sections: DMatrix::zeros(size, sections),
-                square: 0.0,
-                instants: equations,
-            },
-        }
-    }
-
-    /// Takes decimated rows of a line.
-    fn take(&mut self, pass: &Pass<'_>, line: usize, rows: &[f64]) {
-        let (width, p) = (pass.width(), pass.base.len());
-        let count = rows.len() / width;
-        if count == 0 {
-            return;
-        }
-        let weight = pass.estimate.weights.get(line).copied().unwrap_or(1.0);
-        let all = DMatrix::from_row_slice(count, width, rows) * weight;
-        let mut residual: DVector<f64> = all.column(p).clone_owned();
-        for (column, value) in pass.values.iter().enumerate() {
-            residual.axpy(-value, &all.column(column), 1.0);
-        }
-        let columns = all.remove_column(p);
-        self.scores.gram.gemm_tr(1.0, &columns, &columns, 1.0);
-        let sections = self.scores.sections.ncols();
-        let mut first = 0;
-        while first < count {
-            let section = (self.taken + first) * sections / self.expected.max(1);
-            let section = section.min(sections - 1);
-            let end = (section + 1) * self.expected;
-            let end = end.div_ceil(sections).saturating_sub(self.taken);
-            let end = end.clamp(first + 1, count);
-            let part = columns.rows(first, end - first);
-            self.scores.sections.column_mut(section).gemv_tr(
-                1.0,
-                &part,
-                &residual.rows(first, end - first),
-                1.0,
-            );
-            first = end;
-        }
-        self.scores.square += residual.norm_squared();
-        self.taken += count;
     }
 }

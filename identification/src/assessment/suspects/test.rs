@@ -1,12 +1,13 @@
 //! Whether a suspect is there, how large it is, and what it does to the parameters.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::DMatrix;
 
-use super::scores::Scores;
-use crate::estimation::intervals::{
-    distributions::{fisher_tail, student_quantile},
-    scores::cosines,
+use super::{
+    scaled::Scaled,
+    scores::Scores,
+    spread::{Freed, Share, Spread, score},
 };
+use crate::estimation::intervals::distributions::{fisher_tail, student_quantile};
 
 /// A column whose part outside the others is below this part of its square can't be told from them.
 const LEAST_OUTSIDE: f64 = 1e-8;
@@ -14,11 +15,14 @@ const LEAST_OUTSIDE: f64 = 1e-8;
 /// How often a fault that is just large enough to be seen is missed.
 const MISSED: f64 = 0.1;
 
-/// Columns that are tested together.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Probabilities below are as good as none.
+const LEAST_PROBABILITY: f64 = 1e-30;
+
+/// Columns that are tested together: those of a suspect, or of the payload in one run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Group {
-    /// Places of the columns behind those of the base parameters.
-    columns: Vec<usize>,
+    /// The block of their columns.
+    block: usize,
     /// The run to which they are confined.
     run: Option<usize>,
 }
@@ -27,16 +31,15 @@ impl Group {
     /// One suspect, by its number.
     pub(crate) fn suspect(number: usize) -> Self {
         Self {
-            columns: vec![number],
+            block: number,
             run: None,
         }
     }
 
     /// The payload's parameters in one run.
     pub(crate) fn payload(scores: &Scores, run: usize) -> Self {
-        let first = scores.suspects.len();
         Self {
-            columns: (first..first + scores.payload.len()).collect(),
+            block: scores.suspects.len(),
             run: Some(run),
         }
     }
@@ -65,6 +68,30 @@ impl Accused {
         self.sizes.first().map_or(0.0, |(_, size)| *size)
     }
 
+    /// The largest δ of its columns, with its sign.
+    pub(crate) fn largest(&self) -> f64 {
+        let sizes = self.sizes.iter().map(|(_, size)| *size);
+        sizes.fold(
+            0.0,
+            |most: f64, one| if one.abs() > most.abs() { one } else { most },
+        )
+    }
+
+    /// What speaks against it, in deviations: |δ| by its deviation for one column, for several what would
+    /// be as improbable for one.
+    pub(crate) fn strength(&self) -> f64 {
+        match self.sizes.len() {
+            1 => self.size().abs() / self.deviation,
+            _ => self.quantile(self.probability.max(LEAST_PROBABILITY)),
+        }
+    }
+
+    /// How probable a size of the first column is by chance, were the true one as large as `harmless`.
+    pub(crate) fn probability_beyond(&self, harmless: f64) -> f64 {
+        let beyond = (self.size().abs() - harmless).max(0.0) / self.deviation;
+        fisher_tail(beyond * beyond, 1.0, self.freedom)
+    }
+
     /// How many deviations chance exceeds as often as `level`.
     pub(crate) fn quantile(&self, level: f64) -> f64 {
         student_quantile(level, self.freedom)
@@ -81,63 +108,78 @@ impl Scores {
     /// Tests a group beside the columns `selected` of the base parameters; none where the data can't tell
     /// it from them.
     pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<Accused> {
-        let size = self.runs.first()?.gram.nrows();
-        let base = size - self.suspects.len() - self.payload.len();
-        let own: Vec<usize> = group.columns.iter().map(|column| base + column).collect();
+        let layout = &self.layout;
+        let columns: Vec<usize> = layout.blocks[group.block].clone().collect();
         let inside = |run: usize| group.run.is_none_or(|own| own == run);
         let mut gram = DMatrix::zeros(selected.len(), selected.len());
-        let mut cross = DMatrix::zeros(selected.len(), own.len());
-        let mut square = DMatrix::zeros(own.len(), own.len());
+        let mut cross = DMatrix::zeros(selected.len(), columns.len());
+        let mut square = DMatrix::zeros(columns.len(), columns.len());
         for (number, run) in self.runs.iter().enumerate() {
-            let rows = run.gram.select_rows(selected);
+            let rows = run.cross(layout, 0).select_rows(selected);
             gram += rows.select_columns(selected);
             if inside(number) {
-                cross += rows.select_columns(&own);
-                square += run.gram.select_rows(&own).select_columns(&own);
+                cross += rows.select_columns(&columns);
+                square += run.own(layout, group.block, 0);
             }
         }
-        let solved = Scaled::new(&gram)?.solve(&cross);
+        let gram = Scaled::new(&gram)?;
+        let solved = gram.solve(&cross);
         let outside = &square - cross.tr_mul(&solved);
-        // Columns that the data can tell from the model's.
-        let told: Vec<usize> = (0..own.len())
-            .filter(|&i| outside[(i, i)] > LEAST_OUTSIDE * square[(i, i)])
-            .collect();
-        if told.is_empty() {
-            return None;
-        }
+        let told = told(&outside, &square);
         let solved = solved.select_columns(&told);
-        let outside = outside.select_rows(&told).select_columns(&told);
-        let places: Vec<usize> = told.iter().map(|&i| own[i]).collect();
-        let spread = self.spread(&solved, selected, &places, &inside)?;
-        let (score, variance, freedom) = spread;
-        let factor = Scaled::new(&outside)?;
-        let sizes = factor.solve(&DMatrix::from_column_slice(told.len(), 1, score.as_slice()));
-        let count = told.len() as f64;
+        let factor = Scaled::new(&outside.select_rows(&told).select_columns(&told))?;
+        let white = factor.white(&DMatrix::identity(told.len(), told.len()));
+        let freed = Freed {
+            layout,
+            selected,
+            gram: &gram,
+            block: group.block,
+            told: &told,
+            solved: &solved,
+            white: &white,
+        };
+        let runs = self.runs.iter().enumerate();
+        let shares: Vec<Share> = runs
+            .map(|(number, run)| freed.share(run, inside(number)))
+            .collect();
+        self.accused(&freed, &shares)
+    }
+
+    /// What the shares of all runs say.
+    fn accused(&self, freed: &Freed<'_>, shares: &[Share]) -> Option<Accused> {
+        let width = freed.told.len();
+        let score = score(shares, width);
+        let Spread {
+            covariance,
+            freedom,
+        } = freed.spread(shares, &score)?;
+        let count = width as f64;
         let rest = freedom - count + 1.0;
-        if rest < 1.0 {
+        if width == 0 || rest < 1.0 {
             return None;
         }
-        let distance = Scaled::new(&variance)?.solve(&DMatrix::from_column_slice(
-            told.len(),
-            1,
-            score.as_slice(),
-        ));
+        let as_column = DMatrix::from_column_slice(width, 1, score.as_slice());
+        let distance = Scaled::new(&covariance)?.solve(&as_column);
         let statistic = rest / (freedom * count) * score.dot(&distance.column(0));
-        let covariance = factor.solve(&variance);
-        let covariance = factor.solve(&covariance.transpose());
+        // z⊥ is orthonormal: the scores are its sizes.
+        let sizes = freed.white.tr_mul(&score);
+        let first = freed.white.column(0);
+        let variance = (first.transpose() * &covariance * first)[(0, 0)];
         let total: f64 = self.runs.iter().map(|run| run.square).sum();
-        let moves = &solved * &sizes;
+        let moves = freed.solved * &sizes;
+        let selected = freed.selected.iter().copied();
         Some(Accused {
-            deviation: covariance[(0, 0)].max(0.0).sqrt(),
+            deviation: variance.max(0.0).sqrt(),
             freedom,
             probability: fisher_tail(statistic, count, rest),
-            explained: score.dot(&sizes.column(0)) / total.max(f64::MIN_POSITIVE),
-            sizes: told.into_iter().zip(sizes.iter().copied()).collect(),
-            moves: selected
+            explained: score.norm_squared() / total.max(f64::MIN_POSITIVE),
+            sizes: freed
+                .told
                 .iter()
                 .copied()
-                .zip(moves.iter().copied())
+                .zip(sizes.iter().copied())
                 .collect(),
+            moves: selected.zip(moves.iter().copied()).collect(),
         })
     }
 
@@ -145,65 +187,19 @@ impl Scores {
     pub(crate) fn selected(&self) -> &[usize] {
         &self.selected
     }
+}
 
-    /// The scores of columns freed of the base parameters' by `solved`, their covariance by equally
-    /// weighted cosines (see the module `intervals::scores`) and its degrees of freedom.
-    fn spread(
-        &self,
-        solved: &DMatrix<f64>,
-        selected: &[usize],
-        own: &[usize],
-        inside: &dyn Fn(usize) -> bool,
-    ) -> Option<(DVector<f64>, DMatrix<f64>, f64)> {
-        let mut score = DVector::zeros(own.len());
-        let mut variance = DMatrix::zeros(own.len(), own.len());
-        let mut squares = 0.0;
-        for (number, run) in self.runs.iter().enumerate() {
-            let mut sections = -solved.tr_mul(&run.sections.select_rows(selected));
-            if inside(number) {
-                sections += run.sections.select_rows(own);
-            }
-            score += sections.column_sum();
-            let count = cosines(run.instants).min(sections.ncols() / 2).max(1);
-            let waves = DMatrix::from_fn(sections.ncols(), count, |k, b| {
-                let angle = (b + 1) as f64 * (k as f64 + 0.5) / sections.ncols() as f64;
-                std::f64::consts::SQRT_2 * (std::f64::consts::PI * angle).cos()
-            });
-            let sums = sections * waves;
-            let share = &sums * sums.transpose() / count as f64;
-            squares += share[(0, 0)].powi(2) / count as f64;
-            variance += share;
+/// Columns that the data can tell from the model's, and from those before them.
+fn told(outside: &DMatrix<f64>, square: &DMatrix<f64>) -> Vec<usize> {
+    let mut rest = outside.clone();
+    let mut told = Vec::new();
+    for i in 0..rest.nrows() {
+        let left = rest[(i, i)];
+        if left > LEAST_OUTSIDE * square[(i, i)] {
+            told.push(i);
+            let column = rest.column(i).clone_owned();
+            rest.ger(-1.0 / left, &column, &column, 1.0);
         }
-        let whole: f64 = variance[(0, 0)];
-        let freedom = whole * whole / squares;
-        (freedom.is_finite() && freedom >= 1.0).then_some((score, variance, freedom))
     }
-}
-
-/// The Cholesky factor of a positive definite matrix, scaled so that units do not matter.
-struct Scaled {
-    scales: DVector<f64>,
-    factor: Cholesky<f64, Dyn>,
-}
-
-impl Scaled {
-    fn new(matrix: &DMatrix<f64>) -> Option<Self> {
-        let scales = matrix.diagonal().map(|square: f64| 1.0 / square.sqrt());
-        let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-            matrix[(i, j)] * scales[i] * scales[j]
-        });
-        let sound = scales.iter().all(|scale| scale.is_finite());
-        let factor = Cholesky::new(scaled).filter(|_| sound)?;
-        Some(Self { scales, factor })
-    }
-
-    fn solve(&self, rhs: &DMatrix<f64>) -> DMatrix<f64> {
-        let scale = |mut matrix: DMatrix<f64>| {
-            for (mut row, scale) in matrix.row_iter_mut().zip(self.scales.iter()) {
-                row *= *scale;
-            }
-            matrix
-        };
-        scale(self.factor.solve(&scale(rhs.clone())))
-    }
+    told
 }

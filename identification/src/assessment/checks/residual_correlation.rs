@@ -1,0 +1,84 @@
+//! Whether what is left unexplained of one actuator hangs together with that of another.
+
+use super::{
+    Context,
+    level::{level, origin},
+};
+use crate::{
+    assessment::{
+        check::{About, Check, CheckKind},
+        evidence::{Axis, Curve, Evidence},
+        suspects::Correlation,
+    },
+    error::Error,
+    estimation::intervals::distributions::student_quantile,
+    significant,
+};
+
+/// Correlations that are smaller tell nothing worth looking for.
+const SMALLEST: f64 = 0.1;
+
+/// Tests all pairs of actuators.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let pairs = context.scores.and_then(|scores| scores.correlations());
+    let pairs = pairs.unwrap_or_default();
+    let Some(most) = pairs
+        .iter()
+        .max_by(|a, b| a.strength.total_cmp(&b.strength))
+    else {
+        return Ok(Vec::new());
+    };
+    let (tests, level) = (pairs.len(), level(pairs.len()));
+    let beyond = |one: &&Correlation| one.probability < level && one.value.abs() >= SMALLEST;
+    let guilty = pairs.iter().filter(beyond);
+    let guilty = guilty.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+    let names = context.model.info().actuators;
+    let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
+    let shown = guilty.unwrap_or(most);
+    let (first, second) = (name(shown.actuators.0), name(shown.actuators.1));
+    let found = format!(
+        "what is left unexplained of `{first}` and of `{second}` hangs together: correlation {} ({:.1} standard deviations)",
+        significant(shown.value, 2),
+        shown.strength
+    );
+    let words = match guilty {
+        Some(_) => format!(
+            "{found}. Something acts on both that the model lacks: a force on the platform, a cable, one drive's current in the other's measurement, or errors of the geometry"
+        ),
+        None => String::from("what is left unexplained of each actuator is its own"),
+    };
+    let check = Check::new(CheckKind::ResidualCorrelation, About::Fit, words)
+        .measured(shown.strength, "standard deviations")
+        .against(
+            student_quantile(level, shown.freedom),
+            format!("{}, and a correlation of {SMALLEST}", origin(tests)),
+        )
+        .shown_by(evidence(&pairs, &name));
+    Ok(vec![match guilty {
+        Some(_) => check.found(),
+        None => check,
+    }])
+}
+
+/// The correlations of each actuator with those behind it.
+fn evidence<'a>(pairs: &[Correlation], name: &dyn Fn(usize) -> &'a str) -> Evidence {
+    let mut curves: Vec<(usize, Curve)> = Vec::new();
+    for pair in pairs {
+        let (first, second) = pair.actuators;
+        if curves.last().is_none_or(|(own, _)| *own != first) {
+            let label = format!("with {}", name(first));
+            curves.push((first, Curve::new(&label, &[], &[])));
+        }
+        if let Some((_, curve)) = curves.last_mut() {
+            curve.x.push((second + 1) as f64);
+            curve.y.push(pair.value);
+        }
+    }
+    Evidence {
+        title: String::from("Correlation of what is left unexplained"),
+        x: Axis::new("number of the actuator", ""),
+        y: Axis::new("correlation", ""),
+        points: curves.into_iter().map(|(_, curve)| curve).collect(),
+        ..Evidence::default()
+    }
+}

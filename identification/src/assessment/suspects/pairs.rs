@@ -1,0 +1,135 @@
+//! Whether the residuals of actuators hang together.
+//!
+//! If torque errors e of the actuators make the residual, ρ = Jᵀ e with J = J_p^inv (the identity for a
+//! joint model), then E ρ ρᵀ = Σ_k σ_kk J_k J_kᵀ + Σ_(k<l) σ_kl (J_k J_lᵀ + J_l J_kᵀ) with the rows J_k of J.
+//! The σ are fitted to ρ ρᵀ of all instants by least squares; those of pairs are zero where every
+//! actuator's errors are its own. With a_k = J_k · ρ and M_kl = J_k · J_l the products that this takes are
+//!
+//! ```text
+//! ⟨ρ ρᵀ, kl⟩ = 2 a_k a_l,   ⟨kl, mn⟩ = 2 (M_km M_ln + M_kn M_lm),   each halved for k = l or m = n.
+//! ```
+
+use nalgebra::{DMatrix, DMatrixView, DVector};
+
+use super::scaled::Scaled;
+use crate::estimation::intervals::distributions::fisher_tail;
+
+/// Products of pairs of actuators: a column for each section of a run, or for each cosine.
+#[derive(Debug, Clone)]
+pub(super) struct Pairs {
+    /// The pairs, each actuator with itself among them.
+    pairs: Vec<(usize, usize)>,
+    /// Products of the pairs with each other, flattened, and with ρ ρᵀ.
+    gram: DMatrix<f64>,
+    scores: DMatrix<f64>,
+}
+
+/// How the residuals of two actuators hang together.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Correlation {
+    /// The actuators.
+    pub(crate) actuators: (usize, usize),
+    /// σ_kl by the root of σ_kk σ_ll.
+    pub(crate) value: f64,
+    /// Its size by its deviation, and the degrees of freedom of that.
+    pub(crate) strength: f64,
+    pub(crate) freedom: f64,
+    /// How probable it is by chance.
+    pub(crate) probability: f64,
+}
+
+impl Pairs {
+    /// Those of no instants.
+    pub(super) fn new(actuators: usize, sections: usize) -> Self {
+        let of = |k: usize| (k..actuators).map(move |l| (k, l));
+        let pairs: Vec<(usize, usize)> = (0..actuators).flat_map(of).collect();
+        Self {
+            gram: DMatrix::zeros(pairs.len().pow(2), sections),
+            scores: DMatrix::zeros(pairs.len(), sections),
+            pairs,
+        }
+    }
+
+    /// Adds an instant to a section: J, n x r, and ρ.
+    pub(super) fn add(&mut self, section: usize, jacobian: &DMatrix<f64>, residual: &DVector<f64>) {
+        let (torques, products) = (jacobian * residual, jacobian * jacobian.transpose());
+        let half = |(k, l): (usize, usize)| if k == l { 0.5 } else { 1.0 };
+        let count = self.pairs.len();
+        for (i, &(k, l)) in self.pairs.iter().enumerate() {
+            let twice = 2.0 * half((k, l));
+            self.scores[(i, section)] += twice * torques[k] * torques[l];
+            for (j, &(m, n)) in self.pairs.iter().enumerate() {
+                let both =
+                    products[(k, m)] * products[(l, n)] + products[(k, n)] * products[(l, m)];
+                self.gram[(j * count + i, section)] += twice * half((m, n)) * both;
+            }
+        }
+    }
+
+    /// Its sums over cosines.
+    pub(super) fn over(&self, waves: &DMatrix<f64>) -> Self {
+        Self {
+            pairs: self.pairs.clone(),
+            gram: &self.gram * waves,
+            scores: &self.scores * waves,
+        }
+    }
+
+    /// The products of the pairs with each other over cosine m.
+    fn gram(&self, m: usize) -> DMatrixView<'_, f64> {
+        let count = self.pairs.len();
+        let all = &self.gram.as_slice()[m * count * count..(m + 1) * count * count];
+        DMatrixView::from_slice(all, count, count)
+    }
+}
+
+/// The correlations of all pairs in runs, each with its cosines; none where the motion does not tell them
+/// from each other.
+pub(super) fn correlations<'a>(
+    runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
+) -> Option<Vec<Correlation>> {
+    let (first, _) = runs.clone().next()?;
+    let count = first.pairs.len();
+    let (mut gram, mut score) = (DMatrix::zeros(count, count), DMatrix::zeros(count, 1));
+    for (run, _) in runs.clone() {
+        gram += run.gram(0);
+        score += run.scores.columns(0, 1);
+    }
+    let factor = Scaled::new(&gram)?;
+    let sizes = factor.solve(&score).column(0).clone_owned();
+    let (mut variances, mut squares) = (vec![0.0; count], vec![0.0; count]);
+    for (run, cosines) in runs {
+        let sums: Vec<DVector<f64>> = (1..=cosines)
+            .map(|b| run.scores.column(b) - run.gram(b) * &sizes)
+            .collect();
+        let sums = factor.solve(&DMatrix::from_columns(&sums));
+        for (i, row) in sums.row_iter().enumerate() {
+            // The cosines of a covariance have the mean square 1.
+            let variance = 2.0 * row.norm_squared() / cosines as f64;
+            variances[i] += variance;
+            squares[i] += variance * variance / cosines as f64;
+        }
+    }
+    let own = |actuator: usize| {
+        let place = first
+            .pairs
+            .iter()
+            .position(|pair| *pair == (actuator, actuator));
+        place.map_or(0.0, |place| sizes[place])
+    };
+    let told = first.pairs.iter().enumerate().filter(|(_, (k, l))| k != l);
+    let of_pair = |(i, &(k, l)): (usize, &(usize, usize))| {
+        let scale = (own(k) * own(l)).sqrt();
+        let strength = sizes[i].abs() / variances[i].sqrt();
+        let freedom = variances[i] * variances[i] / squares[i];
+        let sound = scale > 0.0 && strength.is_finite() && freedom >= 1.0;
+        sound.then(|| Correlation {
+            actuators: (k, l),
+            value: sizes[i] / scale,
+            strength,
+            freedom,
+            probability: fisher_tail(strength * strength, 1.0, freedom),
+        })
+    };
+    Some(told.filter_map(of_pair).collect())
+}

@@ -1,0 +1,240 @@
+//! Products of columns and residual, section by section of a run's time, and their sums over cosines of
+//! the time.
+
+use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector};
+
+use super::{
+    columns::{Layout, Suspect},
+    pairs::Pairs,
+    shapes::{Reach, Shape},
+};
+use crate::estimation::intervals::scores::cosines;
+
+/// Sections of a run for each cosine of the covariance.
+const SECTIONS: usize = 4;
+
+/// Products of columns and residual: a column for each section of the run, or for each cosine
+/// cos(π m (k + 1/2)/K) over its K sections, m = 0 … 2 B. Columns W are the base parameters', Z all.
+#[derive(Debug, Clone)]
+struct Products {
+    /// Wᵀ Z, p x columns, weighted.
+    cross: DMatrix<f64>,
+    /// Products of the columns of a block with each other, one block behind the other.
+    own: DMatrix<f64>,
+    /// Zᵀ ρ.
+    scores: DMatrix<f64>,
+}
+
+/// What one run tells, as sums over cosines of its time.
+#[derive(Debug, Clone)]
+pub(super) struct RunScores {
+    products: Products,
+    /// Products of pairs of actuators.
+    pub(super) pairs: Pairs,
+    /// B, the cosines of the covariance.
+    pub(super) cosines: usize,
+    /// Σ ρ², weighted.
+    pub(super) square: f64,
+}
+
+impl Products {
+    /// Those of no rows.
+    fn new(layout: &Layout, sections: usize) -> Self {
+        Self {
+            cross: DMatrix::zeros(layout.base * layout.columns, sections),
+            own: DMatrix::zeros(layout.squares, sections),
+            scores: DMatrix::zeros(layout.columns, sections),
+        }
+    }
+
+    /// Adds rows of all columns with their residual to a section.
+    fn add(
+        &mut self,
+        layout: &Layout,
+        section: usize,
+        (all, residual): (&DMatrix<f64>, &DVector<f64>),
+    ) {
+        let size = layout.base * layout.columns;
+        let cross = &mut self.cross.as_mut_slice()[section * size..(section + 1) * size];
+        let mut cross = DMatrixViewMut::from_slice(cross, layout.base, layout.columns);
+        cross.gemm(1.0, &all.columns(0, layout.base).transpose(), all, 1.0);
+        let first = section * layout.squares;
+        for (block, place) in layout.blocks.iter().zip(&layout.places) {
+            let own = &mut self.own.as_mut_slice()[first + place.start..first + place.end];
+            let mut own = DMatrixViewMut::from_slice(own, block.len(), block.len());
+            let columns = all.columns_range(block.clone());
+            own.gemm_tr(1.0, &columns, &columns, 1.0);
+        }
+        let mut scores = self.scores.column_mut(section);
+        scores.gemv_tr(1.0, all, residual, 1.0);
+    }
+
+    /// Its sums over cosines.
+    fn over(&self, waves: &DMatrix<f64>) -> Self {
+        Self {
+            cross: &self.cross * waves,
+            own: &self.own * waves,
+            scores: &self.scores * waves,
+        }
+    }
+}
+
+impl RunScores {
+    /// Wᵀ Z over cosine m.
+    pub(super) fn cross(&self, layout: &Layout, m: usize) -> DMatrixView<'_, f64> {
+        let size = layout.base * layout.columns;
+        let all = &self.products.cross.as_slice()[m * size..(m + 1) * size];
+        DMatrixView::from_slice(all, layout.base, layout.columns)
+    }
+
+    /// Products of the columns of a block with each other, over cosine m.
+    pub(super) fn own(&self, layout: &Layout, block: usize, m: usize) -> DMatrixView<'_, f64> {
+        let (place, first) = (&layout.places[block], m * layout.squares);
+        let all = &self.products.own.as_slice()[first + place.start..first + place.end];
+        let width = layout.blocks[block].len();
+        DMatrixView::from_slice(all, width, width)
+    }
+
+    /// Zᵀ ρ, columns x cosines.
+    pub(super) fn scores(&self) -> &DMatrix<f64> {
+        &self.products.scores
+    }
+}
+
+/// What makes equations of decimated rows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame<'a> {
+    pub(super) suspects: &'a [Suspect],
+    pub(super) layout: &'a Layout,
+    /// Where the actuators move in all runs.
+    pub(super) reaches: &'a [Reach],
+    /// The weight of each line, and for each base parameter its estimate.
+    pub(super) weights: &'a [f64],
+    pub(super) values: &'a [f64],
+}
+
+/// Where the equations of a run go.
+pub(super) struct Sink<'a> {
+    frame: Frame<'a>,
+    /// Instants that have come, and those to come in all.
+    taken: usize,
+    expected: usize,
+    /// The columns of constant torques, by which waves are multiplied.
+    constants: Vec<usize>,
+    products: Products,
+    pairs: Pairs,
+    square: f64,
+}
+
+impl<'a> Sink<'a> {
+    /// For so many instants.
+    pub(super) fn new(frame: Frame<'a>, instants: usize) -> Self {
+        let constant = |one: &Suspect| matches!(one, Suspect::Torque(_, Shape::Constant));
+        let suspects = frame.suspects.iter().zip(&frame.layout.blocks);
+        let constants = suspects.filter(|(one, _)| constant(one));
+        let constants: Vec<usize> = constants.map(|(_, block)| block.start).collect();
+        let sections = (SECTIONS * cosines(instants)).min(instants).max(1);
+        Self {
+            frame,
+            taken: 0,
+            expected: instants,
+            pairs: Pairs::new(constants.len(), sections),
+            constants,
+            products: Products::new(frame.layout, sections),
+            square: 0.0,
+        }
+    }
+
+    /// What the run tells.
+    pub(super) fn told(self) -> RunScores {
+        let sections = self.products.scores.ncols();
+        let cosines = cosines(self.expected).min(sections / 2).max(1);
+        let waves = DMatrix::from_fn(sections, 2 * cosines + 1, |k, m| {
+            let angle = m as f64 * (k as f64 + 0.5) / sections as f64;
+            (std::f64::consts::PI * angle).cos()
+        });
+        RunScores {
+            products: self.products.over(&waves),
+            pairs: self.pairs.over(&waves),
+            cosines,
+            square: self.square,
+        }
+    }
+
+    /// Takes decimated rows of all lines, and the decimated positions of the actuators.
+    pub(super) fn take(&mut self, lines: &[Vec<f64>], positions: &[f64]) {
+        let count = positions.len() / self.constants.len().max(1);
+        if count == 0 {
+            return;
+        }
+        let taken: Vec<(DMatrix<f64>, DVector<f64>)> = lines
+            .iter()
+            .enumerate()
+            .map(|(line, rows)| self.line(line, (rows, count), positions))
+            .collect();
+        for sample in 0..count {
+            let n = self.constants.len();
+            let jacobian = DMatrix::from_fn(n, lines.len(), |i, line| taken[line].0[(sample, i)]);
+            let residual = DVector::from_fn(lines.len(), |line, _| taken[line].1[sample]);
+            self.pairs.add(self.section(sample), &jacobian, &residual);
+        }
+        self.taken += count;
+    }
+
+    /// The section of a sample of those that come.
+    fn section(&self, sample: usize) -> usize {
+        let sections = self.products.scores.ncols();
+        let section = (self.taken + sample) * sections / self.expected.max(1);
+        section.min(sections - 1)
+    }
+
+    /// Takes the rows of a line; gives what torques of the actuators are worth in it, and its residual.
+    fn line(
+        &mut self,
+        line: usize,
+        (rows, count): (&[f64], usize),
+        positions: &[f64],
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let layout = self.frame.layout;
+        let weight = self.frame.weights.get(line).copied().unwrap_or(1.0);
+        let all = DMatrix::from_row_slice(count, rows.len() / count, rows) * weight;
+        let mut residual: DVector<f64> = all.column(layout.base).clone_owned();
+        for (column, value) in self.frame.values.iter().enumerate() {
+            residual.axpy(-value, &all.column(column), 1.0);
+        }
+        let mut all = all.remove_column(layout.base);
+        all.resize_horizontally_mut(layout.columns, 0.0);
+        self.add_waves(&mut all, positions);
+        let mut first = 0;
+        while first < count {
+            let section = self.section(first);
+            let same = (first..count).take_while(|sample| self.section(*sample) == section);
+            let part = first..first + same.count();
+            let rows = all.rows_range(part.clone()).clone_owned();
+            let left = residual.rows_range(part.clone()).clone_owned();
+            self.products.add(layout, section, (&rows, &left));
+            first = part.end;
+        }
+        self.square += residual.norm_squared();
+        (all.select_columns(&self.constants), residual)
+    }
+
+    /// Fills in the waves: those of a decimated position, times what a torque of its actuator is worth in
+    /// this line.
+    fn add_waves(&self, all: &mut DMatrix<f64>, positions: &[f64]) {
+        let n = self.constants.len();
+        for (suspect, block) in self.frame.suspects.iter().zip(&self.frame.layout.blocks) {
+            let Suspect::Torque(actuator, Shape::Waves) = *suspect else {
+                continue;
+            };
+            let reach = self.frame.reaches[actuator];
+            for row in 0..all.nrows() {
+                let share = all[(row, self.constants[actuator])];
+                let waves = reach.waves(positions[row * n + actuator]);
+                for (column, wave) in block.clone().zip(waves) {
+                    all[(row, column)] = share * wave;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! Shapes of torques and forces that a model may lack.
+
+/// How something that the model lacks depends on the motion of its actuator or coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// 1: an offset of the torque, or friction that differs by direction.
+    Constant,
+    /// The velocity.
+    Velocity,
+    /// The sign of the velocity.
+    Sign,
+    /// The magnitude of the velocity: viscous friction that differs by direction.
+    Speed,
+    /// The square of the velocity, with its sign: a drag.
+    Drag,
+    /// What remains of the sign of the velocity near standstill: friction that rises there (Stribeck).
+    Stribeck,
+    /// The magnitude of the torque with the sign of the velocity: friction that grows with the load.
+    Load,
+    /// The acceleration.
+    Acceleration,
+    /// The position: a spring.
+    Position,
+    /// The position with the sign of the velocity: friction that depends on the place.
+    PositionSign,
+    /// The cosine of the position.
+    Cosine,
+    /// The sine of the position.
+    Sine,
+    /// The time since the beginning of the run: a drift.
+    Time,
+    /// The time where the velocity is positive, less the time where it is negative: friction that changes.
+    TimeSign,
+    /// Waves over the range of the position, [`WAVES`] columns together: cogging, or an error of a gear.
+    Waves,
+}
+
+/// Cosines of a position over its range, of 1/2, 1, 3/2 … periods.
+pub(super) const WAVES: usize = 16;
+
+/// Shapes of an actuator that are one column each.
+pub(super) const SHAPES: [Shape; 14] = [
+    Shape::Constant,
+    Shape::Velocity,
+    Shape::Sign,
+    Shape::Speed,
+    Shape::Drag,
+    Shape::Stribeck,
+    Shape::Load,
+    Shape::Acceleration,
+    Shape::Position,
+    Shape::PositionSign,
+    Shape::Cosine,
+    Shape::Sine,
+    Shape::Time,
+    Shape::TimeSign,
+];
+
+/// The motion of an actuator or a coordinate at one time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Moment {
+    pub(super) position: f64,
+    pub(super) velocity: f64,
+    pub(super) acceleration: f64,
+    /// The torque or force, freed of the residual.
+    pub(super) torque: f64,
+    pub(super) time: f64,
+}
+
+/// Where an actuator moves, and how fast.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Reach {
+    /// The least and the largest position (m, rad).
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    /// The largest speed (m/s, rad/s).
+    pub(crate) speed: f64,
+}
+
+/// Part of the largest speed within which friction that rises towards standstill has fallen to 1/e.
+const STRIBECK: f64 = 0.1;
+
+impl Reach {
+    /// That of two together.
+    pub(crate) fn united(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            speed: self.speed.max(other.speed),
+        }
+    }
+
+    /// The waves of a position.
+    pub(super) fn waves(self, position: f64) -> [f64; WAVES] {
+        let range = self.high - self.low;
+        let place = if range > 0.0 {
+            ((position - self.low) / range).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        std::array::from_fn(|k| (std::f64::consts::PI * (k + 1) as f64 * place).cos())
+    }
+}
+
+impl Shape {
+    /// What it is called in a sentence.
+    pub(crate) const fn words(self) -> &'static str {
+        match self {
+            Self::Constant => "a constant, as an offset or friction that differs by direction",
+            Self::Velocity => "the velocity, as viscous friction",
+            Self::Sign => "the sign of the velocity, as dry friction",
+            Self::Speed => {
+                "the magnitude of the velocity, as viscous friction that differs by direction"
+            }
+            Self::Drag => "the square of the velocity, as drag",
+            Self::Stribeck => {
+                "the sign of the velocity near standstill, as friction that rises there (Stribeck)"
+            }
+            Self::Load => {
+                "the magnitude of the torque and the sign of the velocity, as friction that grows with the load"
+            }
+            Self::Acceleration => "the acceleration, as inertia",
+            Self::Position => "the position, as a spring",
+            Self::PositionSign => {
+                "the position and the sign of the velocity, as friction that differs by place"
+            }
+            Self::Cosine => "the cosine of the position, as gravity",
+            Self::Sine => "the sine of the position, as gravity",
+            Self::Time => "time, as a drift",
+            Self::TimeSign => "time and the sign of the velocity, as friction that changes",
+            Self::Waves => "the position in waves, as cogging or an error of a gear",
+        }
+    }
+
+    /// Its value at a motion within a reach. Waves are no single value: they are added where signals have
+    /// been decimated.
+    pub(super) fn value(self, motion: Moment, reach: Reach) -> f64 {
+        let Moment {
+            position,
+            velocity,
+            acceleration,
+            torque,
+            time,
+        } = motion;
+        let sign = if velocity == 0.0 {
+            0.0
+        } else {
+            velocity.signum()
+        };
+        match self {
+            Self::Constant => 1.0,
+            Self::Velocity => velocity,
+            Self::Sign => sign,
+            Self::Speed => velocity.abs(),
+            Self::Drag => velocity * velocity.abs(),
+            Self::Stribeck if reach.speed > 0.0 => {
+                sign * (-velocity.abs() / (STRIBECK * reach.speed)).exp()
+            }
+            Self::Load => sign * torque.abs(),
+            Self::Acceleration => acceleration,
+            Self::Position => position,
+            Self::PositionSign => position * sign,
+            Self::Cosine => position.cos(),
+            Self::Sine => position.sin(),
+            Self::Time => time,
+            Self::TimeSign => time * sign,
+            Self::Stribeck | Self::Waves => 0.0,
+        }
+    }
+}

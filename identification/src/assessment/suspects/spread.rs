@@ -1,0 +1,143 @@
+//! How far the scores of suspects stray by chance, told as for a parameter of the model (see the module
+//! `estimation::intervals::scores`): the suspects' columns, freed of the model's, count as columns of it.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{columns::Layout, scaled::Scaled, sections::RunScores};
+
+/// Columns of a group, freed of those of the model by B and then orthonormal: z⊥ = (z - W B) Mᵀ.
+pub(super) struct Freed<'a> {
+    pub(super) layout: &'a Layout,
+    /// Columns of the model, and their Gram matrix.
+    pub(super) selected: &'a [usize],
+    pub(super) gram: &'a Scaled,
+    /// The block of the group, and the columns within it.
+    pub(super) block: usize,
+    pub(super) told: &'a [usize],
+    /// B, columns of the model x columns of the group.
+    pub(super) solved: &'a DMatrix<f64>,
+    /// M.
+    pub(super) white: &'a DMatrix<f64>,
+}
+
+/// What one run adds, as sums over cosines.
+pub(super) struct Share {
+    /// Wᵀ z⊥, z⊥ᵀ z⊥ and z⊥ᵀ ρ for each cosine.
+    fitted: Vec<DMatrix<f64>>,
+    own: Vec<DMatrix<f64>>,
+    scores: Vec<DVector<f64>>,
+    cosines: usize,
+}
+
+/// The covariance of the scores, and its degrees of freedom.
+pub(super) struct Spread {
+    pub(super) covariance: DMatrix<f64>,
+    pub(super) freedom: f64,
+}
+
+impl Freed<'_> {
+    /// What a run adds; the columns are zero in a run to which they are not `inside`.
+    pub(super) fn share(&self, run: &RunScores, inside: bool) -> Share {
+        let count = 2 * run.cosines + 1;
+        let mut share = Share {
+            fitted: Vec::with_capacity(count),
+            own: Vec::with_capacity(count),
+            scores: Vec::with_capacity(count),
+            cosines: run.cosines,
+        };
+        let columns: Vec<usize> = self.columns().collect();
+        let turned = self.white.transpose();
+        let (p, width) = self.solved.shape();
+        for m in 0..count {
+            let rows = run.cross(self.layout, m).select_rows(self.selected);
+            let mut fitted = -rows.select_columns(self.selected) * self.solved;
+            let mut own = DMatrix::zeros(width, width);
+            let all = run.scores().column(m);
+            let mut score = DVector::zeros(width);
+            if inside {
+                let cross = rows.select_columns(&columns);
+                own -= cross.tr_mul(self.solved);
+                fitted += cross;
+                let block = run.own(self.layout, self.block, m);
+                own += block.select_rows(self.told).select_columns(self.told);
+                score += all.select_rows(&columns);
+            }
+            own -= self.solved.tr_mul(&fitted);
+            score -= self.solved.tr_mul(&all.select_rows(self.selected));
+            debug_assert_eq!(fitted.nrows(), p);
+            share.fitted.push(fitted * &turned);
+            share.own.push(self.white * own * &turned);
+            share.scores.push(self.white * score);
+        }
+        share
+    }
+
+    /// The columns of the group among all.
+    fn columns(&self) -> impl Iterator<Item = usize> {
+        let first = self.layout.blocks[self.block].start;
+        self.told.iter().map(move |column| first + column)
+    }
+
+    /// The covariance of all runs' scores together, were the suspects there by `sizes`.
+    pub(super) fn spread(&self, shares: &[Share], sizes: &DVector<f64>) -> Option<Spread> {
+        let width = sizes.len();
+        let mut covariance = DMatrix::zeros(width, width);
+        let mut moments = vec![(0.0, 0.0); width];
+        for share in shares {
+            let count = share.cosines;
+            let sums = DMatrix::from_columns(
+                &(1..=count)
+                    .map(|b| &share.scores[b] - &share.own[b] * sizes)
+                    .collect::<Vec<_>>(),
+            );
+            // The cosines of the covariance have the mean square 1.
+            covariance += 2.0 * &sums * sums.transpose() / count as f64;
+            for (i, (expected, squares)) in moments.iter_mut().enumerate() {
+                let white = self.under_white_noise(share, i);
+                *expected += white.trace() / count as f64;
+                *squares += white.norm_squared() / (count * count) as f64;
+            }
+        }
+        let sound = |(expected, squares): &(f64, f64)| *expected > 0.0 && *squares > 0.0;
+        if !moments.iter().all(sound) {
+            return None;
+        }
+        for (i, (expected, _)) in moments.iter().enumerate() {
+            let factor = 1.0 / expected.sqrt();
+            covariance.row_mut(i).scale_mut(factor);
+            covariance.column_mut(i).scale_mut(factor);
+        }
+        let freedoms = moments.iter().map(|(mean, squares)| mean * mean / squares);
+        let freedom = freedoms.fold(f64::INFINITY, f64::min);
+        Some(Spread {
+            covariance,
+            freedom,
+        })
+    }
+
+    /// C of column i: the covariance of its sums over cosines, had the residual been white noise of unit
+    /// variance before the fit.
+    fn under_white_noise(&self, share: &Share, i: usize) -> DMatrix<f64> {
+        let count = share.cosines;
+        let root = std::f64::consts::SQRT_2;
+        let of = |all: &[DMatrix<f64>]| {
+            let columns: Vec<DVector<f64>> =
+                (1..=count).map(|b| all[b].column(i).scale(root)).collect();
+            DMatrix::from_columns(&columns)
+        };
+        let (model, group) = (self.gram.white(&of(&share.fitted)), of(&share.own));
+        let taken = model.tr_mul(&model) + group.tr_mul(&group);
+        let spectrum = |m: usize| share.own[m][(i, i)];
+        DMatrix::from_fn(count, count, |a, b| {
+            spectrum(a.abs_diff(b)) + spectrum(a + b + 2) - taken[(a, b)]
+        })
+    }
+}
+
+/// The scores of all runs together.
+pub(super) fn score(shares: &[Share], width: usize) -> DVector<f64> {
+    let start = DVector::zeros(width);
+    shares
+        .iter()
+        .fold(start, |sum, share| sum + &share.scores[0])
+}
