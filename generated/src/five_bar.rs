@@ -216,6 +216,11 @@ impl FiveBar {
         let s1_right_minus_s1_left = s1_right - s1_left;
         let t2 = L_1 * s1_right_minus_s1_left;
         let t3 = t1 * t1 + t2 * t2;
+        ::overact::guard::platform(
+            t3,
+            0.17842702766001217,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t4 = (L_2_SQUARED - L_2 * t3) / t3;
         ::overact::guard::reach(t4, "left")?;
         let t5 = ::overact::math::sqrt(t4);
@@ -249,6 +254,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -261,6 +267,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -314,6 +321,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -324,6 +332,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -367,6 +376,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -381,6 +391,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -465,6 +476,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -479,6 +491,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -664,6 +677,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -687,6 +701,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -744,6 +759,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -778,6 +794,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -854,6 +871,7 @@ impl FiveBar {
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -863,6 +881,7 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         ::overact::guard::reach(h_squared_right, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
@@ -959,6 +978,7 @@ impl FiveBar {
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -968,6 +988,7 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         ::overact::guard::reach(h_squared_right, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
@@ -1054,6 +1075,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
@@ -1107,6 +1129,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
@@ -1459,6 +1482,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
@@ -1482,6 +1506,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
@@ -1709,6 +1734,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -1741,6 +1767,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -2105,6 +2132,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -2121,6 +2149,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -2345,6 +2374,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
@@ -2374,6 +2404,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
@@ -2659,6 +2690,7 @@ impl FiveBar {
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
@@ -2666,6 +2698,7 @@ impl FiveBar {
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         ::overact::guard::reach(h_squared_right, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
@@ -2852,6 +2885,7 @@ impl FiveBar {
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -2861,6 +2895,7 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         ::overact::guard::reach(h_squared_right, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
@@ -3174,6 +3209,7 @@ impl FiveBar {
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -3183,6 +3219,7 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         ::overact::guard::reach(h_squared_right, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
@@ -3364,6 +3401,7 @@ impl FiveBar {
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -3373,6 +3411,7 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         ::overact::guard::reach(h_squared_right, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
@@ -3455,6 +3494,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -3518,6 +3558,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -3841,6 +3882,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -3855,6 +3897,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -4064,6 +4107,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -4088,6 +4132,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
@@ -4199,6 +4244,7 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
@@ -4261,6 +4307,7 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;

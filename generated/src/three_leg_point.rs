@@ -230,6 +230,11 @@ impl ThreeLegPoint {
         let t2 = HALF_RADIUS + L_1 * (0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2)
             + radius_plus_l_1_c1_leg1;
         let t3 = t1 * t1 + t2 * t2;
+        ::overact::guard::platform(
+            t3,
+            0.17280000001530707,
+            ::overact::ActuatorGroup::All,
+        )?;
         let t4 = (L_1_SQUARED - 0.25 * t3) / t3;
         ::overact::guard::reach(t4, "leg1")?;
         let t5 = ::overact::math::sqrt(t4);
@@ -263,6 +268,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -279,6 +285,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -289,6 +296,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -347,6 +355,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -361,6 +370,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -369,6 +379,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -415,6 +426,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -432,6 +444,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -446,6 +459,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -543,6 +557,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -562,6 +577,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -579,6 +595,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -788,6 +805,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -815,6 +833,7 @@ impl ThreeLegPoint {
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -842,6 +861,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -903,6 +923,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -941,6 +962,7 @@ impl ThreeLegPoint {
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -980,6 +1002,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -1069,12 +1092,14 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -1082,6 +1107,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -1202,6 +1228,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -1209,6 +1236,7 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -1232,6 +1260,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -1328,6 +1357,7 @@ impl ThreeLegPoint {
         let half_x = 0.5 * pose[0];
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -1375,6 +1405,7 @@ impl ThreeLegPoint {
         let t2_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -1421,6 +1452,7 @@ impl ThreeLegPoint {
         let t2_leg3 = pose[0] - 0.3031088913245535;
         let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -1741,6 +1773,7 @@ impl ThreeLegPoint {
         let half_x = 0.5 * pose[0];
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -1758,6 +1791,7 @@ impl ThreeLegPoint {
         let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -1784,6 +1818,7 @@ impl ThreeLegPoint {
         let t2_leg3 = pose[0] - 0.3031088913245535;
         let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -2024,6 +2059,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -2057,6 +2093,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -2123,6 +2160,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -2450,6 +2488,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -2468,6 +2507,7 @@ impl ThreeLegPoint {
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -2484,6 +2524,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -2740,6 +2781,7 @@ impl ThreeLegPoint {
         let half_x = 0.5 * pose[0];
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -2772,6 +2814,7 @@ impl ThreeLegPoint {
         let t2_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -2807,6 +2850,7 @@ impl ThreeLegPoint {
         let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
         let d_y_leg3 = half_x + t1_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -3121,6 +3165,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -3128,6 +3173,7 @@ impl ThreeLegPoint {
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -3140,6 +3186,7 @@ impl ThreeLegPoint {
         let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
         let d_y_leg3 = half_x + t1_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -3371,6 +3418,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -3378,6 +3426,7 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -3425,6 +3474,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -3751,6 +3801,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -3758,6 +3809,7 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -3774,6 +3826,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -4006,12 +4059,14 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -4019,6 +4074,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -4102,14 +4158,17 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -4184,6 +4243,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -4244,6 +4304,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -4302,6 +4363,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -4643,6 +4705,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -4661,6 +4724,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -4677,6 +4741,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -4966,6 +5031,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -4973,6 +5039,7 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -5000,6 +5067,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -5178,6 +5246,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -5185,6 +5254,7 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
@@ -5232,6 +5302,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -5334,6 +5405,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -5352,6 +5424,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -5368,6 +5441,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -5553,6 +5627,11 @@ impl ThreeLegPoint {
         let minus_normal_1_1 = g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7;
         let normal_3_1 = 1.0 - (g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6);
         let norm_1 = ::overact::math::sqrt(normal_3_1);
+        ::overact::guard::platform(
+            norm_1,
+            0.5773502691896258,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_norm_1 = 1.0 / norm_1;
         let minus_normal_2_1 = g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6;
         ::core::result::Result::Ok([
@@ -5592,6 +5671,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -5609,6 +5689,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -5623,6 +5704,7 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
@@ -5696,6 +5778,7 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
@@ -5726,6 +5809,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
@@ -5735,6 +5819,7 @@ impl ThreeLegPoint {
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg2 = L_1 / det_leg2;
@@ -5769,6 +5854,11 @@ impl ThreeLegPoint {
         let minus_normal_1_1 = g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2;
         let normal_3_1 = 1.0 - (g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1);
         let norm_1 = ::overact::math::sqrt(normal_3_1);
+        ::overact::guard::platform(
+            norm_1,
+            0.5773502691896258,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_norm_1 = 1.0 / norm_1;
         let minus_normal_2_1 = g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1;
         ::core::result::Result::Ok([

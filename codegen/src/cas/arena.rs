@@ -68,6 +68,22 @@ pub enum Op {
     Atan2(Handle, Handle),
 }
 
+impl Op {
+    /// What it is computed from.
+    pub(crate) fn operands(&self) -> impl Iterator<Item = Handle> + use<> {
+        let (first, second) = match *self {
+            Self::Constant(_) | Self::Symbol(_) | Self::Cosine(_) | Self::Sine(_) => (None, None),
+            Self::Sqrt(a) | Self::Sign(a) => (Some(a), None),
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Mul(a, b)
+            | Self::Div(a, b)
+            | Self::Atan2(a, b) => (Some(a), Some(b)),
+        };
+        first.into_iter().chain(second)
+    }
+}
+
 /// The two random points of the field and the real point at which every node is evaluated.
 const POINTS: usize = 2;
 

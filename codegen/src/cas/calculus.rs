@@ -48,13 +48,7 @@ impl<'a> Expr<'a> {
             if !seen.insert(index) {
                 continue;
             }
-            match self.arena().op(index) {
-                Op::Symbol(_) | Op::Constant(_) | Op::Cosine(_) | Op::Sine(_) => {}
-                Op::Sqrt(a) | Op::Sign(a) => open.push(a.index()),
-                Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Atan2(a, b) => {
-                    open.extend([a.index(), b.index()]);
-                }
-            }
+            open.extend(self.arena().op(index).operands().map(Handle::index));
         }
         seen
     }

@@ -18,6 +18,7 @@ pub mod angle;
 pub mod arena;
 pub mod calculus;
 pub mod direction;
+mod divisors;
 pub mod expr;
 pub mod field;
 pub(crate) mod hasher;

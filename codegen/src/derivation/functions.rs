@@ -1,5 +1,6 @@
 //! The functions that every robot has, as named inputs and output expressions.
 
+use super::divisors;
 use super::elimination::Rows;
 use super::forward_kinematics::closed_form;
 use super::guard::{Guard, GuardKind};
@@ -22,6 +23,8 @@ pub struct Derived<'a> {
     pub entries: Vec<Expr<'a>>,
     /// Conditions for the output to have a value.
     pub guards: Vec<Guard<'a>>,
+    /// Conditions on all that the output divides by.
+    pub divisors: Vec<Guard<'a>>,
 }
 
 impl Derived<'_> {
@@ -54,9 +57,30 @@ pub fn derive<'a>(
     function: Function,
     from: MotionInput,
 ) -> Result<Derived<'a>, Underivable> {
-    if function == Function::PoseInClosedForm {
-        return pose_in_closed_form(arena, mechanism);
+    let mut derived = if function == Function::PoseInClosedForm {
+        pose_in_closed_form(arena, mechanism)?
+    } else {
+        on_sheet(arena, mechanism, selection, function, from)?
+    };
+    derived.divisors = divisors::conditions(arena, mechanism, &derived);
+    let singular = |guard: &&Guard<'_>| guard.kind.home().is_some_and(|home| !home.is_finite());
+    let mut guards = derived.guards.iter().chain(&derived.divisors);
+    match guards.find(singular) {
+        Some(guard) => Err(Underivable::SingularHome {
+            leg: guard.leg.clone(),
+        }),
+        None => Ok(derived),
     }
+}
+
+/// A function of the configuration.
+fn on_sheet<'a>(
+    arena: &'a Arena,
+    mechanism: &'a Mechanism,
+    selection: &Selection,
+    function: Function,
+    from: MotionInput,
+) -> Result<Derived<'a>, Underivable> {
     let mut sheet = Sheet::new(arena, mechanism, selection, from)?;
     let rows = sheet.rows(function)?;
     sheet.robot.give_names();
@@ -68,6 +92,7 @@ pub fn derive<'a>(
         shape,
         entries: rows.concat(),
         guards,
+        divisors: Vec::new(),
     })
 }
 
@@ -87,6 +112,7 @@ fn pose_in_closed_form<'a>(
         shape: (found.pose.len(), 1),
         entries: found.pose,
         guards: guards.collect(),
+        divisors: Vec::new(),
     })
 }
 

@@ -30,3 +30,14 @@ pub enum GuardKind {
         actuators: ActuatorGroup,
     },
 }
+
+impl GuardKind {
+    /// The magnitude at home against which a value is small; none where the sign matters.
+    #[must_use]
+    pub const fn home(&self) -> Option<f64> {
+        match self {
+            Self::Reach => None,
+            Self::Leg(home) | Self::Platform { home, .. } => Some(*home),
+        }
+    }
+}

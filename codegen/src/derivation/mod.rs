@@ -21,6 +21,7 @@ mod closed_forms;
 mod closure;
 mod configuration;
 mod derivable;
+mod divisors;
 mod dynamics;
 mod elimination;
 mod forward_kinematics;
@@ -50,7 +51,7 @@ mod underivable;
 
 pub(crate) use derivable::derivable;
 pub use functions::{Derived, derive};
-pub(crate) use guard::GuardKind;
+pub(crate) use guard::{Guard, GuardKind};
 pub use inventory::{function_name, inventory};
 pub use motion_input::MotionInput;
 pub(crate) use orientation::station_count;

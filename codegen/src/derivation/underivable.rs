@@ -19,6 +19,11 @@ pub enum Underivable {
         /// Name of the leg.
         leg: String,
     },
+    /// Something that the equations of a leg are divided by has no value at home.
+    SingularHome {
+        /// Name of the leg; of none if it is the platform's.
+        leg: String,
+    },
     /// The Jacobian of the kept actuators has no structural inverse.
     SingularPartition,
     /// A bug of the generator.
@@ -53,6 +58,16 @@ impl Underivable {
                 let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
                 Diagnostic::new(format!("leg `{leg}` is singular in every configuration"), span)
                 .help("its joint rates are never determined by the platform's motion: check attachment and axes")
+            }
+            Self::SingularHome { leg } => {
+                let platform = || description.platform.as_ref().map(|p| p.motion.span.clone());
+                let (what, span) = match place(leg) {
+                    Some(place) => (format!("leg `{leg}`"), Some(place.span.clone())),
+                    None => ("the robot".to_owned(), platform()),
+                };
+                let span = span.unwrap_or_else(|| description.name.span.clone());
+                Diagnostic::new(format!("{what} is singular at the home configuration"), span)
+                    .help("choose a home pose where no leg is stretched or folded and the actuators hold the platform")
             }
             Self::SingularPartition => Diagnostic::new(
                 "the kept actuators of case 2 never determine the platform's motion",
@@ -92,5 +107,12 @@ mod tests {
         }
         let other = Underivable::ForwardKinematics.locate(&description);
         assert!(other.internal().is_none());
+        let leg = String::new();
+        let home = Underivable::SingularHome { leg }.locate(&description);
+        assert!(home.internal().is_none());
+        assert!(
+            home.render_plain(&source)
+                .contains("is singular at the home configuration")
+        );
     }
 }

@@ -117,7 +117,7 @@ impl Item<'_, '_> {
         };
         match outcome.and_then(|value| {
             value
-                .checked()
+                .of_a_robot()
                 .map_err(|f| Failure::Fault(f, 0..usize::MAX))
         }) {
             Ok(value) => Some(value),

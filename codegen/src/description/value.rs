@@ -34,6 +34,12 @@ impl Fault {
 
 const TOO_LARGE: &str = "the value is too large";
 
+/// Largest magnitude of a value, SI: products of a few lengths, masses and accelerations stay numbers.
+const LARGEST: f64 = 1e30;
+
+/// Smallest magnitude of a value that is not zero, SI: so do their reciprocals.
+const SMALLEST: f64 = 1e-50;
+
 /// The value of an expression.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Value {
@@ -82,6 +88,20 @@ impl Value {
             Ok(self)
         } else {
             Err(Fault::new(TOO_LARGE))
+        }
+    }
+
+    /// The value itself, if it is of a magnitude that a robot may have.
+    pub(super) fn of_a_robot(self) -> Result<Self, Fault> {
+        let size = self.scalar.value().abs();
+        let fault = |what: &str| {
+            let help = format!("in SI units numbers go from {SMALLEST:e} to {LARGEST:e}");
+            Err(Fault::new(what).help(help))
+        };
+        match size {
+            0.0 | SMALLEST..=LARGEST => self.checked(),
+            size if size < SMALLEST => fault("the value is too small"),
+            _ => fault(TOO_LARGE),
         }
     }
 

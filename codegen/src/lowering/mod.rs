@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | `dag/from_arena` | expressions in their arena | a graph of signed nodes, each with its fingerprint and origin |
 //! | `passes` | that graph | the same values in fewer operations; the list of passes stands there |
+//! | `divisors` | that graph | the same with a guard on all that is divided by |
 //! | `schedule` | that graph | the [`Program`], operands first |
 //!
 //! What nothing needs is never seen. How far the passes go is said by [`SearchLimits`]. What must hold of a
@@ -16,6 +17,7 @@
 //! program, which [`evaluation`](crate::evaluation) evaluates.
 
 mod dag;
+mod divisors;
 mod limits;
 mod passes;
 mod program;
@@ -50,6 +52,9 @@ pub struct Expressions<'a> {
     pub entries: &'a [Expr<'a>],
     /// Conditions; one is kept if the program divides by its value or takes its root.
     pub guards: Vec<GuardedExpr<'a>>,
+    /// Conditions on all that the entries divide by. They hold no node in the search: what the program
+    /// still divides by in the end is guarded.
+    pub divisors: Vec<GuardedExpr<'a>>,
 }
 
 /// Lowers the expressions of one function. Forms are compared at the `states`.
@@ -67,6 +72,7 @@ pub fn lower<'a>(
         dag.measure_digits(states);
     }
     passes::run(&mut dag, limits)?;
+    divisors::guard(&mut dag, arena, &function.divisors)?;
     dag.name_values(|fingerprint| arena.name_of_value(fingerprint));
     let program = schedule::schedule(&dag, &function.inputs, &function.output)?;
     let broken = |broken| InternalError::new("schedule", broken);

@@ -72,6 +72,8 @@ pub enum HomeError {
 const CLOSED: f64 = 1e-10;
 /// Condition number of a leg's Jacobian above which the leg counts as singular.
 const SINGULAR: f64 = 1e7;
+/// Condition number above which a leg is looked at more closely.
+const DOUBTFUL: f64 = 1e3;
 /// Largest entry of the shared rows of a leg's Jacobian, relative to that of all rows, below which the
 /// shared rows are zero.
 const ROUNDING: f64 = 1e-10;
@@ -122,8 +124,14 @@ enum Failure {
     Singular(f64),
 }
 
-/// Damped Gauss-Newton on all closure equations of a leg: where it ends, and the largest remaining error.
-fn iterate(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> (Vec<f64>, f64) {
+/// Damped Gauss-Newton on all closure equations of a leg, until the largest remaining error is below
+/// `closed`: where it ends, and that error.
+fn iterate(
+    leg: &Leg,
+    start: &[f64],
+    target: &nalgebra::Isometry3<f64>,
+    closed: f64,
+) -> (Vec<f64>, f64) {
     let mut q = start.to_vec();
     let mut gap = f64::INFINITY;
     let mut damping = 1e-6;
@@ -138,7 +146,7 @@ fn iterate(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> (Vec<
         if gap < PROGRESS * best {
             (best, since) = (gap, step);
         }
-        if gap < CLOSED || step > since + PATIENCE {
+        if gap < closed || step > since + PATIENCE {
             break;
         }
         let jacobian = leg.closure_jacobian(&q);
@@ -168,23 +176,33 @@ fn iterate(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> (Vec<
 
 /// Joint positions that close a leg and at which it is regular.
 fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<Vec<f64>, Failure> {
-    let (q, gap) = iterate(leg, start, target);
+    let (q, gap) = iterate(leg, start, target, CLOSED);
     if gap.is_nan() || gap >= CLOSED {
         return Err(Failure::Open(gap));
     }
-    let jacobian = leg.closure_jacobian(&q);
-    // An end that does not move along the axes that it shares has rounding for a Jacobian, which may be
-    // well conditioned.
-    let is_rounding = jacobian.amax() < ROUNDING * leg.end_jacobian(&q).amax();
-    let condition = if is_rounding {
-        f64::INFINITY
-    } else {
-        condition(&jacobian)
-    };
+    let mut condition = condition_of_closure(leg, &q);
+    // The gap of a leg that has to be stretched goes with the square of its bend: it closes while it is still
+    // bent, and shows what it is only where the gap gets no smaller.
+    if condition > DOUBTFUL {
+        let (end, _) = iterate(leg, &q, target, 0.0);
+        condition = condition.max(condition_of_closure(leg, &end));
+    }
     if q.len() > leg.shared_components().len() || condition.is_nan() || condition >= SINGULAR {
         return Err(Failure::Singular(condition));
     }
     Ok(q)
+}
+
+/// Condition number of a leg's closure at some joint positions.
+fn condition_of_closure(leg: &Leg, joints: &[f64]) -> f64 {
+    let jacobian = leg.closure_jacobian(joints);
+    // An end that does not move along the axes that it shares has rounding for a Jacobian, which may be
+    // well conditioned.
+    if jacobian.amax() < ROUNDING * leg.end_jacobian(joints).amax() {
+        f64::INFINITY
+    } else {
+        condition(&jacobian)
+    }
 }
 
 /// Joint positions that close a leg and at which it is regular, wherever the iteration ends.
@@ -198,7 +216,7 @@ pub(super) fn close_anywhere(
 
 /// How near the iteration brings a leg's end to its target (m, rad).
 pub(super) fn nearest(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> f64 {
-    let (q, _) = iterate(leg, start, target);
+    let (q, _) = iterate(leg, start, target, CLOSED);
     leg.closure_error(&q, target).norm()
 }
 

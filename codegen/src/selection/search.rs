@@ -2,7 +2,7 @@
 //! the digits of their forms.
 
 use crate::cas::{Arena, InputElement};
-use crate::derivation::{Derived, GuardKind};
+use crate::derivation::{Derived, Guard, GuardKind};
 use crate::diagnostic::InternalError;
 use crate::effort::Effort;
 use crate::lowering::{
@@ -75,7 +75,8 @@ impl Search {
             inputs: inputs(derived),
             output: output(function, derived.shape),
             entries: &derived.entries,
-            guards: guards(derived),
+            guards: guards(&derived.guards),
+            divisors: guards(&derived.divisors),
         };
         let states = States {
             home: &|element| mechanism.home.input(element),
@@ -116,17 +117,17 @@ fn output(function: Function, (rows, columns): (usize, usize)) -> Array {
     }
 }
 
-fn guards<'a>(derived: &Derived<'a>) -> Vec<GuardedExpr<'a>> {
+fn guards<'a>(guards: &[Guard<'a>]) -> Vec<GuardedExpr<'a>> {
     let condition = |kind: GuardKind, leg: String| match kind {
         GuardKind::Reach => Condition::Reach { leg },
         GuardKind::Leg(home) => Condition::Leg { leg, home },
         GuardKind::Platform { home, actuators } => Condition::Platform { actuators, home },
     };
-    let guards = derived.guards.iter().map(|guard| GuardedExpr {
+    let guarded = guards.iter().map(|guard| GuardedExpr {
         value: guard.value,
         condition: condition(guard.kind, guard.leg.clone()),
     });
-    guards.collect()
+    guarded.collect()
 }
 
 /// The value of an element of an input array at a state.

@@ -1,11 +1,12 @@
 //! Every robot of `robots/`, compiled and evaluated: against the numeric reference, against the energy,
-//! against the recursive Newton-Euler algorithm, at singularities, the ranks of its regressor, and backend
-//! against backend for every kind of input.
+//! against the recursive Newton-Euler algorithm, at singularities and where something is exactly zero, the
+//! ranks of its regressor, and backend against backend for every kind of input.
 //!
 //! One binary, so that each robot is derived once for all of these.
 
 mod agreement;
 mod contract;
+mod finite;
 mod newton_euler;
 mod power;
 mod ranks;

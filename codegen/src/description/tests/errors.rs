@@ -92,6 +92,14 @@ fn expressions() {
         ),
         ("d = \"1e400 m\"", "6:6 this is no number in range"),
         ("d = \"1e200 * 1e200\"", "6:6 the value is too large"),
+        (
+            "d = 1e31",
+            "6:5 the value is too large; in SI units numbers go from 1e-50 to 1e30",
+        ),
+        (
+            "d = \"-1e-51 m\"",
+            "6:5 the value is too small; in SI units numbers go from 1e-50 to 1e30",
+        ),
         ("d = inf", "6:5 this number is out of range"),
         (
             "d = \"2^0.5\"",

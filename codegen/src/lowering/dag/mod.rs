@@ -185,6 +185,12 @@ impl Dag {
         self.guards.push(guard);
     }
 
+    /// Puts a condition on a node before a guard that is there, as errors are told in the guards' order.
+    pub(crate) fn insert_guard(&mut self, at: usize, guard: GuardedEdge) {
+        self.hold(guard.value.node());
+        self.guards.insert(at, guard);
+    }
+
     /// Lets guards go.
     pub(crate) fn retain_guards(&mut self, is_kept: impl Fn(&GuardedEdge) -> bool) {
         let guards = std::mem::take(&mut self.guards);

@@ -1,7 +1,7 @@
 //! Rough homes of a leg that are as good as any other are all accepted: singular values are nearly
 //! equal at some of them, which is no defect of the leg.
 
-use super::said;
+use super::{assert_said, changed, said};
 use crate::cas::Stream;
 
 const HEXAPOD: &str = include_str!("../../../../cli/templates/spatial-6ups.toml");
@@ -33,4 +33,19 @@ fn rough_homes_near_the_wanted_one_are_accepted() {
         ];
         assert_eq!(said(&hexapod(home)), "a robot", "{home:?}");
     }
+}
+
+#[test]
+fn a_leg_that_is_exactly_stretched_at_home_is_refused() {
+    let five_bar = include_str!("../../../../robots/five_bar.toml");
+    // The length of an arm is 0.45 m, and the motors are 0.2 m apart.
+    let stretched = (0.45_f64.powi(2) - 0.1_f64.powi(2)).sqrt();
+    let home = |y: f64| changed(five_bar, &[("y = \"0.30 m\"", &format!("y = {y}"))]);
+    let expected = [
+        "leg `left` is singular at the home configuration",
+        "leg `right` is singular at the home configuration",
+        "neither stretched nor folded",
+    ];
+    assert_said(&home(stretched), "45:1", &expected);
+    assert_eq!(said(&home(stretched - 1e-6)), "a robot");
 }

@@ -1,0 +1,50 @@
+//! What expressions divide by.
+
+use super::arena::{Arena, Handle, Op};
+use super::expr::Expr;
+use std::collections::BTreeSet;
+
+impl Arena {
+    /// What is divided by anywhere in some expressions, constants left out: each divisor once, in the order
+    /// in which they were built.
+    #[must_use]
+    pub fn divisors(&self, expressions: &[Expr<'_>]) -> Vec<Expr<'_>> {
+        let mut stack: Vec<usize> = expressions.iter().map(|e| e.handle().index()).collect();
+        let (mut seen, mut divisors) = (vec![false; self.len()], BTreeSet::new());
+        while let Some(index) = stack.pop() {
+            if std::mem::replace(&mut seen[index], true) {
+                continue;
+            }
+            let op = self.op(index);
+            if let Op::Div(_, by) = op
+                && !self.is_constant(by)
+            {
+                divisors.insert(by.positive());
+            }
+            stack.extend(op.operands().map(Handle::index));
+        }
+        divisors.into_iter().map(|by| self.expr(by)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn divisors_are_found_wherever_they_stand() {
+        let arena = Arena::new();
+        let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| arena.input(name, 0));
+        let inner = a / (b + c);
+        let all = [(inner + d).sqrt() / c, inner * arena.integer(2) / d, a * b];
+        let found: Vec<usize> = all
+            .iter()
+            .flat_map(|e| arena.divisors(&[*e]))
+            .map(|e| e.handle().index())
+            .collect();
+        let expected = [c, b + c, d, b + c].map(|e| e.handle().index());
+        assert_eq!(found, expected);
+        assert_eq!(arena.divisors(&all).len(), 3);
+        assert_eq!(arena.divisors(&all[2..]), []);
+    }
+}

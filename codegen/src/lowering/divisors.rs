@@ -1,0 +1,85 @@
+//! A guard on everything that a program divides by.
+//!
+//! The guards that hold their nodes during the search are those that mean something to a reader. When the
+//! search is over, whatever else is divided by is guarded too, so that no configuration gives 0/0. No
+//! operation is added: a divisor is computed anyway.
+
+use super::dag::{Dag, Definition, Edge, GuardedEdge};
+use super::{Condition, GuardedExpr};
+use crate::cas::Arena;
+use crate::diagnostic::InternalError;
+
+/// Puts the `conditions` on those divisors that no guard is on.
+///
+/// # Errors
+/// A divisor that has no condition.
+pub(super) fn guard(
+    dag: &mut Dag,
+    arena: &Arena,
+    conditions: &[GuardedExpr<'_>],
+) -> Result<(), InternalError> {
+    let mut open = dag.divisors();
+    open.retain(|&node| !is_never_zero(dag, node));
+    for GuardedExpr { value, condition } in conditions {
+        let wanted = arena.fingerprint_at(value.handle().index());
+        let is_meant = |node: &usize| {
+            let found = dag.fingerprint(Edge::to(*node));
+            found.agrees(&wanted) || (-found).agrees(&wanted)
+        };
+        let Some(at) = open.iter().position(is_meant) else {
+            continue;
+        };
+        let node = open.remove(at);
+        let place = place(dag, node, condition);
+        let guard = GuardedEdge {
+            value: Edge::to(node),
+            condition: condition.clone(),
+        };
+        dag.insert_guard(place, guard);
+    }
+    match open.first() {
+        None => Ok(()),
+        Some(node) => Err(InternalError::new(
+            "divisors",
+            format!("node {node} is divided by and has no condition"),
+        )),
+    }
+}
+
+/// Whether a divisor is a constant, or guarded already. What may only not be negative may be zero.
+fn is_never_zero(dag: &Dag, node: usize) -> bool {
+    let is_guarded = dag.guards().iter().any(|guard| {
+        guard.value.node() == node && !matches!(guard.condition, Condition::Reach { .. })
+    });
+    is_guarded || matches!(dag.definition(node), Definition::Constant(_))
+}
+
+/// Where the guard of a divisor stands: before the first guard whose value is computed from it, so that a
+/// quotient without value is told as what it is; else after those of the same leg.
+fn place(dag: &Dag, node: usize, condition: &Condition) -> usize {
+    let guards = dag.guards();
+    let needs = |guard: &GuardedEdge| dag.needed([guard.value.node()].into_iter())[node];
+    if let Some(at) = guards.iter().position(needs) {
+        return at;
+    }
+    let own = guards
+        .iter()
+        .rposition(|guard| leg(&guard.condition) == leg(condition));
+    let of_platform = || {
+        guards
+            .iter()
+            .position(|guard| leg(&guard.condition).is_none())
+    };
+    match own {
+        Some(at) => at + 1,
+        None => of_platform().unwrap_or(guards.len()),
+    }
+}
+
+/// The leg that a condition is about.
+fn leg(condition: &Condition) -> Option<&str> {
+    match condition {
+        Condition::Reach { leg } | Condition::Leg { leg, .. } => Some(leg),
+        Condition::Platform { .. } => None,
+    }
+}
