@@ -77,6 +77,11 @@ pub struct Settings {
     /// Velocity of a joint (rad/s or m/s) below which its Coulomb friction counts as zero: around
     /// standstill the sign of a measured velocity is noise. 0 is no dead band.
     pub velocity_dead_band: f64,
+    /// Velocities of the actuators' joints (rad/s or m/s), one for each, below which the decimated equation of
+    /// this joint is left out: there its friction is none that has a coefficient. Empty leaves none out. For
+    /// robots without redundancy, whose equations are those of their joints.
+    #[serde(default)]
+    pub standstill_velocity: Vec<f64>,
     /// Whether Coulomb columns take the mean sign of the joint's velocity over a sampling interval, not
     /// the sign at the sample: then the time of a reversal counts to a fraction of the interval.
     pub averaged_reversals: bool,
@@ -124,6 +129,7 @@ impl Settings {
             skip_start: 0,
             skip_end: 0,
             velocity_dead_band: 0.0,
+            standstill_velocity: Vec::new(),
             averaged_reversals: false,
             r_sigma: 10.0,
             keep_significant: false,
@@ -206,6 +212,7 @@ impl Settings {
                 .help("choose about three times the noise of the velocities, or 0 for none"),
             );
         }
+        problems.extend(self.check_standstill(info));
         if self.r_sigma.is_nan() || self.r_sigma <= 1.0 {
             problems.push(
                 Problem::new(format!(
@@ -219,6 +226,30 @@ impl Settings {
             problems.extend(check_partition(&self.kept_actuators, info));
         }
         Error::check(problems)
+    }
+
+    /// What is wrong with the velocities of standstill.
+    fn check_standstill(&self, info: &Info<'_>) -> Option<Problem> {
+        let (limits, actuators) = (&self.standstill_velocity, info.sizes.actuators);
+        if limits.is_empty() {
+            return None;
+        }
+        if actuators > info.sizes.dof {
+            let message = "equations can't be left out at a joint's standstill: those of a redundant robot are not those of single joints";
+            let help = "leave out `standstill_velocity`; `velocity_dead_band` serves any robot";
+            return Some(Problem::new(message).help(help));
+        }
+        if limits.len() != actuators {
+            let message = format!(
+                "there are {} velocities of standstill for {actuators} actuator{}",
+                limits.len(),
+                if actuators == 1 { "" } else { "s" }
+            );
+            return Some(Problem::new(message).help("give one for each actuator, or none"));
+        }
+        let mut limits = limits.iter();
+        let bad = limits.find(|limit| !(limit.is_finite() && **limit >= 0.0))?;
+        Some(Problem::new(format!("a velocity of standstill is {bad}")))
     }
 }
 

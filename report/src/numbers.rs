@@ -22,6 +22,10 @@ pub fn numbers(identification: &Identification) -> Result<String, Error> {
         rows.add("run", "", "sampling_frequency", run.sampling_frequency);
         rows.add("run", "", "payload", f64::from(u8::from(run.payload)));
         rows.add("run", "", "closure_residual", run.closure_residual);
+        if !run.standstill_equations.is_empty() {
+            let still: usize = run.standstill_equations.iter().sum();
+            rows.add("run", "", "standstill_equations", still as f64);
+        }
     }
     rows.run = "";
     for base in &identification.base_parameters {

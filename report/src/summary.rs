@@ -43,8 +43,14 @@ fn headline(identification: &Identification) -> String {
         .map(|run| run.samples as f64 / run.sampling_frequency);
     let seconds: f64 = seconds.sum();
     let runs = identification.runs.len();
+    let still = identification.runs.iter();
+    let still: usize = still.flat_map(|run| &run.standstill_equations).sum();
+    let left_out = match still {
+        0 => String::new(),
+        count => format!(", {count} equations left out at standstill"),
+    };
     format!(
-        "{}: identified from {runs} run{}, {} s",
+        "{}: identified from {runs} run{}, {} s{left_out}",
         identification.robot,
         if runs == 1 { "" } else { "s" },
         significant(seconds, 3)

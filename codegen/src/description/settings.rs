@@ -102,6 +102,9 @@ pub struct Identification {
     pub skip_end: Option<usize>,
     /// Velocity of a joint (rad/s or m/s) below which its Coulomb friction counts as zero.
     pub velocity_dead_band: f64,
+    /// Velocities of the actuators' joints (rad/s or m/s) below which their equations are left out; none
+    /// where it is empty.
+    pub standstill_velocity: Vec<f64>,
     /// The sign of velocities around reversals.
     pub reversals: Reversals,
     /// Ratio of relative standard deviations at which the elimination of parameters ends.
@@ -259,6 +262,7 @@ pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>)
         skip_start: None,
         skip_end: None,
         velocity_dead_band: 0.0,
+        standstill_velocity: Vec::new(),
         reversals: Reversals::default(),
         r_sigma: 10.0,
         kept_actuators: None,
@@ -291,6 +295,9 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         // The joints of a robot may be angles and lengths, so the number is in SI units of each.
         let band = item.not_negative(Dimension::NONE, scope);
         settings.velocity_dead_band = band.unwrap_or(settings.velocity_dead_band);
+    }
+    if let Some(item) = table.get("standstill_velocity") {
+        settings.standstill_velocity = standstill(&item, robot).unwrap_or_default();
     }
     if let Some(item) = table.get("r_sigma") {
         let ratio = item.positive(Dimension::NONE, scope);
@@ -339,6 +346,26 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         .and_then(|i| i.positive(Dimension::TIME, scope));
     settings.weighted = switch("weighted");
     settings.essential = switch("essential");
+}
+
+/// Velocities at which joints stand still: one for all actuators or a list.
+fn standstill(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
+    let kinds = robot.actuator_kinds();
+    let list = match item.value.is_array() {
+        true => item.list()?,
+        false => vec![item.clone(); kinds.len()],
+    };
+    check_count(item, list.len(), kinds.len())?;
+    let dimension = |kind| match position(kind) {
+        Dimension::LENGTH => Dimension::SPEED,
+        _ => Dimension::ANGULAR_SPEED,
+    };
+    // Every one is looked at, so that every wrong one is reported.
+    let each = list.iter().zip(kinds);
+    let limits: Vec<Option<f64>> = each
+        .map(|(item, kind)| item.not_negative(dimension(kind), robot.scope))
+        .collect();
+    limits.into_iter().collect()
 }
 
 /// Number of kept actuators: r, or all of a robot that has fewer.

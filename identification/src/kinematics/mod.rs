@@ -105,6 +105,7 @@ impl<'a> Motions<'a> {
             pose: Vec::new(),
             twist: Vec::new(),
             acceleration: Vec::new(),
+            velocities: Vec::new(),
             torques: Vec::new(),
             closure_residual: 0.0,
         }
@@ -179,6 +180,7 @@ impl<'a> Motions<'a> {
             pose,
             twist,
             acceleration,
+            velocities,
             torques: keep(&block.torques, n),
             ..self.empty()
         })

@@ -23,6 +23,8 @@ pub struct Motion {
     pub twist: Vec<f64>,
     /// Their derivatives, samples x r (m/s², rad/s²).
     pub acceleration: Vec<f64>,
+    /// Velocities of the actuators' joints, samples x n (m/s, rad/s).
+    pub velocities: Vec<f64>,
     /// Torques, samples x n (N, N m), unfiltered.
     pub torques: Vec<f64>,
     /// Largest distance of a filtered actuator position from the one that the pose asks for (m,
@@ -53,6 +55,7 @@ impl Motion {
         self.pose.extend(next.pose);
         self.twist.extend(next.twist);
         self.acceleration.extend(next.acceleration);
+        self.velocities.extend(next.velocities);
         self.torques.extend(next.torques);
         self.closure_residual = self.closure_residual.max(next.closure_residual);
     }

@@ -46,6 +46,8 @@ pub(crate) struct Seen {
     /// Samples used.
     pub(crate) samples: usize,
     pub(crate) closure_residual: f64,
+    /// Of each line the equations that were left out at standstill; empty where none are to be.
+    pub(crate) still: Vec<usize>,
     /// Motion and conditioning at the points of the plots.
     pub(crate) figures: RunFigures,
     /// Decimated torques at these points, points x n.
@@ -76,7 +78,7 @@ impl Observer<'_> {
         let mut motions = Motions::new(self.model, log, self.settings)?;
         let samples = motions.samples();
         let decimator = Decimator::new(self.settings.decimation)?;
-        let lines = info.sizes.dof;
+        let (lines, n) = (info.sizes.dof, info.sizes.actuators);
         let width = row_width(self.base.len(), companion.is_some());
         let equations = decimator.kept(samples);
         let plan = Plan::new(
@@ -106,7 +108,10 @@ impl Observer<'_> {
                     for (place, chunk) in chunks.iter().enumerate() {
                         let instruments = beside.get(place);
                         let instruments = instruments.map(|own| &own.lines[projection][line][..]);
-                        sink.push(&plan, &chunk.lines[projection][line], instruments);
+                        let velocities = motion.velocities.iter().copied();
+                        let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
+                        let rows = &chunk.lines[projection][line];
+                        sink.push(&plan, (rows, instruments), velocities);
                     }
                 }
             });
@@ -117,6 +122,7 @@ impl Observer<'_> {
         progress(log.samples(), log.samples());
         let partitions = points.partitions(self.projections);
         let unusable = companion.and_then(Companion::into_failure);
+        let still = sinks.iter().filter_map(LineSink::left_out).collect();
         let mut sinks = sinks.into_iter();
         let system = |(failure, partition): (Option<Error>, _)| {
             let own: Vec<LineSink> = sinks.by_ref().take(lines).collect();
@@ -130,6 +136,7 @@ impl Observer<'_> {
         let seen = Seen {
             samples,
             closure_residual,
+            still,
             figures: points.figures,
             torques: plan.at_points(&decimated_torques, info.sizes.actuators),
             monitor: motions.into_monitor(),
@@ -146,9 +153,18 @@ impl Observer<'_> {
         instruments: bool,
     ) -> Result<Vec<LineSink>, Error> {
         let (lines, parameters) = (self.model.info().sizes.dof, self.base.len());
-        let sink = |_| {
-            let stream = decimator.stream(row_width(parameters, instruments), samples)?;
-            Ok(LineSink::new(plan, stream, (parameters, instruments)))
+        // The lines of a robot without redundancy are its actuators.
+        let limits = &self.settings.standstill_velocity;
+        let sink = |number: usize| {
+            let limit = limits.get(number % lines).copied();
+            let width = row_width(parameters, instruments) + usize::from(limit.is_some());
+            let stream = decimator.stream(width, samples)?;
+            Ok(LineSink::new(
+                plan,
+                stream,
+                (parameters, instruments),
+                limit,
+            ))
         };
         (0..lines * self.projections.len()).map(sink).collect()
     }

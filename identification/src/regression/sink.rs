@@ -93,6 +93,18 @@ pub(crate) struct LineSink {
     parts: Vec<Factor>,
     stretches: Vec<Vec<f64>>,
     points: Vec<f64>,
+    standstill: Option<Standstill>,
+}
+
+/// What is left out of a line because its joint stands still. The velocity goes through the decimation
+/// behind the other values of a row. In stretches, which are of successive equations, zeros take the
+/// place of what is left out.
+#[derive(Debug)]
+struct Standstill {
+    /// Velocity (rad/s, m/s) below which the joint stands still.
+    limit: f64,
+    /// Equations that were left out.
+    left_out: usize,
 }
 
 /// What is kept of the instruments of a line's equations.
@@ -147,11 +159,12 @@ impl InstrumentSink {
 
 impl LineSink {
     /// A sink for equations in `parameters` unknowns that are decimated first, by a decimation for rows
-    /// of [`row_width`].
+    /// of [`row_width`]; one more with a limit below which the joint's velocity leaves its equation out.
     pub(crate) fn new(
         plan: &Plan,
         decimation: Decimation,
         (parameters, instruments): (usize, bool),
+        standstill: Option<f64>,
     ) -> Self {
         Self {
             decimation,
@@ -163,23 +176,46 @@ impl LineSink {
             parts: Vec::new(),
             stretches: vec![Vec::new(); plan.stretches.len()],
             points: Vec::new(),
+            standstill: standstill.map(|limit| Standstill { limit, left_out: 0 }),
         }
     }
 
-    /// Takes rows at the full rate; those of the instruments have room for Y, which they do not need.
-    pub(crate) fn push(&mut self, plan: &Plan, rows: &[f64], instruments: Option<&[f64]>) {
+    /// Equations that were left out at standstill, where some are to be.
+    pub(crate) fn left_out(&self) -> Option<usize> {
+        self.standstill.as_ref().map(|own| own.left_out)
+    }
+
+    /// Takes rows at the full rate, beside their instruments, if there are some: they have room for Y, which
+    /// they do not need. `velocities` are those of the line's joint.
+    pub(crate) fn push(
+        &mut self,
+        plan: &Plan,
+        (rows, instruments): (&[f64], Option<&[f64]>),
+        velocities: impl Iterator<Item = f64>,
+    ) {
         let mut kept = Vec::new();
-        let whole = row_width(self.width - 1, self.instruments.is_some());
+        let mut whole = row_width(self.width - 1, self.instruments.is_some());
+        let with_instruments;
+        let mut rows = rows;
         if self.instruments.is_some() {
-            let both = joined(rows, instruments, self.width);
-            self.decimation.push(&both, &mut kept);
+            with_instruments = joined(rows, instruments, self.width);
+            rows = &with_instruments;
+        }
+        if self.standstill.is_some() {
+            let with_velocities = beside(rows, whole, velocities);
+            self.decimation.push(&with_velocities, &mut kept);
+            whole += 1;
         } else {
             self.decimation.push(rows, &mut kept);
         }
         for row in kept.chunks_exact(whole) {
             let (row, instruments) = row.split_at(self.width);
+            if self.stands_still(instruments.last()) {
+                self.leave_out(plan, row);
+                continue;
+            }
             if let Some(sink) = &mut self.instruments {
-                sink.push(plan, self.taken, (row, instruments));
+                sink.push(plan, self.taken, (row, &instruments[..self.width - 1]));
             }
             if self.taken.is_multiple_of(plan.stride) {
                 self.points.extend_from_slice(row);
@@ -190,18 +226,63 @@ impl LineSink {
                 }
             }
             self.rows.extend_from_slice(row);
-            self.taken += 1;
-            let complete = plan.ends.get(self.parts.len()) == Some(&self.taken);
-            if complete || self.rows.len() >= self.factor.worthwhile() * self.width {
-                self.factor.push_rows(&self.rows);
-                self.rows.clear();
-            }
-            if complete {
-                let next = Factor::new(self.width - 1);
-                self.parts.push(std::mem::replace(&mut self.factor, next));
-            }
+            self.advance(plan);
         }
     }
+
+    /// Goes on to the next equation, which may be that of another part.
+    fn advance(&mut self, plan: &Plan) {
+        self.taken += 1;
+        let complete = plan.ends.get(self.parts.len()) == Some(&self.taken);
+        if complete || self.rows.len() >= self.factor.worthwhile() * self.width {
+            self.factor.push_rows(&self.rows);
+            self.rows.clear();
+        }
+        if complete {
+            let next = Factor::new(self.width - 1);
+            self.parts.push(std::mem::replace(&mut self.factor, next));
+        }
+    }
+
+    /// Whether the joint stands still at an equation, by its decimated velocity.
+    fn stands_still(&mut self, velocity: Option<&f64>) -> bool {
+        match (&mut self.standstill, velocity) {
+            (Some(own), Some(velocity)) if velocity.abs() < own.limit => {
+                own.left_out += 1;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Leaves an equation out; it stays in the plots.
+    fn leave_out(&mut self, plan: &Plan, row: &[f64]) {
+        let columns = self.width - 1;
+        if self.taken.is_multiple_of(plan.stride) {
+            self.points.extend_from_slice(row);
+        }
+        for (place, range) in plan.stretches.iter().enumerate() {
+            if range.contains(&self.taken) {
+                let own = &mut self.stretches[place];
+                own.resize(own.len() + self.width, 0.0);
+                if let Some(sink) = &mut self.instruments {
+                    let own = &mut sink.stretches[place];
+                    own.resize(own.len() + columns, 0.0);
+                }
+            }
+        }
+        self.advance(plan);
+    }
+}
+
+/// Rows with one value more behind each.
+fn beside(rows: &[f64], width: usize, values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut all = Vec::with_capacity(rows.len() / width * (width + 1));
+    for (row, value) in rows.chunks_exact(width).zip(values) {
+        all.extend_from_slice(row);
+        all.push(value);
+    }
+    all
 }
 
 /// Rows of columns and Y with the instruments behind them; zeros where these are missing.

@@ -17,6 +17,10 @@ pub struct RunSummary {
     pub payload: bool,
     /// Largest miss of the loops' closure by the measured actuators (m, rad).
     pub closure_residual: f64,
+    /// Of each actuator's joint the equations that were left out because it stood still; empty where none
+    /// were to be.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub standstill_equations: Vec<usize>,
 }
 
 impl RunSummary {
@@ -28,6 +32,7 @@ impl RunSummary {
             sampling_frequency: log.sampling_frequency(),
             payload: log.payload(),
             closure_residual: seen.closure_residual,
+            standstill_equations: seen.still.clone(),
         }
     }
 }

@@ -106,6 +106,29 @@ fn logs_have_a_column_of_the_time_or_a_frequency() {
 }
 
 #[test]
+fn joints_stand_still_below_velocities_of_their_kind() {
+    let limits = |text: &str| {
+        let tables = format!("[identification]\nstandstill_velocity = {text}");
+        good(&single(&tables, ""))
+            .identification
+            .standstill_velocity
+    };
+    assert_eq!(limits("\"5 deg/s\""), [5_f64.to_radians()]);
+    assert_eq!(limits("[0.1]"), [0.1]);
+    let refused = |text: &str| errors(&format!("[identification]\nstandstill_velocity = {text}"));
+    assert_eq!(
+        refused("[1, 2]"),
+        ["3:23 `standstill_velocity`: expected 1 entries, one for each actuator, found 2"]
+    );
+    assert_eq!(
+        refused("-1"),
+        ["3:23 `standstill_velocity`: expected a value at least 0, found -1"]
+    );
+    let speed = refused("\"1 m/s\"");
+    assert!(speed[0].contains("expected an angular speed"), "{speed:?}");
+}
+
+#[test]
 fn factors_are_numbers_expressions_or_variables() {
     let tables = "[constants]\nk = \"2 N m/A\"\n[data]\ntime = \"t\"\npositions = [\"q\"]\n\
                   torques = [\"i\"]\nposition_scale = \"1 deg\"\ntorque_gain = [\"k\"]";

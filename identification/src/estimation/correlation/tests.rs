@@ -69,6 +69,7 @@ pub(crate) fn settings() -> Settings {
         skip_start: 0,
         skip_end: 0,
         velocity_dead_band: 0.0,
+        standstill_velocity: Vec::new(),
         averaged_reversals: false,
         r_sigma: 10.0,
         keep_significant: false,

@@ -199,6 +199,7 @@ pub(super) fn settings() -> Settings {
         decimation: 50,
         skip_start: 0,
         velocity_dead_band: 0.0,
+        standstill_velocity: Vec::new(),
         averaged_reversals: false,
         skip_end: 0,
         r_sigma: 10.0,
@@ -235,6 +236,7 @@ pub(super) fn identification() -> Identification {
             sampling_frequency: 1000.0,
             payload: true,
             closure_residual: 1e-5,
+            standstill_equations: Vec::new(),
         }],
         base_parameters: vec![
             base(HOSTILE, &[(HOSTILE, 0.0784), ("m_2", -1.0)]),
