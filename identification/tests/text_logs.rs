@@ -187,8 +187,11 @@ fn files_that_are_no_text_are_named_and_never_shown() {
         (b"\x89HDF\r\n\x1a\n", "HDF5"),
         (b"\x89MCAP0\r\n", "MCAP"),
         (b"PAR1\x15", "Parquet"),
-        (b"\x93NUMPY\x01\x00", "NumPy"),
-        (b"PK\x03\x04\x14\x00", "zip"),
+        (b"\x93NUMPY\x01\x00", "NumPy's, but it is cut off"),
+        (
+            b"PK\x03\x04\x14\x00",
+            "the zip archive can't be read: it is cut off",
+        ),
         (b"\x1f\x8b\x08\x00", "gzip"),
         (b"\xff\xfet\x00i\x00", "UTF-16"),
         (b"SQLite format 3\0", "SQLite"),
@@ -197,7 +200,6 @@ fn files_that_are_no_text_are_named_and_never_shown() {
     for (content, word) in cases {
         let text = refused(content, &named());
         assert!(text.contains(word), "{text}");
-        assert!(text.contains("help: "), "{text}");
         assert!(text.chars().all(|c| !c.is_control() || c == '\n'), "{text}");
     }
 }

@@ -15,10 +15,14 @@ pub(super) enum Format {
     Text,
     /// MATLAB's versions 5 to 7.2.
     Mat,
+    /// NumPy's `.npy`.
+    Array,
+    /// A zip archive, perhaps NumPy's `.npz`.
+    Archive,
 }
 
 /// A beginning, what it is the beginning of, and the way out.
-const REFUSED: [(&[u8], &str, &str); 14] = [
+const REFUSED: [(&[u8], &str, &str); 12] = [
     (
         b"MATLAB 7.3",
         "the file is of MATLAB's version 7.3, which is HDF5",
@@ -52,16 +56,6 @@ const REFUSED: [(&[u8], &str, &str); 14] = [
     (
         b"ARROW1",
         "the file is Arrow, which is not read",
-        "export CSV",
-    ),
-    (
-        b"\x93NUMPY",
-        "the file is NumPy's `.npy`, which is not read",
-        "write CSV with `numpy.savetxt`",
-    ),
-    (
-        b"PK\x03\x04",
-        "the file is a zip archive (`.npz`, `.xlsx`?), which is not read",
         "export CSV",
     ),
     (
@@ -114,12 +108,19 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
     if is_mat || beginning.starts_with(b"MATLAB 5.0") {
         return Ok(Format::Mat);
     }
+    if beginning.starts_with(b"\x93NUMPY") {
+        return Ok(Format::Array);
+    }
+    if beginning.starts_with(b"PK\x03\x04") {
+        return Ok(Format::Archive);
+    }
     let is_text = |byte: &u8| !byte.is_ascii_control() || b"\t\n\r\x0c\x1a".contains(byte);
     if beginning.iter().all(is_text) {
         return Ok(Format::Text);
     }
     let message = "the file is neither text nor of a format that is known";
-    Err(Problem::new(message).help("logs are text (CSV) or MATLAB's `.mat` up to version 7"))
+    Err(Problem::new(message)
+        .help("logs are text (CSV), MATLAB's `.mat` up to version 7 or NumPy's `.npy` and `.npz`"))
 }
 
 #[cfg(test)]

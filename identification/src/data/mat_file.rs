@@ -1,10 +1,10 @@
-//! MATLAB's `.mat` files up to version 7: numeric vectors, matrices, and scalars for gains.
+//! MATLAB's `.mat` files up to version 7: numeric vectors, matrices, fields of structures, and scalars for gains.
 
 use std::path::Path;
 
-use matfile::{MatFile, NumericData};
+use matfile::{Array, MatFile, NumericData};
 
-use super::{arrays::Arrays, problems::unreadable};
+use super::{arrays::Arrays, problems::unreadable, structures};
 use crate::error::{Error, Problem};
 
 /// Reads all arrays of a file.
@@ -20,12 +20,24 @@ pub(super) fn open(file: String, path: &Path) -> Result<Arrays, Error> {
     })?;
     let mut arrays = Arrays::new(file);
     for array in mat.arrays() {
-        let rows = array.size().first().copied().unwrap_or(0);
-        let values = values(array.data());
-        let columns = values.len().checked_div(rows).unwrap_or(0);
-        arrays.push(array.name(), (rows, columns), &values);
+        push(&mut arrays, array.name(), array);
+    }
+    for (name, field) in structures::fields(&bytes) {
+        // Fields that are no numbers are left out, as other variables that are none.
+        let field = MatFile::parse(field.as_slice());
+        if let Some(array) = field.iter().flat_map(MatFile::arrays).next() {
+            push(&mut arrays, &name, array);
+        }
     }
     Ok(arrays)
+}
+
+/// Adds an array under a name.
+fn push(arrays: &mut Arrays, name: &str, array: &Array) {
+    let rows = array.size().first().copied().unwrap_or(0);
+    let values = values(array.data());
+    let columns = values.len().checked_div(rows).unwrap_or(0);
+    arrays.push(name, (rows, columns), &values);
 }
 
 /// The real parts of an array, in MATLAB's column-major order.

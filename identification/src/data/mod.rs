@@ -1,12 +1,13 @@
 //! Measured runs: a [`Log`] holds the actuator positions and torques of one run, uniformly sampled;
 //! a [`Mapping`] says which columns of a file they are and what turns them into SI units.
 //!
-//! Text and MATLAB's `.mat` files up to version 7 are read, told apart by their first bytes. Text may
+//! Text, MATLAB's `.mat` files up to version 7 and NumPy's files are read, told apart by their first bytes. Text may
 //! separate its columns by commas, semicolons, tabs or blanks, have decimal commas, a header, names in a
 //! comment or none. Readers report every missing column, every cell that is not a number (up to twenty)
 //! and the first step of a time that is not uniform. A large text stays on the disk and is read block
 //! by block whenever its run is gone through.
 
+mod archive;
 mod arrays;
 mod clock;
 mod columns;
@@ -16,11 +17,13 @@ mod format;
 mod log;
 mod mapping;
 mod mat_file;
+mod numpy;
 pub(crate) mod periods;
 mod problems;
 mod samples;
 mod signals;
 mod source;
+mod structures;
 mod table;
 mod text;
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{
     arrays::{self, Arrays},
     format::{self, Format},
-    mat_file,
+    mat_file, numpy,
     problems::{Existing, display_name},
     text::{self, Text},
 };
@@ -30,6 +30,8 @@ impl Table {
         Ok(match format::recognise(&file, path)? {
             Format::Text => Self::Text(Text::open(file, path)?),
             Format::Mat => Self::Arrays(mat_file::open(file, path)?),
+            Format::Array => Self::Arrays(numpy::open_array(file, path)?),
+            Format::Archive => Self::Arrays(numpy::open_archive(file, path)?),
         })
     }
 

@@ -1,0 +1,111 @@
+//! Zip archives as NumPy writes them: members as they are, or deflated.
+
+use std::io::Read;
+
+use libflate::deflate::Decoder;
+
+/// Records of an archive start with these bytes.
+const END: &[u8] = b"PK\x05\x06";
+const LISTED: &[u8] = b"PK\x01\x02";
+const MEMBER: &[u8] = b"PK\x03\x04";
+
+/// Bytes of the record at the end, and of a comment behind it, at most.
+const END_SIZE: usize = 22;
+const LONGEST_COMMENT: usize = 1 << 16;
+
+/// A size that stands elsewhere: the member has more than 4 GB.
+const ELSEWHERE: usize = u32::MAX as usize;
+
+/// A member of an archive.
+pub(super) struct Member {
+    pub(super) name: String,
+    /// 0 as it is, 8 deflated.
+    method: usize,
+    packed: usize,
+    size: usize,
+    start: usize,
+}
+
+/// A number of two or four bytes, the lowest first.
+fn number(bytes: &[u8], place: usize, size: usize) -> Option<usize> {
+    let bytes = bytes.get(place..place.checked_add(size)?)?;
+    Some(
+        bytes
+            .iter()
+            .rev()
+            .fold(0, |all, byte| all << 8 | usize::from(*byte)),
+    )
+}
+
+/// The members of an archive.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn members(archive: &[u8]) -> Result<Vec<Member>, String> {
+    let cut_off = || String::from("it is cut off");
+    let from = archive.len().saturating_sub(END_SIZE + LONGEST_COMMENT);
+    let end = archive[from..]
+        .windows(END.len())
+        .rposition(|bytes| bytes == END)
+        .ok_or_else(cut_off)?;
+    let end = &archive[from + end..];
+    let count = number(end, 10, 2).ok_or_else(cut_off)?;
+    let mut place = number(end, 16, 4).ok_or_else(cut_off)?;
+    let mut members = Vec::new();
+    for _ in 0..count {
+        let record = archive
+            .get(place..)
+            .filter(|record| record.starts_with(LISTED));
+        let record = record.ok_or_else(cut_off)?;
+        let field = |place, size| number(record, place, size).ok_or_else(cut_off);
+        let name = field(28, 2)?;
+        let name = record.get(46..46 + name).ok_or_else(cut_off)?;
+        place += 46 + name.len() + field(30, 2)? + field(32, 2)?;
+        members.push(Member {
+            name: String::from_utf8_lossy(name).into_owned(),
+            method: field(10, 2)?,
+            packed: field(20, 4)?,
+            size: field(24, 4)?,
+            start: field(42, 4)?,
+        });
+    }
+    Ok(members)
+}
+
+impl Member {
+    /// All bytes of the member.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub(super) fn content(&self, archive: &[u8]) -> Result<Vec<u8>, String> {
+        let broken = |what: &str| format!("`{}` {what}", super::problems::shown(&self.name));
+        if self.size == ELSEWHERE || self.packed == ELSEWHERE {
+            return Err(broken("has more than 4 GB"));
+        }
+        let record = archive
+            .get(self.start..)
+            .filter(|record| record.starts_with(MEMBER));
+        let data = record.and_then(|record| {
+            let start = 30 + number(record, 26, 2)? + number(record, 28, 2)?;
+            record.get(start..start.checked_add(self.packed)?)
+        });
+        let data = data.ok_or_else(|| broken("is cut off"))?;
+        let content = match self.method {
+            0 => data.to_vec(),
+            8 => {
+                let mut content = Vec::new();
+                // One byte more tells that the member is larger than it says.
+                let mut unpacked = Decoder::new(data).take(self.size as u64 + 1);
+                let read = unpacked.read_to_end(&mut content);
+                read.map_err(|_| broken("is broken"))?;
+                content
+            }
+            _ => return Err(broken("is packed in a way that is not read")),
+        };
+        if content.len() == self.size {
+            Ok(content)
+        } else {
+            Err(broken("is broken"))
+        }
+    }
+}
