@@ -128,6 +128,7 @@ fn mappings_are_checked() {
         time: Time::Column(String::from("time")),
         positions: vec![String::from("a"), String::from("b")],
         torques: vec![String::from("c")],
+        velocities: Vec::new(),
         position_scale: vec![1.0, 0.0],
         position_offset: Vec::new(),
         torque_gain: vec![Gain::Value(f64::NAN)],

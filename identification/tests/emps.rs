@@ -15,6 +15,7 @@ fn log(file: &str) -> Option<Log> {
         time: Time::Column(String::from("t")),
         positions: vec![String::from("qm")],
         torques: vec![String::from("vir")],
+        velocities: Vec::new(),
         position_scale: vec![1.0],
         position_offset: Vec::new(),
         torque_gain: vec![Gain::Variable(String::from("gtau"))],

@@ -66,6 +66,7 @@ impl Robot {
             positions: controller.reference.clone(),
             // A log has two signals; the reference's second one is not looked at.
             torques: controller.reference.clone(),
+            velocities: Vec::new(),
             torque_gain: vec![Gain::Value(1.0); controller.reference.len()],
             ..own.clone()
         })

@@ -32,6 +32,7 @@ impl Robot {
             },
             positions: data.positions.clone(),
             torques: data.torques.clone(),
+            velocities: data.velocities.clone(),
             position_scale: data.position_scale.clone(),
             position_offset: data.position_offset.clone(),
             torque_gain: data.torque_gain.iter().map(gain).collect(),

@@ -16,6 +16,9 @@ pub struct Data {
     pub positions: Vec<String>,
     /// Columns of the actuators' torques, forces or drive signals.
     pub torques: Vec<String>,
+    /// Columns of the actuators' measured velocities, in the units of the positions and s; empty where there
+    /// are none.
+    pub velocities: Vec<String>,
     /// Factors from columns to rad or m, one for each actuator.
     pub position_scale: Vec<f64>,
     /// What the positions show too much after that, rad or m, one for each actuator.
@@ -130,12 +133,12 @@ pub struct Identification {
 pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     let table = item.table("the table `[data]`")?;
     let count = actuators(robot.legs).len();
-    let columns = |key: &str| {
-        let item = table.require(key, "give one column for each actuator")?;
+    let listed = |item: Item<'_, '_>| {
         let names = item.strings()?;
         check_count(&item, names.len(), count)?;
         Some(names.into_iter().map(|name| name.value).collect::<Vec<_>>())
     };
+    let columns = |key: &str| listed(table.require(key, "give one column for each actuator")?);
     let factors = |key: &str| {
         let item = table.get(key);
         item.map_or(Some(vec![Factor::Value(1.0); count]), |item| {
@@ -151,6 +154,7 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     };
     let time = clock(&table, robot);
     let (positions, torques) = (columns("positions"), columns("torques"));
+    let velocities = table.get("velocities").map_or(Some(Vec::new()), listed);
     let (position_scale, torque_gain) = (factors("position_scale"), factors("torque_gain"));
     let position_scale = position_scale.and_then(|scales| numbers(&table, &scales));
     let position_offset = offsets(&table, robot);
@@ -159,6 +163,7 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         time: time?,
         positions: positions?,
         torques: torques?,
+        velocities: velocities?,
         position_scale: position_scale?,
         position_offset: position_offset?,
         torque_gain: torque_gain?,

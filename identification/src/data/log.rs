@@ -30,8 +30,8 @@ pub struct Log {
 /// Where the numbers are.
 #[derive(Debug, Clone, PartialEq)]
 enum Source {
-    /// Positions and torques, samples x n each.
-    Memory(Arc<[f64]>, Arc<[f64]>),
+    /// Positions, torques and velocities, samples x n each; no velocities where they were not measured.
+    Memory([Arc<[f64]>; 3]),
     /// Files that have been looked through before.
     Files(Files),
     /// At each sample the mean position of the other periods of a run.
@@ -86,11 +86,34 @@ impl Log {
             sampling_frequency,
             actuators,
             samples: positions.len() / actuators,
-            source: Source::Memory(positions.into(), torques.into()),
+            source: Source::Memory([positions.into(), torques.into(), Arc::default()]),
             offsets: vec![0.0; actuators],
             payload,
             instruments: None,
         })
+    }
+
+    /// The same run, if it is in memory, with measured velocities of the actuators (m/s, rad/s), samples x n
+    /// and row-major. They are used in place of differences of the positions. Others than as many as
+    /// positions are not taken.
+    #[must_use]
+    pub fn with_velocities(mut self, velocities: Vec<f64>) -> Self {
+        if let Source::Memory([positions, _, own]) = &mut self.source
+            && positions.len() == velocities.len()
+        {
+            *own = velocities.into();
+        }
+        self
+    }
+
+    /// Whether velocities were measured.
+    #[must_use]
+    pub fn has_velocities(&self) -> bool {
+        match &self.source {
+            Source::Memory([_, _, velocities]) => !velocities.is_empty(),
+            Source::Files(files) => files.has_velocities(),
+            Source::Others(..) => false,
+        }
     }
 
     /// The same run with a motion that goes with its own sample by sample, but not with the errors of its
@@ -197,23 +220,27 @@ impl Log {
     pub fn beginning(&self, samples: usize) -> Result<Self, Error> {
         let count = samples.min(self.samples);
         let (mut positions, mut torques) = (Vec::new(), Vec::new());
+        let mut velocities = Vec::new();
         let mut reader = self.reader()?;
         while positions.len() < count * self.actuators
             && let Some(block) = reader.next()?
         {
             positions.extend(block.positions);
             torques.extend(block.torques);
+            velocities.extend(block.velocities);
         }
         positions.truncate(count * self.actuators);
         torques.truncate(count * self.actuators);
-        Self::new(
+        velocities.truncate(count * self.actuators);
+        let beginning = Self::new(
             self.name.as_str(),
             self.sampling_frequency,
             self.actuators,
             positions,
             torques,
             self.payload,
-        )
+        )?;
+        Ok(beginning.with_velocities(velocities))
     }
 
     /// Goes through the run from its first sample on.
@@ -222,7 +249,7 @@ impl Log {
     /// A file that can't be opened any more.
     pub fn reader(&self) -> Result<Reader<'_>, Error> {
         let rows = match &self.source {
-            Source::Memory(positions, torques) => Rows::Memory(positions, torques),
+            Source::Memory(all) => Rows::Memory(all.each_ref().map(|own| &**own)),
             Source::Files(files) => Rows::Files(Box::new(files.open()?)),
             Source::Others(log, periods) => {
                 Rows::Others(Box::new(log.reader()?), periods::Others::new(periods))
@@ -265,7 +292,7 @@ pub struct Reader<'a> {
 /// The rest of the numbers.
 #[derive(Debug)]
 enum Rows<'a> {
-    Memory(&'a [f64], &'a [f64]),
+    Memory([&'a [f64]; 3]),
     Files(Box<source::Rows<'a>>),
     Others(Box<Reader<'a>>, periods::Others<'a>),
 }
@@ -295,15 +322,18 @@ impl Reader<'_> {
     fn block(&mut self, count: usize) -> Result<Samples, Error> {
         let size = count * self.offsets.len();
         match &mut self.rows {
-            Rows::Memory(positions, torques) => {
-                let (now, later) = positions.split_at(size);
-                *positions = later;
-                let block = Samples {
-                    positions: now.to_vec(),
-                    torques: torques[..size].to_vec(),
-                };
-                *torques = &torques[size..];
-                Ok(block)
+            Rows::Memory(all) => {
+                let [positions, torques, velocities] = all.each_mut().map(|rest| {
+                    // Velocities may be none at all.
+                    let (now, later) = rest.split_at(size.min(rest.len()));
+                    *rest = later;
+                    now.to_vec()
+                });
+                Ok(Samples {
+                    positions,
+                    torques,
+                    velocities,
+                })
             }
             Rows::Files(rows) => {
                 let mut block = Samples::default();
@@ -318,6 +348,7 @@ impl Reader<'_> {
             Rows::Others(reader, others) => {
                 let mut block = reader.next()?.unwrap_or_default();
                 others.replace(&mut block.positions);
+                block.velocities.clear();
                 Ok(block)
             }
         }

@@ -36,6 +36,10 @@ pub struct Mapping {
     pub positions: Vec<String>,
     /// Torques, forces or drive signals of the n actuators.
     pub torques: Vec<String>,
+    /// Velocities of the n actuators in the units of their positions and s, where they were measured; else
+    /// empty. They take the place of differences of the positions.
+    #[serde(default)]
+    pub velocities: Vec<String>,
     /// Factors to rad or m, one per actuator (π/180 for degrees).
     pub position_scale: Vec<f64>,
     /// What is subtracted from the positions after that, rad or m, one per actuator: the offset of an
@@ -60,6 +64,7 @@ impl Mapping {
             time: Time::Column(String::from("time")),
             positions: named("q_"),
             torques: named("tau_"),
+            velocities: Vec::new(),
             position_scale: vec![1.0; info.actuators.len()],
             position_offset: Vec::new(),
             torque_gain: vec![Gain::Value(1.0); info.actuators.len()],
@@ -90,16 +95,21 @@ impl Mapping {
                 );
             }
         }
-        let offsets = &self.position_offset;
-        if !offsets.is_empty() && offsets.len() != actuators {
-            let found = offsets.len();
-            let message = format!(
-                "the mapping names {actuators} positions, but `position_offset` has {found} {}",
-                if found == 1 { "entry" } else { "entries" }
-            );
-            let problem = Problem::new(message).column("position_offset");
-            problems.push(problem.help("give one entry per actuator, or none"));
+        let optional = [
+            ("position_offset", self.position_offset.len()),
+            ("velocities", self.velocities.len()),
+        ];
+        for (name, found) in optional.into_iter().filter(|(_, found)| *found > 0) {
+            if found != actuators {
+                let message = format!(
+                    "the mapping names {actuators} positions, but `{name}` has {found} {}",
+                    if found == 1 { "entry" } else { "entries" }
+                );
+                let problem = Problem::new(message).column(name);
+                problems.push(problem.help("give one entry per actuator, or none"));
+            }
         }
+        let offsets = &self.position_offset;
         for offset in offsets.iter().filter(|offset| !offset.is_finite()) {
             let message = format!("an offset of `position_offset` is {offset}");
             problems.push(Problem::new(message).column("position_offset"));

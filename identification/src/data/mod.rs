@@ -1,4 +1,5 @@
-//! Measured runs: a [`Log`] holds the actuator positions and torques of one run, uniformly sampled;
+//! Measured runs: a [`Log`] holds the actuator positions and torques of one run, uniformly sampled, and
+//! velocities where they were measured;
 //! a [`Mapping`] says which columns of a file they are and what turns them into SI units.
 //!
 //! Text, MATLAB's `.mat` files up to version 7 and NumPy's files are read, told apart by their first bytes. Text may
@@ -80,9 +81,11 @@ fn read_telling(
     let summary = files.look_through(&mapping.time, advance)?;
     let (frequency, count) = (summary.frequency, summary.count);
     let log = match summary.samples {
-        Some(Samples { positions, torques }) => {
+        Some(samples) => {
+            let (positions, torques) = (samples.positions, samples.torques);
             let (name, actuators) = (files.name(), files.actuators());
             Log::new(name, frequency, actuators, positions, torques, payload)?
+                .with_velocities(samples.velocities)
         }
         None => Log::in_files(files, frequency, count, payload),
     };

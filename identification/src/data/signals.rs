@@ -1,5 +1,5 @@
-//! What a mapping asks of the files of a run: which columns are read, and how they become time, positions
-//! and torques.
+//! What a mapping asks of the files of a run: which columns are read, and how they become time, positions,
+//! torques and velocities.
 
 use super::{
     columns::{Columns, Found},
@@ -32,7 +32,7 @@ pub(super) struct Signals {
     columns: Vec<Vec<(usize, String)>>,
     /// The time in each file that has a column of it.
     times: Vec<Expression>,
-    /// Positions, then torques.
+    /// Positions, then torques, then velocities, if there are some.
     signals: Vec<Signal>,
 }
 
@@ -50,8 +50,10 @@ impl Signals {
         };
         let positions = mapping.positions.iter().zip(&mapping.position_scale);
         let torques = mapping.torques.iter().zip(&gains);
+        let velocities = mapping.velocities.iter().zip(&mapping.position_scale);
         let mut signals: Vec<Signal> = positions
             .chain(torques)
+            .chain(velocities)
             .map(|(text, scale)| Signal {
                 text: text.clone(),
                 expression: columns.ask(text),
@@ -80,7 +82,7 @@ impl Signals {
         self.times.iter().map(|time| time.evaluate(columns))
     }
 
-    /// Positions and torques in SI units, of the numbers in the columns that are read.
+    /// Positions, torques and velocities in SI units, of the numbers in the columns that are read.
     pub(super) fn values<'a>(&'a self, columns: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         self.signals.iter().map(|signal| signal.value(columns))
     }

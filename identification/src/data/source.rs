@@ -27,6 +27,7 @@ pub(super) struct Files {
     tables: Vec<Table>,
     signals: Signals,
     actuators: usize,
+    has_velocities: bool,
 }
 
 /// What is known of a run that has been gone through.
@@ -59,6 +60,7 @@ impl Files {
             name,
             tables,
             actuators: mapping.positions.len(),
+            has_velocities: !mapping.velocities.is_empty(),
         })
     }
 
@@ -70,6 +72,11 @@ impl Files {
     /// Number of actuators.
     pub(super) const fn actuators(&self) -> usize {
         self.actuators
+    }
+
+    /// Whether velocities were measured.
+    pub(super) const fn has_velocities(&self) -> bool {
+        self.has_velocities
     }
 
     /// Goes to the first sample.
@@ -130,8 +137,7 @@ impl Files {
             }
             fits &= in_memory || 2 * samples.positions.len() <= LARGEST_IN_MEMORY;
             if !fits {
-                samples.positions.clear();
-                samples.torques.clear();
+                samples.clear();
             }
         }
         Error::check(problems)?;
@@ -198,14 +204,13 @@ impl Rows<'_> {
         }
         self.samples += 1;
         let n = self.files.actuators;
-        let mut values = self.files.signals.values(&self.values);
-        let before = samples.positions.len();
+        let values = self.files.signals.values(&self.values);
+        let mut finite = true;
+        let mut values = values.inspect(|value| finite &= value.is_finite());
         samples.positions.extend(values.by_ref().take(n));
-        samples.torques.extend(values);
-        let new = samples.positions[before..]
-            .iter()
-            .chain(&samples.torques[before..]);
-        if new.into_iter().all(|value| value.is_finite()) {
+        samples.torques.extend(values.by_ref().take(n));
+        samples.velocities.extend(values);
+        if finite {
             return Ok(true);
         }
         let text = self

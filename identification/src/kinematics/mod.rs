@@ -1,7 +1,7 @@
 //! From measured actuator positions to the platform's motion, block by block.
 //!
-//! Positions pass a zero-phase Butterworth low-pass; velocities and accelerations are central
-//! differences. The pose x is the least-squares forward kinematics of all n actuators, sample after
+//! Positions pass a zero-phase Butterworth low-pass, and so do velocities where they were measured; else
+//! they are central differences, as accelerations are. The pose x is the least-squares forward kinematics of all n actuators, sample after
 //! sample from the previous one, so that the assembly mode is that of the home pose. The twist v
 //! and its derivative follow from eqs. (21) and (24). A robot without a loop is the same: its pose
 //! are its joint positions.

@@ -28,12 +28,16 @@ pub(super) struct Stream<'a> {
     reader: Reader<'a>,
     monitor: Monitor,
     filter: ZeroPhase,
+    /// Filter of the velocities, where they were measured.
+    velocity_filter: Option<ZeroPhase>,
     frequency: f64,
     samples: usize,
     width: usize,
     /// Filtered positions from sample `start` on.
     positions: Vec<f64>,
     start: usize,
+    /// Filtered measured velocities from the same sample on.
+    velocities: Vec<f64>,
     /// Torques from sample `next` on.
     torques: Vec<f64>,
     /// The next sample to give out.
@@ -46,8 +50,11 @@ impl<'a> Stream<'a> {
         let frequency = log.sampling_frequency();
         let cutoff = settings.filter_cutoff_hz * 2.0 / frequency;
         let filter = butterworth(settings.filter_order, cutoff)?;
+        let zero_phase = || ZeroPhase::new(&filter, log.actuators(), log.samples());
+        let velocity_filter = log.has_velocities().then(zero_phase);
         Ok(Self {
-            filter: ZeroPhase::new(&filter, log.actuators(), log.samples())?,
+            filter: zero_phase()?,
+            velocity_filter: velocity_filter.transpose()?,
             reader: log.reader()?,
             monitor: Monitor::new(log.actuators(), frequency),
             frequency,
@@ -55,6 +62,7 @@ impl<'a> Stream<'a> {
             width: log.actuators(),
             positions: Vec::new(),
             start: 0,
+            velocities: Vec::new(),
             torques: Vec::new(),
             next: 0,
         })
@@ -89,6 +97,9 @@ impl<'a> Stream<'a> {
             };
             self.monitor.take(&block);
             self.filter.push(&block.positions, &mut self.positions);
+            if let Some(filter) = &mut self.velocity_filter {
+                filter.push(&block.velocities, &mut self.velocities);
+            }
             self.torques.extend(block.torques);
         }
     }
@@ -98,8 +109,12 @@ impl<'a> Stream<'a> {
         let (first, n, last) = (self.next, self.width, self.samples - 1);
         let (before, behind) = (first.saturating_sub(1), (end + 1).min(self.samples));
         // One sample more on either side, for the accelerations.
-        let around = central_differences(&self.positions, self.start, before..behind, (n, last));
-        let around: Vec<f64> = around.map(|step| step * self.frequency).collect();
+        let around: Vec<f64> = if self.velocity_filter.is_some() {
+            self.velocities[(before - self.start) * n..(behind - self.start) * n].to_vec()
+        } else {
+            let steps = central_differences(&self.positions, self.start, before..behind, (n, last));
+            steps.map(|step| step * self.frequency).collect()
+        };
         let accelerations = central_differences(&around, before, first..end, (n, last));
         let accelerations = accelerations.map(|step| step * self.frequency).collect();
         let inside = |values: &[f64], start: usize| -> Vec<f64> {
@@ -116,6 +131,9 @@ impl<'a> Stream<'a> {
         self.next = end;
         let obsolete = end.saturating_sub(2).max(self.start);
         self.positions.drain(..(obsolete - self.start) * n);
+        if self.velocity_filter.is_some() {
+            self.velocities.drain(..(obsolete - self.start) * n);
+        }
         self.start = obsolete;
         block
     }

@@ -15,6 +15,7 @@ fn suspicions(samples: usize, torque: impl Fn(f64) -> f64) -> Vec<Suspicion> {
     monitor.take(&Samples {
         positions: (0..samples).map(swing).collect(),
         torques: (0..samples).map(|sample| torque(time(sample))).collect(),
+        velocities: Vec::new(),
     });
     monitor.suspicions(&["motor"], true)
 }
@@ -70,6 +71,7 @@ fn of_several_rests_the_one_in_which_others_move_most_is_told() {
         torques: (0..2000)
             .flat_map(|k| [swing(k as f64), swing(k as f64 + 0.3)])
             .collect(),
+        velocities: Vec::new(),
     });
     let found = monitor.suspicions(&["first", "second"], true);
     let [stuck] = &found[..] else {

@@ -87,7 +87,11 @@ fn logs_have_a_column_of_the_time_or_a_frequency() {
     let data = |text: &str| good(&single(text, "")).data.unwrap();
     let sampled = data(&format!("[data]\n{columns}sampling = \"5 kHz\""));
     assert_eq!(sampled.time, Clock::Frequency(5000.0));
-    let timed = data(&format!("[data]\n{columns}time = \"t\""));
+    let timed = data(&format!(
+        "[data]\n{columns}velocities = [\"$3\"]\ntime = \"t\""
+    ));
+    assert!(sampled.velocities.is_empty());
+    assert_eq!(timed.velocities, ["$3"]);
     assert_eq!(timed.time, Clock::Column("t".to_owned()));
     assert_eq!(
         errors(&format!("[data]\n{columns}")),
