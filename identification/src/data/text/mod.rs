@@ -13,7 +13,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use csv::ByteRecord;
+use csv::{ByteRecord, Trim};
 
 use self::{
     dialect::{BEGINNING, Dialect},
@@ -105,6 +105,8 @@ impl Text {
             text: self,
             wanted: wanted.to_vec(),
             reader: Dialect::builder(dialect.separator, dialect.comment)
+                // Only cells that are read are trimmed.
+                .trim(Trim::None)
                 .buffer_capacity(BUFFER)
                 .from_reader(input),
             record: ByteRecord::new(),
@@ -240,7 +242,7 @@ fn number(cell: Option<&[u8]>, decimal_comma: bool) -> Result<f64, String> {
     let Some(cell) = cell else {
         return Err(String::from("the line ends before this column"));
     };
-    let text = String::from_utf8_lossy(cell);
+    let text = String::from_utf8_lossy(cell.trim_ascii());
     match dialect::parse(&text, decimal_comma) {
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(format!("`{}` is not a finite number", shown(&text))),
