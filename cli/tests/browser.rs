@@ -62,8 +62,13 @@ addEventListener('load', () => {
 });
 </script></body>"#;
 
-/// A browser, or `None` with a message.
+/// A browser, or `None` with a message. The default tier does without: a browser takes more processor time
+/// than all else that the command's tests do.
 fn browser() -> Option<PathBuf> {
+    if !overact_tier::is_full() {
+        println!("skipped: the full tier looks at the report in a browser");
+        return None;
+    }
     if let Some(path) = env::var_os("OVERACT_CHROMIUM") {
         return Some(path.into());
     }

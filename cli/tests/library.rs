@@ -40,7 +40,7 @@ fn all_are_checked() {
 #[test]
 fn all_are_inspected_drawn_and_evaluated() {
     let bench = Bench::new();
-    for name in robots() {
+    for name in robots_of_the_tier() {
         let document = bench.json(&[
             "inspect",
             &file(&name),
@@ -58,12 +58,23 @@ fn all_are_inspected_drawn_and_evaluated() {
         assert_drawing(&name, &bench.read("drawing.svg"));
         assert_evaluation(&name, &bench, &document);
     }
+}
+
+#[test]
+fn all_have_a_drawing_and_no_drawing_is_left_over() {
     let drawings = fs::read_dir(drawings()).expect("the drawings").count();
-    assert_eq!(drawings, robots().len(), "no drawing without a robot");
+    assert_eq!(drawings, robots().len());
+    for name in robots() {
+        assert!(drawing_of(&name).is_file(), "{name}");
+    }
 }
 
 fn drawings() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/robots")
+}
+
+fn drawing_of(name: &str) -> PathBuf {
+    drawings().join(format!("{name}.svg"))
 }
 
 /// Base parameters are some of the standard ones, and regroup only such.
@@ -94,7 +105,7 @@ fn assert_regroupings(name: &str, document: &Value) {
 /// The drawing is the one of `docs/robots`, and sound: every element is closed in its order, and
 /// numbers are numbers.
 fn assert_drawing(name: &str, svg: &str) {
-    let kept = fs::read_to_string(drawings().join(format!("{name}.svg"))).unwrap_or_default();
+    let kept = fs::read_to_string(drawing_of(name)).unwrap_or_default();
     assert!(
         kept == svg,
         "docs/robots/{name}.svg: renew it with `overact inspect robots/{name}.toml --svg docs/robots/{name}.svg`"
@@ -242,8 +253,8 @@ fn shortened(name: &str, duration: &str) -> String {
     text.lines().map(line).collect()
 }
 
-/// Every third robot in the default tier, all in the full one: runs are what takes time here, and the
-/// text of modules. That all are generated and compiled is seen in `overact-tests`, in either tier.
+/// Every third robot in the default tier, all in the full one: derivations and runs are what takes time
+/// here, and the text of modules. That all are generated and compiled is seen in `overact-tests`, in either tier.
 fn robots_of_the_tier() -> Vec<String> {
     let step = by_tier([3, 1]);
     robots().into_iter().step_by(step).collect()

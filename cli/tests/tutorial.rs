@@ -86,6 +86,10 @@ fn matches(shown: &[&str], printed: &[&str]) -> bool {
 
 #[test]
 fn the_tutorial_does_what_it_says() {
+    // Its robot, like the one that comes with the tool, is derived and identified several times over.
+    if !overact_tier::is_full() {
+        return;
+    }
     let text = fs::read_to_string(docs().join("tutorial.md")).expect("the tutorial");
     let bench = Bench::new();
     let mut robot = String::new();

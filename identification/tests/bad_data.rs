@@ -1,4 +1,6 @@
 //! Data that can't be right are found and named, and good data raise no alarm.
+//!
+//! Several faults come in variants: the default tier sees one of each, the full tier all.
 
 mod common;
 #[path = "common/dualv.rs"]
@@ -11,6 +13,7 @@ use overact_identification::{
     Check, CheckKind, Dataset, Error, Grade, Identification, Log, identify,
 };
 use overact_simulation::Record;
+use overact_tier::{by_tier, is_full};
 
 /// Two unloaded and two loaded runs of five seconds.
 static RECORDS: LazyLock<Vec<Record>> = LazyLock::new(|| {
@@ -74,6 +77,9 @@ fn good_data_raise_no_alarm() {
     let result = with(|_, _, _| {}).expect("an identification");
     assert_eq!(found(&result), []);
     assert!(trusted(&result, "case 1") && trusted(&result, "case 2"));
+    if !is_full() {
+        return;
+    }
     // Slow and coarse: a tenth of the sampling frequency, encoders of half a milliradian.
     let coarse = with(|_, positions, torques| {
         *positions = positions
@@ -114,6 +120,9 @@ fn clipped_torques_are_named() {
     };
     clipped(&result);
     assert!(!trusted(&result, "case 1"));
+    if !is_full() {
+        return;
+    }
     // The same with the noise of a measurement on top.
     let result = with(|run, _, torques| {
         if run == 2 {
@@ -151,6 +160,9 @@ fn stuck_encoders_are_named() {
         ))),
         Err(error) => assert!(error.to_string().contains("stuck"), "{error}"),
     }
+    if !is_full() {
+        return;
+    }
     // From start to end, which the loops do not allow.
     let result = with(|run, positions, _| {
         if run == 1 {
@@ -174,7 +186,7 @@ fn stuck_encoders_are_named() {
 
 #[test]
 fn dropped_and_repeated_samples_are_named() {
-    for repeated in [false, true] {
+    for &repeated in by_tier([&[false][..], &[false, true]]) {
         let result = with(|run, positions, torques| {
             if run == 0 {
                 for rows in [positions, torques] {
@@ -240,6 +252,9 @@ fn swapped_columns_are_named() {
             "{error}"
         ),
     }
+    if !is_full() {
+        return;
+    }
     // Torques: the model tells.
     let swapped = with(|_, _, torques| torques.chunks_exact_mut(4).for_each(|row| row.swap(1, 2)));
     let result = swapped.expect("an identification");
@@ -297,6 +312,9 @@ fn a_drive_of_the_wrong_sign_is_named() {
         (CheckKind::WrongSign, None, Some("leg4"))
     );
     assert!(!trusted(&result, "case 1"));
+    if !is_full() {
+        return;
+    }
     match with(|_, positions, _| reverse(positions)) {
         Ok(result) => assert!(found(&result).contains(&(
             CheckKind::WrongSign,
@@ -330,7 +348,8 @@ fn a_drive_of_a_wrong_gain_is_named() {
 
 #[test]
 fn a_payload_run_that_is_labelled_unloaded_is_named() {
-    for (number, run, label) in [(3, "loaded 2", false), (0, "unloaded 1", true)] {
+    let all = [(3, "loaded 2", false), (0, "unloaded 1", true)];
+    for &(number, run, label) in by_tier([&all[..1], &all]) {
         let mut runs: Vec<Log> = RECORDS
             .iter()
             .map(|record| log(record.clone(), |_, _| {}))
@@ -351,6 +370,9 @@ fn a_payload_run_that_is_labelled_unloaded_is_named() {
                 .words
                 .contains(&format!("looks like one {is}"))
         );
+    }
+    if !is_full() {
+        return;
     }
     // Even if all are said to be unloaded.
     let runs: Vec<Log> = RECORDS[..3]
@@ -417,6 +439,9 @@ fn torques_that_were_not_recorded_are_named() {
     let zero = with(|_, _, torques| torques.fill(0.0)).expect("an identification");
     assert_eq!(zero.grade(), Grade::DoNotUse);
     assert_eq!(found(&zero)[0].0, CheckKind::ZeroTorque);
+    if !is_full() {
+        return;
+    }
     let twice = with(|_, _, torques| torques.chunks_exact_mut(4).for_each(|row| row[1] = row[0]));
     let twice = twice.expect("an identification");
     assert_eq!(twice.grade(), Grade::DoNotUse);

@@ -2,9 +2,10 @@
 
 use super::conversion::reference;
 use super::expected::Expected;
-use super::{Failure, description, model_of, repository};
-use overact_codegen::RobotModel;
+use super::{Failure, description, repository};
 use overact_codegen::mechanism::{JointKind, TwistCoordinate};
+use overact_codegen::{Effort, Request, RobotModel, compile_with};
+use overact_tier::by_tier;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, OnceLock};
 
@@ -70,7 +71,9 @@ pub fn stems() -> Result<Vec<String>, Failure> {
 /// Model and reference of a robot of `robots/`.
 pub type Described = (RobotModel, Expected);
 
-/// Model and reference of a description of `robots/`, derived once for all tests of a binary.
+/// Model and reference of a description of `robots/`, derived once for all tests of a binary: as it is
+/// derived in the default tier, with its operations searched in the full one. What the search makes of it is
+/// seen in the compiled robots in either tier.
 ///
 /// # Errors
 ///
@@ -88,7 +91,10 @@ pub fn described(stem: &str) -> Result<&'static Described, Failure> {
 }
 
 fn derived(stem: &str) -> Result<Described, Failure> {
-    let model = model_of(&description(stem)?)?;
+    let source = description(stem)?;
+    let request = Request::with_effort(by_tier([Effort::None, Effort::Quick]));
+    let compiled = compile_with(&source, &request).map_err(|e| e.render_plain(&source))?;
+    let model = compiled.model;
     let mechanism = reference(&model.mechanism, workspace(&model));
     let expected = Expected::by_position(&model, mechanism);
     Ok((model, expected))

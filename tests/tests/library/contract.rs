@@ -15,8 +15,9 @@ use overact_tests::support::{Failure, Sample};
 /// Samples in a block.
 const SAMPLES: usize = 3;
 
-/// Largest difference of two backends, relative to the largest number of the output.
-const TOLERANCE: f64 = 1e-12;
+/// Largest difference of two backends, relative to the largest number of the output. They need not have
+/// searched alike, and some of the poses here are far out, where condition numbers are large.
+const TOLERANCE: f64 = 1e-10;
 
 overact_tests::library!(check);
 
