@@ -18,6 +18,7 @@
 
 mod angles;
 mod come_home;
+mod conditions;
 mod guards;
 mod reciprocals;
 mod repair;
@@ -44,12 +45,14 @@ const fn pass(name: &'static str, run: fn(&mut Dag, &SearchLimits)) -> Pass {
 }
 
 /// All passes, in their order.
-pub(crate) const PASSES: [Pass; 10] = [
+pub(crate) const PASSES: [Pass; 12] = [
     pass("replacements", replacements::run),
     pass("repair", repair::run),
+    pass("conditions", conditions::run),
     pass("walk", walk::run),
     pass("come home", come_home::run),
     pass("repair", repair::run),
+    pass("conditions", conditions::run),
     pass("guards", guards::run),
     pass("angles", angles::run),
     pass("signs", signs::run),

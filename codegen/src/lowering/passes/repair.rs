@@ -64,7 +64,7 @@ fn culprit(dag: &Dag, entry: usize) -> Option<usize> {
 }
 
 /// Writes a node as the derivation has it, for good.
-fn keep(dag: &mut Dag, node: usize) {
+pub(super) fn keep(dag: &mut Dag, node: usize) {
     dag.keep_own_form(node);
     let Some(own) = dag.own_form(node) else {
         return;
