@@ -116,7 +116,8 @@ fn spoiled(check: &Check) -> String {
     paragraph(&format!("Not to be used: {}.", names.join(", ")))
 }
 
-/// What was checked and found in order, on demand: a table, and below it what has a plot.
+/// What was checked and found in order, on demand: a table, and below it what has a plot. Paper has a line
+/// or two for each and no plots, which would fill ten pages.
 fn passed(identification: &Identification) -> String {
     let all: Vec<(usize, &Check)> = numbered(identification, true).collect();
     if all.is_empty() {
@@ -131,7 +132,7 @@ fn passed(identification: &Identification) -> String {
             Cell::prose(&heading(check)),
             or_nothing(statistic(check)),
             or_nothing(threshold(check)),
-            Cell::prose(&check.origin),
+            Cell::prose(&check.origin).class("prose screen-only"),
             Cell::prose(&capital(&check.words)),
         ]
     });
@@ -139,7 +140,7 @@ fn passed(identification: &Identification) -> String {
         ("check", ""),
         ("measured", ""),
         ("limit", ""),
-        ("where the limit comes from", ""),
+        ("where the limit comes from", "screen-only"),
         ("in words", ""),
     ];
     let table = Table {
@@ -164,7 +165,10 @@ fn passed(identification: &Identification) -> String {
         1 => String::from("One check found nothing"),
         count => format!("{count} checks found nothing"),
     };
-    details(&summary, &(table.html() + &plots))
+    let elsewhere = "<p class=\"note paper-only\">Where the limits come from, and what shows these results, is on the page and not on paper.</p>\n";
+    let plots = format!("<div class=\"screen-only\">{plots}</div>\n");
+    let table = format!("<div class=\"passed\">{}</div>\n", table.html());
+    details(&summary, &(table + elsewhere + &plots))
 }
 
 /// The plot that shows the result of a check.

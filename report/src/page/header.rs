@@ -22,7 +22,7 @@ pub(super) fn header(contents: &Contents<'_>) -> String {
     if let Some(source) = contents.source {
         let _ = writeln!(
             html,
-            "<p class=\"source\">Description after {}.</p>",
+            "<p class=\"source\">Source of the description: {}.</p>",
             escape(source.trim_end_matches('.'))
         );
     }

@@ -2,14 +2,16 @@
 //! what the data could not tell.
 //!
 //! The verdict stands first, the parameters follow, and every plot says below what to look for in it.
-//! Each section is a file: `verdict`, `checks`, `parameters`, `limits`, `validation`, `inputs`, `residuals`,
-//! `elimination`, `conditioning`, `trajectories`, `tracking`, `data`. Sections that have nothing to
-//! show are left out.
+//! Each section is a file: `verdict`, `checks`, `calibration`, `parameters`, `estimators`, `limits`,
+//! `validation`, `inputs`, `residuals`, `elimination`, `conditioning`, `trajectories`, `tracking`, `data`.
+//! Sections that have nothing to show are left out.
 
+mod calibration;
 mod checks;
 mod conditioning;
 mod data;
 mod elimination;
+mod estimators;
 mod header;
 mod inputs;
 mod limits;
@@ -74,7 +76,9 @@ pub fn page(contents: &Contents<'_>) -> String {
     let sections: Vec<Section> = [
         verdict::section(contents),
         checks::section(contents),
+        calibration::section(contents),
         parameters::section(contents),
+        estimators::section(contents),
         limits::section(contents),
         validation::section(contents),
         inputs::section(contents),

@@ -5,7 +5,10 @@ mod example;
 use super::{Attachment, Contents, page};
 use crate::{Units, beside, numbers, summary, tables};
 use example::{HOSTILE, identification, published, series, settings, units};
-use overact_identification::{Figures, Identification, Thresholds};
+use overact_identification::{
+    CalibratedParameter, Calibration, CalibrationScope, Figures, HeldParameter, Identification,
+    ParameterKind, Thresholds,
+};
 use roxmltree::{Document, ParsingOptions};
 
 /// The page of an identification; everything that can be shown is.
@@ -246,6 +249,68 @@ fn tables_hold_the_numbers() {
     assert!(
         limits.contains("No effect on the torques") && limits.contains("Cancelled by the r_σ rule")
     );
+}
+
+#[test]
+fn what_was_calibrated_is_told_with_its_intervals() {
+    let offset = CalibratedParameter {
+        name: HOSTILE.to_owned(),
+        unit: "rad",
+        kind: ParameterKind::EncoderOffset,
+        described: 0.0,
+        change: 3.4907e-3,
+        standard_deviation: 1.2e-7,
+        interval_95: [3.4905e-3, 3.4909e-3],
+        alternatives: vec![String::from("base_x_leg2")],
+        index: 1,
+    };
+    let held = |name: &str, reason: Option<&str>| HeldParameter {
+        name: name.to_owned(),
+        unit: "m",
+        kind: ParameterKind::BasePoint,
+        described: 0.0,
+        deviation_of_a_change: reason.is_none().then_some(2.3e-7),
+        reason: reason.map(str::to_owned),
+    };
+    let html = full(&Identification {
+        calibration: Some(Calibration {
+            scope: CalibrationScope::Smallest,
+            sensors: 4,
+            coordinates: 3,
+            samples: 2000,
+            noise: Vec::new(),
+            misfit_before: 492.73,
+            misfit_after: 1.0,
+            estimated: vec![offset],
+            held: vec![
+                held("base_x_leg1", None),
+                held("base_z_leg1", Some("it has no effect")),
+                held("base_z_leg2", Some("it has no effect")),
+            ],
+            converged: true,
+            remarks: vec![String::from("angles fix no scale")],
+            warnings: Vec::new(),
+        }),
+        ..identification()
+    });
+    let document = parsed(&html);
+    let calibration = text(element(&document, "calibration"));
+    for words in [
+        "4 sensors measure 3 coordinates",
+        "One value is changed.",
+        "493",
+        "0.0034907",
+        "0.00349050 … 0.00349090",
+        "0.2",
+        "base_x_leg1 (2.3e−7 m)",
+        "since it has no effect: base_z_leg1, base_z_leg2.",
+        "explains the data as well",
+        "Angles fix no scale.",
+    ] {
+        assert!(calibration.contains(words), "{words} in {calibration}");
+    }
+    // Without a calibration nothing is said of it.
+    assert!(!full(&identification()).contains("id=\"calibration\""));
 }
 
 #[test]

@@ -1,0 +1,180 @@
+//! Encoder offsets and lengths that were estimated from the closure of the loops, before the dynamic
+//! parameters were.
+
+use super::{
+    Contents,
+    markup::{Section, capital, details, note, paragraph, with_interval},
+    table::{Cell, Table},
+};
+use overact_identification::{
+    CalibratedParameter, Calibration, CalibrationScope, HeldParameter, ParameterKind, significant,
+};
+
+/// The section; empty where nothing was calibrated.
+pub(super) fn section(contents: &Contents<'_>) -> Section {
+    let calibration = contents.identification.calibration.as_ref();
+    Section {
+        id: "calibration",
+        title: "Calibrated encoders and lengths",
+        body: calibration.map_or_else(String::new, body),
+    }
+}
+
+fn body(calibration: &Calibration) -> String {
+    let mut html = paragraph(&introduction(calibration));
+    if !calibration.estimated.is_empty() {
+        html.push_str(&residual(calibration));
+        html.push_str(&changes(&calibration.estimated));
+        let outcome = if calibration.is_change() {
+            "All else on this page is found with these changes."
+        } else {
+            "The estimation has not converged: all else on this page is found without these changes."
+        };
+        html.push_str(&note(outcome));
+    }
+    for remark in &calibration.remarks {
+        html.push_str(&note(&capital(&format!("{remark}."))));
+    }
+    html.push_str(&held(&calibration.held));
+    html
+}
+
+/// What was done, in words.
+fn introduction(calibration: &Calibration) -> String {
+    let (n, r) = (calibration.sensors, calibration.coordinates);
+    if n <= r {
+        return format!(
+            "{n} sensors measure {r} coordinates: no reading contradicts another, and nothing can be calibrated."
+        );
+    }
+    let looked_for = match calibration.scope {
+        CalibrationScope::Smallest => "the fewest encoder offsets and lengths that explain it",
+        CalibrationScope::Offsets => "all encoder offsets that the data determine",
+        CalibrationScope::All => "all encoder offsets and lengths that the data determine",
+    };
+    let found = match calibration.estimated.len() {
+        0 => String::from("Nothing is changed."),
+        1 => String::from("One value is changed."),
+        count => format!("{count} values are changed."),
+    };
+    format!(
+        "{n} sensors measure {r} coordinates, so that each pose is measured more often than needed. Where readings contradict each other by more than noise, an encoder or a length is not as described. Estimated were {looked_for}, from {} samples. {found}",
+        calibration.samples
+    )
+}
+
+/// What the loops leave unexplained before and after.
+fn residual(calibration: &Calibration) -> String {
+    let row = |what: &str, misfit: f64| vec![Cell::text(what), Cell::digits(Some(misfit), 3)];
+    let table = Table {
+        caption: String::from("What the loops leave unexplained"),
+        header: vec![vec![
+            Cell::text("lengths and encoders"),
+            Cell::text("times the sensors' noise").class("n"),
+        ]],
+        rows: vec![
+            row("as described", calibration.misfit_before),
+            row("as calibrated", calibration.misfit_after),
+        ],
+    };
+    table.html() + &note("Noise alone leaves 1.")
+}
+
+/// What a parameter is, in words.
+const fn kind(kind: ParameterKind) -> &'static str {
+    match kind {
+        ParameterKind::EncoderOffset => "what the encoder shows too much",
+        ParameterKind::Length => "length of a leg",
+        ParameterKind::PlatformPoint => "where the leg meets the platform",
+        ParameterKind::BasePoint => "where the leg stands",
+        _ => "other",
+    }
+}
+
+/// The table of what is changed.
+fn changes(estimated: &[CalibratedParameter]) -> String {
+    let rows = estimated.iter().map(|one| {
+        let (change, interval) = with_interval(one.change, one.interval_95);
+        let degrees = (one.unit == "rad").then(|| one.change.to_degrees());
+        vec![
+            Cell::text(&one.name),
+            Cell::text(kind(one.kind)),
+            Cell::digits(Some(one.described), 6),
+            Cell::number(change),
+            interval.map_or_else(Cell::nothing, Cell::number),
+            Cell::digits(Some(one.standard_deviation), 2),
+            Cell::text(one.unit).class("unit"),
+            Cell::digits(degrees, 4),
+        ]
+    });
+    let right = |title: &str| Cell::text(title).class("n");
+    let table = Table {
+        caption: String::from("What is changed"),
+        header: vec![vec![
+            Cell::text("parameter"),
+            Cell::text("what it is"),
+            right("described"),
+            right("change"),
+            right("95 % interval of the change"),
+            right("deviation"),
+            Cell::text("unit"),
+            right("change (°)"),
+        ]],
+        rows: rows.collect(),
+    };
+    let several = estimated.iter().filter(|one| !one.alternatives.is_empty());
+    let several = several.map(|one| {
+        note(&format!(
+            "In the place of `{}` a change of one of {} explains the data as well: measure which one is wrong.",
+            one.name,
+            one.alternatives
+                .iter()
+                .map(|name| format!("`{name}`"))
+                .collect::<Vec<_>>()
+                .join(", ")
+        ))
+    });
+    table.html() + &several.collect::<String>()
+}
+
+/// What stays as described, on demand: parameters together of which the same is to be said.
+fn held(held: &[HeldParameter]) -> String {
+    if held.is_empty() {
+        return String::new();
+    }
+    let known = held.iter().filter_map(|one| {
+        let deviation = one.deviation_of_a_change?;
+        let deviation = significant(deviation, 2).replace('-', "−");
+        Some(format!("`{}` ({deviation} {})", one.name, one.unit))
+    });
+    let known: Vec<String> = known.collect();
+    let mut html = String::new();
+    if !known.is_empty() {
+        html.push_str(&paragraph(&format!(
+            "As described, and in brackets the deviation that a change would have been found with: {}.",
+            known.join(", ")
+        )));
+    }
+    let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
+    for one in held {
+        let Some(reason) = one.reason.as_deref() else {
+            continue;
+        };
+        let name = format!("`{}`", one.name);
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, names)) => names.push(name),
+            None => reasons.push((reason, vec![name])),
+        }
+    }
+    for (reason, names) in reasons {
+        html.push_str(&paragraph(&format!(
+            "Not determined, since {reason}: {}.",
+            names.join(", ")
+        )));
+    }
+    let summary = match held.len() {
+        1 => String::from("One value stays as described"),
+        count => format!("{count} values stay as described"),
+    };
+    details(&summary, &html)
+}

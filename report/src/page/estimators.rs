@@ -1,0 +1,116 @@
+//! Least squares, instruments and total least squares side by side: whether noise of the measured
+//! positions biases the estimates.
+
+use super::{
+    Contents,
+    markup::{Section, details, note, paragraph, prose},
+    table::{Cell, Table},
+};
+use crate::{choice::case_heading, text::escape};
+use overact_identification::{
+    Agreement, ErrorsInRegressor, Instruments, RegressorError, significant,
+};
+
+/// The section; empty where nothing was tested.
+pub(super) fn section(contents: &Contents<'_>) -> Section {
+    let all = &contents.identification.errors_in_regressor;
+    let tested = all.iter().any(|told| told.agreement.is_some());
+    let mut body = String::new();
+    if tested {
+        body.push_str(&paragraph(
+            "Least squares takes the measured motion as exact. Noise of the positions pulls its estimates away from the truth, and longer runs do not mend that. Instruments are columns of the model that go with the motion but not with its noise: an estimate by instruments has no such bias, but scatters more. Where both agree, the noise does no harm. Total least squares allows errors everywhere; it stands beside them for comparison only.",
+        ));
+        body.extend(all.iter().map(of_model));
+    }
+    Section {
+        id: "estimators",
+        title: "Does noise of the positions bias the estimates?",
+        body,
+    }
+}
+
+/// What is known of one model.
+fn of_model(told: &ErrorsInRegressor) -> String {
+    let heading = format!("<h3>{}</h3>\n", escape(case_heading(told.model)));
+    let outcome = match (&told.agreement, &told.missing) {
+        (Some(agreement), _) => verdict(told, agreement),
+        (None, Some(why)) => format!("Not tested: {why}."),
+        (None, None) => String::from("Not tested."),
+    };
+    let mut html = heading + &paragraph(&outcome);
+    let (differing, rest): (Vec<_>, Vec<_>) = told.parameters.iter().partition(|one| one.differs);
+    if !differing.is_empty() {
+        html.push_str(&table("Base parameters that differ", &differing));
+        html.push_str(&note(
+            "A difference that is in bold exceeds the deviation of least squares, too: take the estimate by instruments. The others are biased by less than they scatter.",
+        ));
+    }
+    if !rest.is_empty() {
+        let summary = match rest.len() {
+            1 => String::from("One base parameter agrees"),
+            count => format!("{count} base parameters agree"),
+        };
+        html.push_str(&details(
+            &summary,
+            &table("Base parameters that agree", &rest),
+        ));
+    }
+    html
+}
+
+/// Whether least squares and instruments agree, in words.
+fn verdict(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
+    let source = match told.instruments {
+        Instruments::Periods => "the other periods of the same motion",
+        Instruments::Simulated => "the motion of the simulated robot",
+        Instruments::None => "none",
+    };
+    let outcome = if agreement.differs {
+        "Least squares and instruments differ by more than chance"
+    } else {
+        "Least squares and instruments agree"
+    };
+    let exceeds = if agreement.together {
+        "chance alone makes as large a difference"
+    } else {
+        "chance alone makes one of the parameters differ as much"
+    };
+    format!(
+        "{outcome}: {exceeds} with a probability of {}; they count as different below {}. The instruments are {source}.",
+        significant(agreement.probability, 2),
+        significant(agreement.level, 2)
+    )
+}
+
+/// Parameters by all three estimators.
+fn table(caption: &str, parameters: &[&RegressorError]) -> String {
+    let rows = parameters.iter().map(|one| {
+        let difference = one.instruments - one.least_squares;
+        let ratio = difference / one.difference_deviation;
+        let class = if one.spoiled { "n strong" } else { "n" };
+        vec![
+            Cell::text(&one.name),
+            Cell::markup(prose(&one.unit)).class("unit"),
+            Cell::digits(Some(one.least_squares), 5),
+            Cell::digits(Some(one.instruments), 5),
+            Cell::digits(one.total_least_squares, 5),
+            Cell::digits(Some(difference), 2).class(class),
+            Cell::digits(ratio.is_finite().then_some(ratio), 2),
+        ]
+    });
+    let right = |title: &str| Cell::text(title).class("n");
+    Table {
+        caption: caption.to_owned(),
+        header: vec![vec![
+            Cell::text("parameter"),
+            Cell::text("unit"),
+            right("least squares"),
+            right("instruments"),
+            right("total least squares"),
+            right("difference of the first two"),
+            right("in its deviations"),
+        ]],
+        rows: rows.collect(),
+    }
+    .html()
+}
