@@ -37,7 +37,7 @@ pub fn tracking(
     }
     plain.feed_forward = false;
     let mut controllers = vec![(String::from("pd"), plain.clone())];
-    for estimate in last_estimates(result) {
+    for estimate in answers(result) {
         let name = match estimate.model {
             ModelKind::Platform => "computed torque, case 1",
             ModelKind::Actuators => "computed torque, case 2",
@@ -67,20 +67,18 @@ pub fn tracking(
     Ok(all)
 }
 
-/// The last stage of each model.
-fn last_estimates(result: &Identification) -> Vec<&Estimate> {
-    let mut last: Vec<&Estimate> = Vec::new();
+/// The recommended parameters of each model; all base parameters where nothing is recommended.
+fn answers(result: &Identification) -> Vec<&Estimate> {
+    let mut answers: Vec<&Estimate> = Vec::new();
     for estimate in result.by_least_squares() {
-        match last
-            .last_mut()
-            .filter(|known| known.model == estimate.model)
-        {
-            Some(known) if estimate.stage == Stage::Essential => *known = estimate,
+        let known = answers.iter_mut().find(|one| one.model == estimate.model);
+        match known {
+            Some(known) if estimate.stage == Stage::Recommended => *known = estimate,
             Some(_) => {}
-            None => last.push(estimate),
+            None => answers.push(estimate),
         }
     }
-    last
+    answers
 }
 
 /// Standard parameters with the same model: each base parameter stands on the one that is kept, the
