@@ -50,7 +50,12 @@ fn write(path: &Path, record: &Record, times: usize) {
 
 /// Identifies from a log that repeats the record; progress is told all the way. Returns the most memory that
 /// was allocated at a time, MB.
-fn identified(robot: &DualV, folder: &Path, record: &Record, times: usize) -> f64 {
+fn identified(
+    robot: &DualV,
+    folder: &Path,
+    record: &Record,
+    (times, instruments): (usize, Instruments),
+) -> f64 {
     let path = folder.join("long.csv");
     write(&path, record, times);
     ALLOCATOR.reset_peak_usage();
@@ -59,8 +64,7 @@ fn identified(robot: &DualV, folder: &Path, record: &Record, times: usize) -> f6
     let settings = Settings {
         // Few equations, so that what is kept of them to judge their residuals is small beside the log.
         decimation: 400,
-        // The decimation of twice as many columns would take as long again to fill its memory.
-        instruments: Instruments::None,
+        instruments,
         ..settings(robot)
     };
     let told = Cell::new(0);
@@ -86,6 +90,17 @@ fn identified(robot: &DualV, folder: &Path, record: &Record, times: usize) -> f6
     f64::from(ALLOCATOR.peak_usage_as_mb())
 }
 
+/// Repetitions of the record, instruments, and by how much more memory (MB) forty more may take. The
+/// decimation's windows are full after about half a million samples only, with instruments after some more:
+/// until then some memory is taken for them.
+type Case = (usize, Instruments, f64);
+
+const QUICK: &[Case] = &[(27, Instruments::None, 10.0)];
+const THOROUGH: &[Case] = &[
+    (107, Instruments::None, 8.0),
+    (160, Instruments::Periods, 8.0),
+];
+
 #[test]
 fn more_samples_take_hardly_more_memory() {
     let robot = DualV::new();
@@ -95,14 +110,13 @@ fn more_samples_take_hardly_more_memory() {
     experiment.runs.retain(|run| run.name == "unloaded 2");
     let record = records(&robot, &experiment).remove(0);
     let folder = tempfile::tempdir().expect("a folder");
-    // The decimation's windows are full after about half a million samples only: until then some memory is
-    // taken for them.
-    let (times, allowed) = by_tier([(27, 10.0), (107, 5.0)]);
-    // The first time, threads are started and tables made that stay.
-    identified(&robot, folder.path(), &record, times);
-    let short = identified(&robot, folder.path(), &record, times);
-    let long = identified(&robot, folder.path(), &record, times + 40);
-    // The numbers of the additional samples alone would take 12.8 MB.
-    println!("at most {short:.1} MB at a time, then {long:.1} MB");
-    assert!(long < short + allowed, "{short} MB, then {long} MB");
+    for &(times, instruments, allowed) in by_tier([QUICK, THOROUGH]) {
+        let most = |times| identified(&robot, folder.path(), &record, (times, instruments));
+        // The first time, threads are started and tables made that stay.
+        most(27);
+        let (short, long) = (most(times), most(times + 40));
+        // The numbers of the additional samples alone would take 12.8 MB.
+        println!("{instruments:?}: at most {short:.1} MB at a time, then {long:.1} MB");
+        assert!(long < short + allowed, "{short} MB, then {long} MB");
+    }
 }

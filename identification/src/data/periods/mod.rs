@@ -25,6 +25,9 @@ const MOST_TOGETHER: usize = 10;
 /// Phase, in samples, by which the last period may be off.
 const LARGEST_DRIFT: f64 = 0.05;
 
+/// Numbers of a period that are kept (16 MB), at most, so that memory does not grow with the run.
+const LARGEST_PERIOD: usize = 1 << 21;
+
 /// Part of the motion's variance by which periods may differ: more is no repetition.
 const LARGEST_DIFFERENCE: f64 = 1e-3;
 
@@ -104,6 +107,12 @@ fn together(log: &Log, period: f64) -> Result<usize, Error> {
         let fits = drift <= LARGEST_DRIFT && samples.round() <= half as f64;
         fits.then_some(samples.round() as usize)
     });
+    if let Some(samples) = whole.filter(|samples| samples * log.actuators() > LARGEST_PERIOD) {
+        return problem(
+            format!("a period of {period} s has {samples} samples: too many to be kept in memory"),
+            "log it at a lower frequency, or choose another source of `instruments`",
+        );
+    }
     whole.map_or_else(
         || {
             problem(

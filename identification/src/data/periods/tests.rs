@@ -74,3 +74,12 @@ fn what_does_not_repeat_itself_is_no_period() {
     assert!(said(1000.0, Some(f64::NAN)).contains("not possible"));
     assert!(said(1000.0, Some(0.98765)).contains("whole number of samples"));
 }
+
+#[test]
+fn a_period_that_does_not_fit_into_memory_is_refused() {
+    let samples = super::LARGEST_PERIOD / 2 + 1000;
+    let numbers = vec![0.0; 2 * 2 * samples];
+    let log = Log::new("run", 1000.0, 2, numbers.clone(), numbers, false).expect("a run");
+    let error = periods(&log, Some(samples as f64 * 1e-3)).expect_err("too long");
+    assert!(error.to_string().contains("too many"), "{error}");
+}
