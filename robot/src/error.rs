@@ -1,6 +1,6 @@
 //! What is wrong, all of it at once, each at its place and with a way out.
 
-use overact_codegen::diagnostic::{Diagnostics, InternalError, Located, Source};
+use overact_codegen::diagnostic::{Diagnostics, InternalError, Located, Source, visible};
 use serde::Serialize;
 use std::fmt;
 
@@ -66,9 +66,9 @@ impl Problem {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "error: {}", self.message)?;
+        write!(f, "error: {}", visible(&self.message))?;
         if let Some(file) = &self.file {
-            write!(f, "\n --> {file}")?;
+            write!(f, "\n --> {}", visible(file))?;
             if let Some(line) = self.line {
                 write!(f, ":{line}")?;
             }
@@ -77,7 +77,7 @@ impl fmt::Display for Problem {
             }
         }
         if let Some(help) = &self.help {
-            write!(f, "\n  = help: {help}")?;
+            write!(f, "\n  = help: {}", visible(help))?;
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ mod render;
 mod suggestion;
 
 pub use internal::InternalError;
-pub use render::Located;
+pub use render::{Located, visible};
 pub use suggestion::{did_you_mean, nearest};
 
 use std::ops::Range;

@@ -2,6 +2,7 @@
 
 use super::{Diagnostic, Diagnostics, Source};
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
+use overact_core::text::is_invisible;
 use serde::Serialize;
 
 /// An error with its place, ready for JSON.
@@ -64,6 +65,18 @@ impl Diagnostics {
     }
 }
 
+/// A text with a mark in place of every character that has no glyph, or that turns the direction of what
+/// follows: a name of a file must not rearrange what is said about it.
+#[must_use]
+pub fn visible(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\n' => c,
+        c if is_invisible(c) => '\u{fffd}',
+        c => c,
+    };
+    text.chars().map(shown).collect()
+}
+
 /// The same error at more places than this is shown once, with the lines of the others.
 const REPEATED: usize = 3;
 
@@ -85,10 +98,13 @@ fn render_one(
     source: &Source,
     renderer: &Renderer,
 ) -> String {
-    let title = Level::ERROR.primary_title(diagnostic.message.as_str());
+    let message = visible(&diagnostic.message);
+    let label = visible(&diagnostic.label);
+    let help = diagnostic.help.as_deref().map(visible);
+    let title = Level::ERROR.primary_title(message.as_str());
     let mut group = match &diagnostic.span {
         Some(span) => {
-            let label = Some(diagnostic.label.as_str()).filter(|label| !label.is_empty());
+            let label = Some(label.as_str()).filter(|label| !label.is_empty());
             let annotation = AnnotationKind::Primary
                 .span(source.first_line(span))
                 .label(label);
@@ -97,7 +113,7 @@ fn render_one(
         }
         None => title.element(Origin::path(source.name.as_str())),
     };
-    if let Some(help) = &diagnostic.help {
+    if let Some(help) = &help {
         group = group.element(Level::HELP.message(help.as_str()));
     }
     let repeated = (!others.is_empty()).then(|| lines(others, source));
@@ -132,6 +148,24 @@ error: unknown key `gammma`
   = help: did you mean `gamma`?";
         assert_eq!(errors.render_plain(&source), expected);
         assert!(errors.render_styled(&source).contains('\u{1b}'));
+    }
+
+    #[test]
+    fn what_a_file_says_cannot_turn_the_direction_of_an_error() {
+        let source = Source::new("a.toml", "name = \"A\"");
+        let errors: Diagnostics = Diagnostic::new("no actuator `\u{202e}a`", 0..4)
+            .label("not \u{1b}[31mred")
+            .help("the actuators are \u{2066}b, c\u{200b}")
+            .into();
+        let said = errors.render_plain(&source);
+        assert!(
+            !said.chars().any(|c| c != '\n' && is_invisible(c)),
+            "{said:?}"
+        );
+        assert!(
+            said.contains("the actuators are \u{fffd}b, c\u{fffd}"),
+            "{said}"
+        );
     }
 
     #[test]
