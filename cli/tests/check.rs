@@ -121,3 +121,50 @@ fn chains_of_many_joints_are_checked_in_seconds_up_to_a_stated_limit() {
         "{said}"
     );
 }
+
+#[test]
+fn filters_and_names_that_nothing_can_be_done_with_are_found() {
+    let bench = Bench::new();
+    let five_bar = std::fs::read_to_string(common::robot("five_bar.toml")).expect("a description");
+    let check = |changes: &[(&str, &str)]| {
+        let text = changes.iter().fold(five_bar.clone(), |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replacen(from, to, 1)
+        });
+        bench.write("my.toml", &text);
+        let said = bench.bad(&["check", "my.toml"]);
+        (said, line(&bench, changes[0].1))
+    };
+    let cutoff = "filter_cutoff = \"100 Hz\"";
+    for (changes, expected) in [
+        (
+            [(cutoff, "filter_order = 1000")],
+            "a filter of order 1000 is not possible",
+        ),
+        (
+            [(cutoff, "filter_cutoff = \"1e-9 Hz\"")],
+            "is below one period in the longest run",
+        ),
+        (
+            [(
+                "name = \"circle-like\"",
+                &*format!("name = \"{}\"", "a".repeat(300)),
+            )],
+            "the name of the run has 300 characters, more than 60",
+        ),
+        (
+            [(
+                "gravity = [0, \"-9.81 m/s^2\", 0]",
+                "gravity = [0, 1e308, 0]",
+            )],
+            "the value is too large",
+        ),
+    ] {
+        let (said, line) = check(&changes);
+        assert!(said.contains(expected), "{said}");
+        assert!(
+            said.contains(&format!("my.toml:{line}:")),
+            "{line} in {said}"
+        );
+    }
+}

@@ -14,6 +14,7 @@ use overact_codegen::{
     diagnostic::{Diagnostic, Diagnostics, Source},
     mechanism::{JointKind, Mechanism},
 };
+use overact_identification::filters::butterworth;
 use overact_simulation::Experiment;
 use std::path::Path;
 
@@ -104,6 +105,20 @@ fn check_filters(
     if cutoff >= nyquist {
         let message = format!(
             "the cutoff frequency of {cutoff} Hz is not below half the sampling frequency of the virtual experiment, {nyquist} Hz"
+        );
+        let help = "choose about ten times the bandwidth of the motion";
+        errors.push(at("identification.filter_cutoff", message, help));
+    } else if let Err(refused) = butterworth(settings.filter_order, cutoff / nyquist) {
+        for problem in refused.problems {
+            let help = problem.help.unwrap_or_default();
+            errors.push(at("identification.filter_order", problem.message, &help));
+        }
+    }
+    let longest = experiment.runs.iter().map(|run| experiment.samples(run));
+    let longest = longest.max().unwrap_or(0) as f64 / frequency;
+    if cutoff * longest < 1.0 {
+        let message = format!(
+            "the cutoff frequency of {cutoff} Hz is below one period in the longest run, of {longest} s: nothing of the motion would be left"
         );
         let help = "choose about ten times the bandwidth of the motion";
         errors.push(at("identification.filter_cutoff", message, help));

@@ -212,11 +212,24 @@ fn runs(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<Run> {
     runs
 }
 
+/// Most characters of a run's name, which stands in names of files.
+const NAME: usize = 60;
+
 fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
     let scope = robot.scope;
     let name = table
         .require("name", "for instance name = \"unloaded 1\"")
-        .and_then(|i| i.string());
+        .and_then(|i| {
+            let name = i.string()?;
+            let length = name.value.chars().count();
+            if length > NAME {
+                let message =
+                    format!("the name of the run has {length} characters, more than {NAME}");
+                let help = "its logs are named after it: take a short one";
+                table.context.report(i.error(message).help(help));
+            }
+            Some(name)
+        });
     let payload_item = table.get("payload");
     let payload = payload_item
         .as_ref()
