@@ -32,7 +32,10 @@ use std::process::ExitCode;
 /// Runs the command that the process was started with.
 #[must_use]
 pub fn run() -> ExitCode {
-    let arguments = commands::Arguments::parse();
+    let arguments = match commands::Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return misused(&error),
+    };
     let json = arguments.json;
     match guarded::run(&arguments.command, json) {
         Ok(()) => ExitCode::SUCCESS,
@@ -41,4 +44,17 @@ pub fn run() -> ExitCode {
             ExitCode::from(failure.exit_code())
         }
     }
+}
+
+/// Help and the version go to stdout; what is wrong with the arguments is told as everything else is.
+fn misused(error: &clap::Error) -> ExitCode {
+    let wants_json = std::env::args_os().any(|argument| argument == "--json");
+    if !(error.use_stderr() && wants_json) {
+        error.exit();
+    }
+    let said = error.render().to_string();
+    let message = said.strip_prefix("error: ").unwrap_or(&said).trim_end();
+    let failure = failure::Failure::Usage(message.to_owned());
+    failure.report(true);
+    ExitCode::from(failure.exit_code())
 }

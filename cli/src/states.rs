@@ -176,13 +176,24 @@ fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
     let mut states = Vec::new();
     for record in reader.records() {
         let record = record.map_err(broken)?;
+        let line = record.position().map(|position| first_line(text, position));
+        if record
+            .iter()
+            .skip(header.len())
+            .any(|cell| !cell.is_empty())
+        {
+            let (found, named) = (record.len(), header.len());
+            let message = format!("{found} cells in a line, and {named} names in the header");
+            let help =
+                "name every column, or leave out what has no name; numbers take a decimal point";
+            return Err(Problem::new(message).line(line).help(help));
+        }
         let mut cells: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
         for ((name, index), cell) in header.iter().zip(&record) {
             cells.entry(name).or_default().push((*index, cell));
         }
         // A quantity whose cells are all empty is not given in this state.
         cells.retain(|_, cells| cells.iter().any(|(_, cell)| !cell.is_empty()));
-        let line = record.position().map(|position| first_line(text, position));
         let quantities = cells
             .into_iter()
             .map(|(name, cells)| (name.to_owned(), from_cells(cells)));
@@ -262,7 +273,14 @@ mod tests {
         assert!(message("pose[0],pose[2]\n1,2\n", "pose").contains("no column [1]"));
         assert!(message("[{\"pose\":[1,2]}]", "pose").contains("has 2 numbers, expected 3"));
         assert!(message("[{\"pose\":[1,\"a\",3]}]", "pose").contains("no number"));
-        for text in ["", "[]", "pose[0]\n", "[1]", "[{"] {
+        for text in [
+            "",
+            "[]",
+            "pose[0]\n",
+            "[1]",
+            "[{",
+            "pose[0],pose[1]\n1,2,3\n",
+        ] {
             assert!(States::parse("s".into(), text).is_err(), "{text}");
         }
     }

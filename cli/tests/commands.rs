@@ -111,13 +111,14 @@ fn redundancy_that_is_not_spoken_of_is_worth_a_note() {
 fn usage_errors_have_their_own_code() {
     let bench = Bench::new();
     let dualv = robot("dualv.toml");
-    let usages: [&[&str]; 6] = [
+    let usages: [&[&str]; 7] = [
         &[],
         &["chek"],
         &["check"],
         &["evaluate", "my.toml", "joints"],
         &["generate", "--check", &dualv],
         &["simulate", &dualv],
+        &["inspect", &dualv, "-o", "-"],
     ];
     for usage in usages {
         let outcome = bench.run(usage);
@@ -127,6 +128,19 @@ fn usage_errors_have_their_own_code() {
             "{usage:?}"
         );
         assert!(!outcome.err.is_empty());
+        if usage.is_empty() {
+            continue;
+        }
+        let json = bench.run(&[usage, &["--json"]].concat());
+        assert_eq!((json.code, json.out.as_str()), (Some(2), ""), "{usage:?}");
+        let document: Value = serde_json::from_str(&json.err).expect("errors as JSON");
+        let message = document["errors"][0]["message"]
+            .as_str()
+            .expect("a message");
+        assert!(
+            !message.is_empty() && !message.starts_with("error"),
+            "{message}"
+        );
     }
     assert_eq!(bench.run(&["--help"]).code, Some(0));
 }

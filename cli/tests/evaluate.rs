@@ -235,3 +235,25 @@ fn quaternions_of_any_length_are_one_rotation() {
     assert_eq!(run.code, Some(1), "{}", run.err);
     assert!(run.err.contains("quaternion"), "{}", run.err);
 }
+
+#[test]
+fn what_would_be_no_number_is_refused() {
+    let bench = Bench::new();
+    // The rods lie in the plane of their joints, where the first angle of a joint is not determined.
+    bench.write("flat.json", r#"[{ "pose": [0, 0, 0, 1, 0, 0, 0] }]"#);
+    let hexapod = robot("hexapod.toml");
+    let said = bench.bad(&["evaluate", &hexapod, "joints", "--states", "flat.json"]);
+    assert!(said.contains("leg `leg1` is singular here"), "{said}");
+    let fast = r#"[{ "pose": [0, 0, 0], "twist": [1e200, 0, 0], "acceleration": [0, 0, 0] }]"#;
+    bench.write("fast.json", fast);
+    let dualv = robot("dualv.toml");
+    let ask = ["evaluate", &dualv, "idm_red_platform", "--states"];
+    let said = bench.bad(&[&ask[..], &["fast.json"]].concat());
+    assert!(said.contains("is too large for a number"), "{said}");
+    bench.write("more.csv", "pose[0],pose[1],pose[2]\n0,0,0\n0,0,0,1\n");
+    let said = bench.bad(&["evaluate", &dualv, "joints", "--states", "more.csv"]);
+    assert!(
+        said.contains("more.csv:3") && said.contains("4 cells in a line, and 3 names"),
+        "{said}"
+    );
+}

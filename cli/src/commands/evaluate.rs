@@ -196,7 +196,19 @@ fn evaluate(
         let error = robot.error(program, &failed);
         states.problem(error.sample, &error.error.to_string())
     })?;
-    Ok(values)
+    // Guards keep what is divided by away from zero; inputs of 1e200 have squares that are no numbers.
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(values),
+        Some(at) => {
+            let width = program.entries.len();
+            let message = format!(
+                "number {} of the result is too large for a number",
+                at % width
+            );
+            let help = "check the units: positions in m and rad, velocities in m/s and rad/s";
+            Err(states.problem(at / width, &message).help(help).into())
+        }
+    }
 }
 
 /// One row per state under a header of names with indices.

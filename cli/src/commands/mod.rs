@@ -8,6 +8,7 @@ mod inspect;
 mod new;
 mod partitions;
 mod runs;
+mod same;
 mod simulate;
 
 use crate::failure::{Failure, Problem};

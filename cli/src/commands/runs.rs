@@ -1,6 +1,6 @@
 //! The runs of an identification: measured logs, or the virtual experiment.
 
-use super::simulate;
+use super::{same, simulate};
 use crate::{failure::Failure, progress::Progress};
 use clap::ValueEnum;
 use overact_identification::{Progress as Doing, Settings, data};
@@ -94,6 +94,8 @@ impl Arguments {
             .chain(&others)
             .map(|(path, payload)| (path.as_path(), *payload))
             .collect();
+        let logs: Vec<&Path> = files.iter().map(|(path, _)| *path).collect();
+        same::check(&logs, own.len())?;
         let bar = Progress::new("reading", as_json);
         let mut identified = robot.read_logs(&files, &|part: f64| bar.at(part, ""))?;
         let validation = identified.split_off(own.len());

@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(seed) = arguments.seed {
         experiment.plan_mut().seed = seed;
     }
-    let files = files(experiment.plan(), arguments.output.as_deref(), as_json)?;
+    let files = files(experiment.plan(), arguments.output.as_deref())?;
     let outputs: Vec<&Path> = files.iter().flatten().map(PathBuf::as_path).collect();
     output::check_distinct(&[&arguments.file], &outputs)?;
     warn(experiment.without_effect(), as_json);
@@ -110,14 +110,10 @@ fn keep_runs(experiment: &mut VirtualExperiment<'_>, names: &[String]) -> Result
 }
 
 /// The file of each run; none where the only one goes to stdout.
-fn files(
-    experiment: &Experiment,
-    output: Option<&Path>,
-    as_json: bool,
-) -> Result<Vec<Option<PathBuf>>, Failure> {
+fn files(experiment: &Experiment, output: Option<&Path>) -> Result<Vec<Option<PathBuf>>, Failure> {
     let runs = &experiment.runs;
     let Some(output) = output else {
-        if runs.len() > 1 && !as_json {
+        if runs.len() > 1 {
             let message = "several runs need files to be written to: add `-o log.csv`, or choose one with `--run`";
             return Err(Failure::Usage(message.to_owned()));
         }

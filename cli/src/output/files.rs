@@ -34,6 +34,10 @@ pub(crate) fn check<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(),
 /// # Errors
 /// Arguments that do not go together, or files that may not be written.
 pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(), Failure> {
+    if outputs.iter().any(|output| output.as_os_str() == "-") {
+        let message = "`-` as an output would be a file of that name: leave `-o` out for stdout, or write `./-`";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     let replaced = |path: &&&Path| fs::metadata(path).map_or(true, |existing| existing.is_file());
     let outputs: Vec<&Path> = outputs.iter().filter(replaced).copied().collect();
     for (at, output) in outputs.iter().enumerate() {
@@ -279,6 +283,8 @@ mod tests {
             assert!(matches!(found, Err(Failure::Usage(_))), "{other}");
         }
         assert!(check(&[], &[&at("none/new.csv")]).is_err());
+        let dash = check(&[], &[std::path::Path::new("-")]);
+        assert!(matches!(dash, Err(Failure::Usage(_))));
         assert!(check_distinct(&[], &[&at("none/new.csv")]).is_ok());
         let nowhere = std::path::Path::new("/dev/null");
         assert!(check(&[], &[nowhere, nowhere]).is_ok());

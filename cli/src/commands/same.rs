@@ -1,0 +1,110 @@
+//! Logs that are given twice, under whatever names: their samples would count twice, and a prediction of the
+//! data that parameters were estimated from says little.
+
+use crate::failure::{Failure, Problem};
+use overact_identification::data;
+use std::{fs, path::Path};
+
+/// Refuses logs with the same content: of the first `estimated` ones that parameters are estimated from, and
+/// of those behind them that predictions are compared with.
+///
+/// # Errors
+/// Every log with the content of an earlier one.
+pub(super) fn check(logs: &[&Path], estimated: usize) -> Result<(), Failure> {
+    let sizes: Vec<Option<Vec<u64>>> = logs.iter().map(|log| sizes(log)).collect();
+    let mut problems = Vec::new();
+    for at in 1..logs.len() {
+        let is_same = |&other: &usize| {
+            sizes[at].is_some()
+                && sizes[at] == sizes[other]
+                && content(logs[at]) == content(logs[other])
+        };
+        if let Some(other) = (0..at).find(is_same) {
+            problems.push(problem(
+                logs[at],
+                logs[other],
+                at < estimated,
+                other < estimated,
+            ));
+        }
+    }
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(problems.into())
+    }
+}
+
+fn problem(log: &Path, other: &Path, is_estimated: bool, is_other_estimated: bool) -> Problem {
+    let other = other.display();
+    let (message, help) = if !is_estimated && is_other_estimated {
+        (
+            format!(
+                "the log has the content of `{other}`, from which the parameters are estimated"
+            ),
+            "cross-validate with a run that the estimation does not see",
+        )
+    } else {
+        (
+            format!("the log has the content of `{other}`: its samples would count twice"),
+            "give each log once",
+        )
+    };
+    Problem::new(message)
+        .file(log.display().to_string())
+        .help(help)
+}
+
+/// Sizes of the files of a log; none where one of them is no file, which reading the log tells of.
+fn sizes(log: &Path) -> Option<Vec<u64>> {
+    let size = |path: &Path| Some(fs::metadata(path).ok().filter(fs::Metadata::is_file)?.len());
+    data::parts(log).into_iter().map(size).collect()
+}
+
+/// The bytes of the files of a log.
+fn content(log: &Path) -> Option<Vec<Vec<u8>>> {
+    let parts = data::parts(log).into_iter();
+    parts.map(|path| fs::read(path).ok()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::check;
+    use std::{fs, path::Path};
+
+    #[test]
+    fn a_log_is_given_once_under_whatever_name() -> std::io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let at = |name: &str| folder.path().join(name);
+        for (name, text) in [
+            ("a.csv", "t,q\n0,1\n"),
+            ("b.csv", "t,q\n0,2\n"),
+            ("c.csv", "t,q\n0,1\n"),
+        ] {
+            fs::write(at(name), text)?;
+        }
+        let [a, b, c, none] = ["a.csv", "b.csv", "c.csv", "none.csv"].map(at);
+        let said = |logs: &[&Path], estimated| match check(logs, estimated) {
+            Ok(()) => String::new(),
+            Err(failure) => failure.render(false),
+        };
+        assert_eq!(said(&[&a, &b, &none, &none], 1), "");
+        let twice = said(&[&a, &b, &a, &c], 4);
+        assert_eq!(
+            twice.matches("its samples would count twice").count(),
+            2,
+            "{twice}"
+        );
+        assert!(
+            twice.contains("c.csv") && twice.contains("give each log once"),
+            "{twice}"
+        );
+        let validated = said(&[&a, &c], 1);
+        assert!(
+            validated.contains("from which the parameters are estimated"),
+            "{validated}"
+        );
+        assert!(said(&[&a, &b, &b], 1).contains("count twice"));
+        Ok(())
+    }
+}
