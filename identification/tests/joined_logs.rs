@@ -72,8 +72,8 @@ fn files_are_joined_sample_by_sample() {
     );
     assert_eq!(
         joined("file3.b", "$5").expect_err("missing"),
-        "pos.csv+torque.csv: there are no columns `file3.b`, `$5`; the file has `a`, `b`, `a`, `c`\n  help: name \
-         the columns in the mapping"
+        "pos.csv+torque.csv: there are no columns `file3.b`, `$5`; the file has `a`, `b`, `a`, `c`\n  help: the \
+         columns that can be called by number are `$1` to `$4`"
     );
     let missing = run("pos.csv+none.csv", &files, &mapping(at(10.0), "b", "c"));
     assert!(

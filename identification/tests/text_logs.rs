@@ -157,7 +157,7 @@ fn columns_that_are_not_there_are_named_by_number() {
     assert_eq!(
         refused(b"0 0\n0.1 0\n", &numbered(Time::Frequency(10.0))),
         "log.txt: there is no column `$3`; the file has 2 columns, without names\n  help: \
-         name the columns in the table [data] by their numbers: `$1` is the first one, `$2` the next"
+         the columns that can be called by number are `$1` to `$2`"
     );
     assert_eq!(
         refused(

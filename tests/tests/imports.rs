@@ -130,7 +130,7 @@ const HOUSES: [House; 6] = [
 /// it is read, and reading a file makes a log. The others wait to be taken apart; a new one is refused.
 const CIRCLES: [(&str, &[&str]); 4] = [
     ("codegen/cas", &["arena", "expr"]),
-    ("identification/data", &["csv_file", "log", "periods"]),
+    ("identification/data", &["log", "periods"]),
     (
         "identification/estimation",
         &["instruments", "total_least_squares"],

@@ -123,23 +123,24 @@ impl Mapping {
         if actuators == 0 {
             problems.push(Problem::new("the mapping names no position").column("positions"));
         }
+        problems.extend(self.bad_factors());
+        Error::check(problems)
+    }
+
+    /// Factors that lose a signal.
+    fn bad_factors(&self) -> Vec<Problem> {
         let gains = self.torque_gain.iter().filter_map(|gain| match gain {
             Gain::Value(value) => Some(("torque_gain", *value)),
             Gain::Variable(_) => None,
         });
-        let scales = self
-            .position_scale
-            .iter()
-            .map(|scale| ("position_scale", *scale));
-        for (name, value) in gains.chain(scales) {
-            if !value.is_finite() || value == 0.0 {
-                problems.push(
-                    Problem::new(format!("a factor of `{name}` is {value}"))
-                        .column(name)
-                        .help("give the number by which the column is to be multiplied"),
-                );
-            }
-        }
-        Error::check(problems)
+        let scales = self.position_scale.iter();
+        let scales = scales.map(|scale| ("position_scale", *scale));
+        let bad = |(_, value): &(&str, f64)| !value.is_finite() || *value == 0.0;
+        let problem = |(name, value): (&str, f64)| {
+            Problem::new(format!("a factor of `{name}` is {value}"))
+                .column(name)
+                .help("give the number by which the column is to be multiplied")
+        };
+        gains.chain(scales).filter(bad).map(problem).collect()
     }
 }

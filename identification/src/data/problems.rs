@@ -96,7 +96,11 @@ pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<
                 .map(|near| format!("`{}` for `{name}`", shown(near)))
         })
         .collect();
-    if !guesses.is_empty() {
+    if *columns > 0 && missing.iter().any(|name| name.starts_with('$')) {
+        problem.help(format!(
+            "the columns that can be called by number are `$1` to `${columns}`"
+        ))
+    } else if !guesses.is_empty() {
         problem.help(format!("did you mean {}?", guesses.join(", ")))
     } else if names.is_empty() && *columns > 0 {
         problem.help(
