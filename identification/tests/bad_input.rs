@@ -103,7 +103,9 @@ fn a_time_that_is_not_uniform_is_located() {
          samples are missing"
     );
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0,0,0\n");
-    assert!(text(log, folder.path()).contains("the time is not uniform"));
+    assert!(text(log, folder.path()).contains("it steps by 0 s, expected 0 s"));
+    let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n1e-10,0,0\n3e-10,0,0\n");
+    assert!(text(log, folder.path()).contains("it steps by 0.0000000001 s"));
 }
 
 #[test]

@@ -94,13 +94,24 @@ impl Clock {
             return;
         }
         let problem = Problem::new(format!(
-            "the time is not uniform: between samples {index} and {} it steps by {step:.9} s, expected {expected:.9} s",
+            "the time is not uniform: between samples {index} and {} it steps by {} s, expected {} s",
             index + 1,
+            shown(step),
+            shown(expected),
         ))
         .help("resample the run at a constant frequency, or cut it where samples are missing");
         self.bad = Some(match line {
             Some(line) => problem.line(line),
             None => problem,
         });
+    }
+}
+
+/// A step with nine decimals, or with all of them where these would be zero.
+fn shown(step: f64) -> String {
+    if step.abs() < 1e-6 {
+        format!("{step}")
+    } else {
+        format!("{step:.9}")
     }
 }
