@@ -5,21 +5,22 @@
 //! coefficients of an equation that is solved for a turn. Where one of those vanishes the function has no
 //! value, and has to say so.
 
-use super::functions::Derived;
 use super::guard::{Guard, GuardKind};
 use crate::cas::{Arena, Expr};
 use crate::mechanism::Mechanism;
 use overact_core::ActuatorGroup;
 
-/// A condition on every divisor of a derived function, in the order in which they were built.
+/// A condition on every divisor of a function's entries, in the order in which they were built; `guards` are
+/// those that the function has anyway.
 pub(super) fn conditions<'a>(
     arena: &'a Arena,
     mechanism: &Mechanism,
-    derived: &Derived<'a>,
+    entries: &[Expr<'a>],
+    guards: &[Guard<'a>],
 ) -> Vec<Guard<'a>> {
     let scopes = arena.scope_names();
     let condition = |value: Expr<'a>| {
-        if let Some(guard) = of_multiple(value, &derived.guards) {
+        if let Some(guard) = of_multiple(value, guards) {
             return guard;
         }
         let home = mechanism.home.value(arena, value).abs();
@@ -37,7 +38,7 @@ pub(super) fn conditions<'a>(
             leg: leg.map_or(String::new(), |leg| leg.name.clone()),
         }
     };
-    let divisors = arena.divisors(&derived.entries).into_iter();
+    let divisors = arena.divisors(entries).into_iter();
     divisors.map(condition).collect()
 }
 

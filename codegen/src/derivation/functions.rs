@@ -62,7 +62,7 @@ pub fn derive<'a>(
     } else {
         on_sheet(arena, mechanism, selection, function, from)?
     };
-    derived.divisors = divisors::conditions(arena, mechanism, &derived);
+    derived.divisors = divisors::conditions(arena, mechanism, &derived.entries, &derived.guards);
     let singular = |guard: &&Guard<'_>| guard.kind.home().is_some_and(|home| !home.is_finite());
     let mut guards = derived.guards.iter().chain(&derived.divisors);
     match guards.find(singular) {
