@@ -85,6 +85,19 @@ pub enum Error {
     },
 }
 
+/// How many times smaller than at home something is; infinitely many times is zero.
+struct Smaller(f64);
+
+impl fmt::Display for Smaller {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_finite() {
+            write!(f, "{:.1e} times smaller than at home", self.0)
+        } else {
+            write!(f, "zero")
+        }
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -93,14 +106,16 @@ impl fmt::Display for Error {
             }
             Self::SingularLeg { leg, condition } => write!(
                 f,
-                "leg `{leg}` is singular here: its determinant is {condition:.1e} times smaller than at home"
+                "leg `{leg}` is singular here: its determinant is {}",
+                Smaller(condition)
             ),
             Self::SingularPlatform {
                 actuators,
                 condition,
             } => write!(
                 f,
-                "the {actuators} do not determine the platform's motion here: their determinant is {condition:.1e} times smaller than at home"
+                "the {actuators} do not determine the platform's motion here: their determinant is {}",
+                Smaller(condition)
             ),
             Self::SingularPartition { kept, condition } => write!(
                 f,
@@ -203,3 +218,23 @@ impl fmt::Display for SampleError {
 }
 
 impl core::error::Error for SampleError {}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::string::ToString;
+
+    #[test]
+    fn a_determinant_of_zero_is_not_infinitely_smaller() {
+        let told = |condition| {
+            Error::SingularLeg {
+                leg: "left",
+                condition,
+            }
+            .to_string()
+        };
+        assert!(told(f64::INFINITY).ends_with("its determinant is zero"));
+        assert!(told(2e9).ends_with("its determinant is 2.0e9 times smaller than at home"));
+    }
+}
