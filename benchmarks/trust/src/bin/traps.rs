@@ -57,6 +57,7 @@ fn trapped(arguments: &Arguments, path: &Path) -> Result<Vec<Outcome>, Failure> 
         let mut told = outcome(&subject, &trap.name, own, Some(&faultless));
         if let Some(why) = trap.assumed {
             told.words = format!("assumption: {why}. {}", told.words);
+            told.assumed = true;
         }
         eprintln!("{told:?}");
         Ok(told)
@@ -71,30 +72,46 @@ fn trapped(arguments: &Arguments, path: &Path) -> Result<Vec<Outcome>, Failure> 
     all.par_iter().map(one).collect()
 }
 
-/// One row for each trap.
+/// Most characters of the first words.
+const WORDS: usize = 200;
+
+/// One row for each trap of a robot.
 fn table(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
-        "| robot | trap | worst error, deviations | worst of what may be used | visible, deviations | verdict | checks that found something | first words |\n|---|---|---:|---:|---:|---|---|---|\n",
+        "| trap | worst error | of what may be used | visible | power | verdict | stands | checks | first words |\n|---|---:|---:|---:|---:|---|---|---|---|\n",
     );
-    let number = |worst: &Option<(f64, String)>| {
-        worst.as_ref().map_or_else(
-            || String::from("-"),
-            |(size, name)| format!("{size:.1} `{name}`"),
-        )
+    let number = |worst: &Option<(f64, String)>| match worst {
+        Some((size, name)) if size.is_nan() => format!("undefined `{name}`"),
+        Some((size, name)) if *size > 9999.0 => format!("{size:.0e} `{name}`"),
+        Some((size, name)) => format!("{size:.1} `{name}`"),
+        None => String::from("-"),
     };
+    let optional = |value: Option<String>| value.unwrap_or_else(|| String::from("-"));
     for one in outcomes {
+        let mut found = one.found.clone();
+        let mut seen = Vec::new();
+        found.retain(|kind| {
+            !seen.contains(kind) && {
+                seen.push(kind.clone());
+                true
+            }
+        });
+        let words = one.words.replace('|', "/").replace('\n', " ");
+        let mut short: String = words.chars().take(WORDS).collect();
+        if short.len() < words.len() {
+            short.push('…');
+        }
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {} | {} |",
-            one.robot,
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {short} |",
             one.trap,
             number(&one.worst),
             number(&one.worst_listed),
-            one.oracle
-                .map_or_else(|| String::from("-"), |size| format!("{size:.1}")),
+            optional(one.oracle.map(|size| format!("{size:.1}"))),
+            optional(one.power.map(|power| format!("{:.0} %", 100.0 * power))),
             one.grade.map_or("refused with an error", Grade::words),
-            one.found.join(", "),
-            one.words.replace('|', "/").replace('\n', " ")
+            one.standing().name(),
+            found.join(", "),
         );
     }
     text
@@ -153,9 +170,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut all = Vec::new();
     for path in &arguments.robots {
-        all.extend(trapped(arguments, path)?);
+        let own = trapped(arguments, path)?;
+        let name = own.first().map_or("", |one| one.robot.as_str());
+        println!("## {name}\n\n{}", table(&own));
+        all.extend(own);
     }
-    print!("{}", table(&all));
     if let Some(path) = &arguments.json {
         fs::write(path, serde_json::to_string_pretty(&all)?)?;
     }

@@ -9,4 +9,4 @@ mod list;
 mod outcome;
 
 pub use list::{Change, Trap, traps};
-pub use outcome::{Outcome, clean, identified, outcome, prepared};
+pub use outcome::{Outcome, Standing, clean, identified, outcome, prepared};

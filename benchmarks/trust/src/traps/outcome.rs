@@ -10,6 +10,16 @@ use serde::Serialize;
 /// By how much the half width of a 95 % interval exceeds a deviation.
 const HALF_WIDTH: f64 = 1.96;
 
+/// Errors beyond so many deviations are to be told.
+const LARGEST_ERROR: f64 = 3.0;
+
+/// The level of a test of its own family: a hundredth of the reports may have a false alarm, and ten
+/// families share it (`identification/src/assessment/checks/level.rs`).
+const LEVEL: f64 = 0.01 / 10.0;
+
+/// A fault that a test sees less often than this is invisible.
+const INVISIBLE: f64 = 0.1;
+
 /// What an identification of data with a known fault says.
 #[derive(Debug, Clone, Serialize)]
 pub struct Outcome {
@@ -25,12 +35,82 @@ pub struct Outcome {
     /// By how many deviations a test would see the fault that knew it beforehand: the root of what it adds
     /// to the squared residual, by the deviation of the residual; none for the faultless data themselves.
     pub oracle: Option<f64>,
+    /// How often a test at the level of the report would see it that knew it beforehand, by
+    /// [`power`] of the deviations.
+    pub power: Option<f64>,
     /// The grade; none where the data are refused with an error.
     pub grade: Option<Grade>,
     /// The checks that found something.
     pub found: Vec<String>,
     /// The first reason, or the error.
     pub words: String,
+    /// Whether an assumption of every report says that no data can show it.
+    pub assumed: bool,
+}
+
+/// How an outcome stands to what is asked of a verdict: no parameter that may be used is wrong by more than
+/// three deviations unless the fault is named or can't be seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Standing {
+    /// No parameter that may be used is wrong by more than three deviations.
+    Right,
+    /// One is, and a check that found something says why.
+    Named,
+    /// One is, and no test of these data could know.
+    Invisible,
+    /// One is, and an assumption of every report says why.
+    Assumed,
+    /// One is, and nothing tells.
+    Missed,
+}
+
+impl Outcome {
+    /// How it stands.
+    #[must_use]
+    pub fn standing(&self) -> Standing {
+        match &self.worst_listed {
+            Some((size, _)) if *size > LARGEST_ERROR => {}
+            _ => return Standing::Right,
+        }
+        if !self.found.is_empty() {
+            Standing::Named
+        } else if self.power.is_some_and(|power| power < INVISIBLE) {
+            Standing::Invisible
+        } else if self.assumed {
+            Standing::Assumed
+        } else {
+            Standing::Missed
+        }
+    }
+}
+
+impl Standing {
+    /// In a word.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Right => "",
+            Self::Named => "named",
+            Self::Invisible => "invisible",
+            Self::Assumed => "assumption",
+            Self::Missed => "MISSED",
+        }
+    }
+}
+
+/// The chance that a test of two sides at the level of a family sees what lies so many deviations from
+/// zero, with white noise and all else known: no test does better.
+fn power(deviations: f64) -> f64 {
+    // The normal quantile of the level, by halving.
+    let (mut low, mut high) = (0.0, 10.0);
+    for _ in 0..60 {
+        let middle: f64 = 0.5 * (low + high);
+        let beyond = libm::erfc(middle / std::f64::consts::SQRT_2);
+        *(if beyond > LEVEL { &mut low } else { &mut high }) = middle;
+    }
+    let tail = |at: f64| 0.5 * libm::erfc(at / std::f64::consts::SQRT_2);
+    tail(low - deviations) + tail(low + deviations)
 }
 
 /// The records of a subject's experiment, which makes all traps.
@@ -57,15 +137,21 @@ pub fn outcome(
         worst: None,
         worst_listed: None,
         oracle: None,
+        power: None,
         grade: None,
         found: Vec::new(),
         words: String::new(),
+        assumed: false,
     };
     match result {
-        Ok(result) => Outcome {
-            oracle: faultless.and_then(|faultless| oracle(&result, faultless)),
-            ..told(&result, start)
-        },
+        Ok(result) => {
+            let oracle = faultless.and_then(|faultless| oracle(&result, faultless));
+            Outcome {
+                oracle,
+                power: oracle.map(power),
+                ..told(&result, start)
+            }
+        }
         Err(error) => Outcome {
             words: error.to_string(),
             ..start

@@ -1,4 +1,5 @@
-//! Whether what is left unexplained of one actuator hangs together with that of another.
+//! Whether what is left unexplained of one actuator hangs together with that of another. With more actuators
+//! than degrees of freedom the residual is one of the platform, which does not say whose it is.
 
 use super::{
     Context,
@@ -20,7 +21,11 @@ const SMALLEST: f64 = 0.1;
 
 /// Tests all pairs of actuators.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
-    let pairs = context.scores.and_then(|scores| scores.correlations());
+    let sizes = context.model.info().sizes;
+    if sizes.actuators > sizes.dof {
+        return Ok(Vec::new());
+    }
+    let pairs = context.scores.map(|scores| scores.correlations());
     let pairs = pairs.unwrap_or_default();
     let Some(most) = pairs
         .iter()

@@ -14,6 +14,9 @@ use nalgebra::{DMatrix, DMatrixView, DVector};
 use super::scaled::Scaled;
 use crate::estimation::intervals::distributions::fisher_tail;
 
+/// A correlation that is told worse than to this deviation is not told.
+const LARGEST_DEVIATION: f64 = 0.1;
+
 /// Products of pairs of actuators: a column for each section of a run, or for each cosine.
 #[derive(Debug, Clone)]
 pub(super) struct Pairs {
@@ -83,53 +86,65 @@ impl Pairs {
     }
 }
 
-/// The correlations of all pairs in runs, each with its cosines; none where the motion does not tell them
-/// from each other.
+/// The correlations of all pairs in runs, each with its cosines, as far as the motion tells them: each pair
+/// is fitted on its own beside what every actuator has of its own.
 pub(super) fn correlations<'a>(
     runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
-) -> Option<Vec<Correlation>> {
-    let (first, _) = runs.clone().next()?;
-    let count = first.pairs.len();
+) -> Vec<Correlation> {
+    let Some((first, _)) = runs.clone().next() else {
+        return Vec::new();
+    };
+    let places = || first.pairs.iter().enumerate();
+    let own: Vec<usize> = places()
+        .filter(|(_, (k, l))| k == l)
+        .map(|(place, _)| place)
+        .collect();
+    let told = places().filter(|(_, (k, l))| k != l);
+    told.filter_map(|(place, &actuators)| {
+        let mut chosen = own.clone();
+        chosen.push(place);
+        correlation(actuators, &chosen, runs.clone())
+    })
+    .collect()
+}
+
+/// The correlation of a pair, the last of those `chosen` behind the actuators themselves.
+fn correlation<'a>(
+    actuators: (usize, usize),
+    chosen: &[usize],
+    runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
+) -> Option<Correlation> {
+    let count = chosen.len();
+    let of = |run: &Pairs, m: usize| run.gram(m).select_rows(chosen).select_columns(chosen);
     let (mut gram, mut score) = (DMatrix::zeros(count, count), DMatrix::zeros(count, 1));
     for (run, _) in runs.clone() {
-        gram += run.gram(0);
-        score += run.scores.columns(0, 1);
+        gram += of(run, 0);
+        score += run.scores.select_rows(chosen).columns(0, 1);
     }
     let factor = Scaled::new(&gram)?;
     let sizes = factor.solve(&score).column(0).clone_owned();
-    let (mut variances, mut squares) = (vec![0.0; count], vec![0.0; count]);
+    let (mut variance, mut squares) = (0.0, 0.0);
     for (run, cosines) in runs {
+        let scores = run.scores.select_rows(chosen);
         let sums: Vec<DVector<f64>> = (1..=cosines)
-            .map(|b| run.scores.column(b) - run.gram(b) * &sizes)
+            .map(|b| scores.column(b) - of(run, b) * &sizes)
             .collect();
         let sums = factor.solve(&DMatrix::from_columns(&sums));
-        for (i, row) in sums.row_iter().enumerate() {
-            // The cosines of a covariance have the mean square 1.
-            let variance = 2.0 * row.norm_squared() / cosines as f64;
-            variances[i] += variance;
-            squares[i] += variance * variance / cosines as f64;
-        }
+        // The cosines of a covariance have the mean square 1.
+        let share = 2.0 * sums.row(count - 1).norm_squared() / cosines as f64;
+        variance += share;
+        squares += share * share / cosines as f64;
     }
-    let own = |actuator: usize| {
-        let place = first
-            .pairs
-            .iter()
-            .position(|pair| *pair == (actuator, actuator));
-        place.map_or(0.0, |place| sizes[place])
-    };
-    let told = first.pairs.iter().enumerate().filter(|(_, (k, l))| k != l);
-    let of_pair = |(i, &(k, l)): (usize, &(usize, usize))| {
-        let scale = (own(k) * own(l)).sqrt();
-        let strength = sizes[i].abs() / variances[i].sqrt();
-        let freedom = variances[i] * variances[i] / squares[i];
-        let sound = scale > 0.0 && strength.is_finite() && freedom >= 1.0;
-        sound.then(|| Correlation {
-            actuators: (k, l),
-            value: sizes[i] / scale,
-            strength,
-            freedom,
-            probability: fisher_tail(strength * strength, 1.0, freedom),
-        })
-    };
-    Some(told.filter_map(of_pair).collect())
+    let scale = (sizes[actuators.0] * sizes[actuators.1]).sqrt();
+    let strength = sizes[count - 1].abs() / variance.sqrt();
+    let freedom = variance * variance / squares;
+    let sound = scale > 0.0 && strength.is_finite() && freedom >= 1.0;
+    let is_told = variance.sqrt() <= LARGEST_DEVIATION * scale;
+    (sound && is_told).then(|| Correlation {
+        actuators,
+        value: sizes[count - 1] / scale,
+        strength,
+        freedom,
+        probability: fisher_tail(strength * strength, 1.0, freedom),
+    })
 }

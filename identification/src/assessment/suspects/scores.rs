@@ -100,8 +100,8 @@ pub(crate) fn scores(
 }
 
 impl Scores {
-    /// How the residuals of all pairs of actuators hang together; none where the motion does not tell.
-    pub(crate) fn correlations(&self) -> Option<Vec<Correlation>> {
+    /// How the residuals of all pairs of actuators hang together, as far as the motion tells.
+    pub(crate) fn correlations(&self) -> Vec<Correlation> {
         correlations(self.runs.iter().map(|run| (&run.pairs, run.cosines)))
     }
 
