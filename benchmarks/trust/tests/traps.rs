@@ -1,0 +1,51 @@
+//! Every trap of the DualV: what the verdict says of data with one known fault. It takes some forty
+//! identifications, so only the full tier does it; `identification/tests/bad_data.rs` sees the plainest faults
+//! in either tier.
+
+use overact_identification::Grade;
+use overact_tier::is_full;
+use overact_trust::{
+    Subject,
+    traps::{Standing, identified, outcome, prepared, traps},
+};
+use std::path::Path;
+
+/// The faults that are left to a result that may be used: no data can show them, or they do no harm.
+const USED: [&str; 5] = [
+    "sampling frequency 5 % too high",
+    "all gains 5 % high",
+    "torques in mN m",
+    "encoders of 12 bits",
+    "torque 1 drifts with time",
+];
+
+/// The part of each run's duration that is identified from, as in `docs/traps.md`.
+const PART: f64 = 0.25;
+
+#[test]
+fn every_trap_of_the_dualv_is_refused_named_or_an_assumption() {
+    if !is_full() {
+        return;
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/dualv.toml");
+    let mut subject = Subject::load(&path).expect("the DualV");
+    subject.shorten(PART);
+    let records = prepared(&subject, &subject.experiment).expect("records");
+    let faultless = identified(&subject, records.clone()).expect("an identification");
+    assert_eq!(faultless.grade(), Grade::Use);
+    let all = traps(subject.info().name);
+    for trap in all {
+        let mut own = records.clone();
+        if !trap.plant.is_empty() {
+            let mut plant = Subject::altered(&path, &trap.plant).expect("the DualV");
+            plant.shorten(PART);
+            own = prepared(&plant, &plant.experiment).expect("records");
+        }
+        (trap.alter)(&mut own);
+        let mut told = outcome(&subject, &trap.name, own, Some(&faultless));
+        told.assumed = trap.assumed.is_some();
+        let used = told.grade == Some(Grade::Use);
+        assert_eq!(used, USED.contains(&trap.name.as_str()), "{told:?}");
+        assert_ne!(told.standing(), Standing::Missed, "{told:?}");
+    }
+}
