@@ -35,8 +35,8 @@ pub struct Outcome {
     /// By how many deviations a test would see the fault that knew it beforehand: the root of what it adds
     /// to the squared residual, by the deviation of the residual; none for the faultless data themselves.
     pub oracle: Option<f64>,
-    /// How often a test at the level of the report would see it that knew it beforehand, by
-    /// [`power`] of the deviations.
+    /// How often a test at the level of the report would see it that knew it beforehand, with white noise
+    /// and all else known.
     pub power: Option<f64>,
     /// The grade; none where the data are refused with an error.
     pub grade: Option<Grade>,
