@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Bench, list, number, robot};
+use common::{Bench, NINE, list, number, robot};
 use overact_tier::is_full;
 use serde_json::Value;
 use std::fs;
@@ -18,19 +18,6 @@ const LOGS: [&str; 6] = [
     "log_loaded_2.csv",
     "log_trajectory_1.csv",
     "log_trajectory_2.csv",
-];
-
-/// Names and true values of the essential parameters.
-const NINE: [(&str, f64); 9] = [
-    ("zz_platformR", 0.0206),
-    ("m_platformR", 1.92),
-    ("zz_1_leg1R", 0.0445),
-    ("zz_1_leg2R", 0.0481),
-    ("zz_1_leg3R", 0.0481),
-    ("zz_1_leg4R", 0.0507),
-    ("zz_payload", 0.0161),
-    ("mx_payload", -0.127),
-    ("m_payload", 5.42),
 ];
 
 /// A log in which the encoder of leg 3 shows too much.

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Bench, list, number, robot};
+use common::{Bench, NINE, list, number, robot};
 use serde_json::Value;
 use std::fs;
 
@@ -16,19 +16,6 @@ fn described(duration: &str, edit: impl Fn(String) -> String) -> Bench {
     bench.write("my.toml", &edit(text));
     bench
 }
-
-/// Names and true values of Table 2, case 1; those of the experiment.
-const NINE: [(&str, f64); 9] = [
-    ("zz_platformR", 0.0206),
-    ("m_platformR", 1.92),
-    ("zz_1_leg1R", 0.0445),
-    ("zz_1_leg2R", 0.0481),
-    ("zz_1_leg3R", 0.0481),
-    ("zz_1_leg4R", 0.0507),
-    ("zz_payload", 0.0161),
-    ("mx_payload", -0.127),
-    ("m_payload", 5.42),
-];
 
 /// The essential estimates of both cases.
 fn essential(document: &Value) -> Vec<&Value> {

@@ -177,3 +177,17 @@ pub(crate) fn number(value: &Value) -> f64 {
         .as_f64()
         .unwrap_or_else(|| panic!("{value} is no number"))
 }
+
+/// Names and true values of the DualV's essential parameters: Table 2 of the paper, case 1, and the truth of
+/// the virtual experiment.
+pub(crate) const NINE: [(&str, f64); 9] = [
+    ("zz_platformR", 0.0206),
+    ("m_platformR", 1.92),
+    ("zz_1_leg1R", 0.0445),
+    ("zz_1_leg2R", 0.0481),
+    ("zz_1_leg3R", 0.0481),
+    ("zz_1_leg4R", 0.0507),
+    ("zz_payload", 0.0161),
+    ("mx_payload", -0.127),
+    ("m_payload", 5.42),
+];
