@@ -66,6 +66,9 @@ impl StandardParameter {
         Self::M,
     ];
 
+    /// The four that act on the coordinate of a joint and not on its body.
+    pub const DRIVE: [Self; 4] = [Self::Ia, Self::Fv, Self::Fs, Self::Off];
+
     /// The three of friction.
     pub const FRICTION: [Self; 3] = [Self::Fv, Self::Fs, Self::Off];
 

@@ -134,6 +134,7 @@ fn mappings_are_checked() {
         position_scale: vec![1.0, 0.0],
         position_offset: Vec::new(),
         torque_gain: vec![Gain::Value(f64::NAN)],
+        transmission: Vec::new(),
     };
     let error = read(Path::new("x.csv"), &mapping, false).expect_err("an error");
     assert_eq!(error.problems.len(), 4);

@@ -36,6 +36,7 @@ impl Robot {
             position_scale: data.position_scale.clone(),
             position_offset: data.position_offset.clone(),
             torque_gain: data.torque_gain.iter().map(gain).collect(),
+            transmission: data.transmission.clone(),
         }
     }
 }

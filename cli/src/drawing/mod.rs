@@ -29,6 +29,7 @@ use view::View;
 /// Draws a mechanism at its home configuration; the same bytes for the same mechanism.
 #[must_use]
 pub fn svg(mechanism: &Mechanism) -> String {
+    let mechanism = &bodies(mechanism);
     // Some symbols are as large on paper for every robot: the scale has to be known before they are
     // placed.
     let rough = scene(mechanism, 0.0);
@@ -37,4 +38,13 @@ pub fn svg(mechanism: &Mechanism) -> String {
     let scene = scene(mechanism, pixel);
     let sheet = Sheet::fitted(&scene, &view);
     paint::document(mechanism, &scene, &view, &sheet)
+}
+
+/// The mechanism without the motors that turn several joints: they have no body.
+fn bodies(mechanism: &Mechanism) -> Mechanism {
+    let mut mechanism = mechanism.clone();
+    for leg in &mut mechanism.legs {
+        leg.joints.retain(|joint| joint.motor.is_none());
+    }
+    mechanism
 }

@@ -30,6 +30,8 @@ pub(super) fn read(
         .map(|(index, joint)| Reader { joint, index }.read(&scope))
         .collect();
     resolve(&mut joints, shape);
+    let motors = shape.motors.iter().filter_map(|motor| motor.joint(&scope));
+    let motors: Vec<Joint> = motors.filter_map(|motor| driven(&joints, motor)).collect();
     for (index, joint) in joints.iter_mut().enumerate() {
         let dimension = dimension(joint.kind.value).filter(|_| joint.is_independent(index));
         if let Some(dimension) = dimension {
@@ -39,7 +41,15 @@ pub(super) fn read(
     if let Some(homes) = homes {
         homes.finish();
     }
+    joints.extend(motors);
     joints
+}
+
+/// A motor in terms of independent joints.
+fn driven(joints: &[Joint], motor: Joint) -> Option<Joint> {
+    let given: Vec<Combination> = joints.iter().map(|joint| joint.variable.clone()).collect();
+    let variable = substitute(&given, &motor.variable)?;
+    Some(Joint { variable, ..motor })
 }
 
 /// Dimension of a joint's variable.
@@ -93,6 +103,7 @@ impl Reader<'_, '_, '_> {
             actuated: joint.actuated,
             parameters: joint.parameters.clone(),
             home: Number::ZERO,
+            motor: None,
             span: joint.span.clone(),
         }
     }

@@ -21,6 +21,7 @@ mod inventory;
 mod joint;
 mod leg;
 mod model;
+mod motor;
 mod parameter;
 mod parameters;
 mod per_actuator;
@@ -35,6 +36,7 @@ mod shape;
 #[cfg(test)]
 mod tests;
 mod token;
+mod transmission;
 mod value;
 
 pub use actuator_names::ActuatorNames;

@@ -232,6 +232,9 @@ pub struct Joint {
     pub parameters: Vec<StandardParameter>,
     /// Rough position at home, rad or m; zero for a dependent or fixed joint.
     pub home: Number,
+    /// Of a motor that turns other joints, and carries no body, its gear ratio: turns of the rotor for one of
+    /// the variable.
+    pub motor: Option<Number>,
     /// Place of its table.
     pub span: Span,
 }

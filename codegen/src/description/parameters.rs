@@ -10,6 +10,8 @@ use overact_core::StandardParameter as P;
 pub(super) enum Owner {
     /// A body behind a joint of this kind.
     Joint(JointKind),
+    /// A motor that turns joints.
+    Motor,
     /// The platform or the payload.
     FreeBody,
 }
@@ -19,6 +21,7 @@ impl Owner {
     fn possible(self) -> &'static [P] {
         match self {
             Self::FreeBody | Self::Joint(JointKind::Fixed) => &P::INERTIA,
+            Self::Motor => &P::DRIVE,
             Self::Joint(_) => &P::ALL,
         }
     }
@@ -62,16 +65,17 @@ impl Item<'_, '_> {
             }
         };
         if let Some(wrong) = group.iter().find(|p| !owner.possible().contains(p)) {
-            let body = if owner == Owner::FreeBody {
-                "a free body"
-            } else {
-                "a fixed joint"
+            let ten = "its parameters are the ten of \"inertia\"";
+            let (body, help) = match owner {
+                Owner::FreeBody => ("a free body", ten),
+                Owner::Joint(_) => ("a fixed joint", ten),
+                Owner::Motor => (
+                    "a motor",
+                    "its parameters are \"ia\", \"fv\", \"fs\" and \"off\"",
+                ),
             };
             let message = format!("{body} has no parameter `{}`", wrong.name());
-            self.context.report(
-                self.error(message)
-                    .help("its parameters are the ten of \"inertia\""),
-            );
+            self.context.report(self.error(message).help(help));
         }
         Some(group)
     }

@@ -95,6 +95,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     let legs = legs(table, &shapes, &scope);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
     check_actuators(table, platform.as_ref(), &legs);
+    check_motors(table, platform.as_ref(), &legs);
     let robot = Inventory {
         platform: platform.as_ref(),
         legs: &legs,
@@ -231,6 +232,19 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
         table
             .context
             .report(Diagnostic::new(message, second.span.clone()).help(help));
+    }
+}
+
+/// Motors that turn several joints are known of robots without platform: the frame that ends a leg is the last
+/// joint's.
+fn check_motors(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
+    let mut joints = legs.iter().flat_map(|leg| &leg.joints);
+    if let (Some(_), Some(motor)) = (platform, joints.find(|joint| joint.motor.is_some())) {
+        let message = "motors of their own are described of robots without platform only";
+        let help =
+            "actuate the joint itself: its `ia`, `fv`, `fs` and `off` are those of its motor";
+        let error = Diagnostic::new(message, motor.span.clone());
+        table.context.report_once(error.help(help));
     }
 }
 

@@ -5,6 +5,7 @@ use super::experiment::position;
 use super::inventory::Inventory;
 use super::model::{Spanned, actuators};
 use super::reader::{Item, Table};
+use super::transmission;
 use crate::diagnostic::Span;
 
 /// How a measured log maps on the robot.
@@ -25,6 +26,9 @@ pub struct Data {
     pub position_offset: Vec<f64>,
     /// Factors from columns to N m or N, one for each actuator.
     pub torque_gain: Vec<Factor>,
+    /// Of a log of motors the matrix T with θ = T q, a row for each motor, q being the actuated joints; empty
+    /// where the log has the joints' own positions and torques.
+    pub transmission: Vec<Vec<f64>>,
     /// Place of the table.
     pub span: Span,
 }
@@ -158,6 +162,12 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     let (position_scale, torque_gain) = (factors("position_scale"), factors("torque_gain"));
     let position_scale = position_scale.and_then(|scales| numbers(&table, &scales));
     let position_offset = offsets(&table, robot);
+    let coordinates = table.get("coordinates");
+    let motors = coordinates.as_ref().and_then(|item| {
+        let choice = item.choice(&[("joints", false), ("motors", true)])?;
+        choice.value.then_some(item)
+    });
+    let transmission = motors.map_or(Some(Vec::new()), |item| transmission::matrix(item, robot));
     table.finish();
     Some(Data {
         time: time?,
@@ -167,6 +177,7 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         position_scale: position_scale?,
         position_offset: position_offset?,
         torque_gain: torque_gain?,
+        transmission: transmission?,
         span: table.span.clone(),
     })
 }

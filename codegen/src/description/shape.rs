@@ -1,6 +1,7 @@
 //! The tables `[leg.NAME]`: legs written once, read without evaluating their expressions.
 
 use super::model::{JointKind, Spanned};
+use super::motor::{self, MotorShape};
 use super::parameters::Owner;
 use super::reader::{Item, Table};
 use super::scope::{Scope, is_word, name_problem};
@@ -15,6 +16,7 @@ pub(super) struct Shape<'c, 't> {
     pub(super) base_at: Option<Item<'c, 't>>,
     pub(super) base_rotation: Option<Item<'c, 't>>,
     pub(super) joints: Vec<JointShape<'c, 't>>,
+    pub(super) motors: Vec<MotorShape<'c, 't>>,
     pub(super) end: Option<EndShape<'c, 't>>,
     pub(super) span: Span,
 }
@@ -84,6 +86,8 @@ pub(super) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Sha
     let joints = table
         .require("joint", help)
         .map_or_else(Vec::new, |item| joints(&item));
+    let names: Vec<Spanned<String>> = joints.iter().map(|joint| joint.name.clone()).collect();
+    let motors = table.get("motor").map(|item| motor::shapes(&item, &names));
     let end = table.get("end").and_then(|item| end(&item));
     table.finish();
     Some(Shape {
@@ -92,6 +96,7 @@ pub(super) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Sha
         base_at,
         base_rotation,
         joints,
+        motors: motors.unwrap_or_default(),
         end,
         span: table.span.clone(),
     })

@@ -83,6 +83,7 @@ fn plain(description: &Description) -> Mechanism {
         variable: j.variable.clone(),
         actuated: j.actuated,
         parameters: j.parameters.clone(),
+        motor: j.motor.map(crate::cas::Number::value),
     };
     let leg = |l: &crate::description::Leg| Leg {
         name: l.name.value.clone(),

@@ -57,6 +57,9 @@ pub struct Joint {
     pub actuated: bool,
     /// The body's and the joint's standard parameters that are not absent.
     pub parameters: Vec<StandardParameter>,
+    /// Of a motor that turns other joints, and carries no body, its gear ratio: turns of the rotor for one of
+    /// the variable.
+    pub motor: Option<f64>,
 }
 
 impl Joint {

@@ -3,6 +3,7 @@
 use overact::Info;
 use serde::{Deserialize, Serialize};
 
+use super::transmission::Transmission;
 use crate::error::{Error, Problem};
 
 /// The factor that turns a torque column into N m or N, for instance a drive gain in N/V.
@@ -48,6 +49,10 @@ pub struct Mapping {
     pub position_offset: Vec<f64>,
     /// Factors to N m or N, one per actuator.
     pub torque_gain: Vec<Gain>,
+    /// Where the columns are those of motors, the matrix T of their positions θ = T q, a row for each motor;
+    /// their torques are τ = Tᵀ τ_θ at the joints. Empty where the columns are those of the actuated joints.
+    #[serde(default)]
+    pub transmission: Vec<Vec<f64>>,
 }
 
 impl Mapping {
@@ -68,6 +73,7 @@ impl Mapping {
             position_scale: vec![1.0; info.actuators.len()],
             position_offset: Vec::new(),
             torque_gain: vec![Gain::Value(1.0); info.actuators.len()],
+            transmission: Vec::new(),
         }
     }
 
@@ -124,6 +130,7 @@ impl Mapping {
             problems.push(Problem::new("the mapping names no position").column("positions"));
         }
         problems.extend(self.bad_factors());
+        problems.extend(Transmission::new(&self.transmission, actuators).err());
         Error::check(problems)
     }
 

@@ -27,6 +27,7 @@ mod source;
 mod structures;
 mod table;
 mod text;
+mod transmission;
 
 use std::{
     path::Path,

@@ -10,6 +10,7 @@ use super::{
     samples::Samples,
     signals::Signals,
     table::{self, Table},
+    transmission::Transmission,
 };
 use crate::error::{Error, Problem};
 
@@ -28,6 +29,8 @@ pub(super) struct Files {
     signals: Signals,
     actuators: usize,
     has_velocities: bool,
+    /// From motors to joints, where the columns are those of motors.
+    transmission: Option<Transmission>,
 }
 
 /// What is known of a run that has been gone through.
@@ -61,6 +64,7 @@ impl Files {
             tables,
             actuators: mapping.positions.len(),
             has_velocities: !mapping.velocities.is_empty(),
+            transmission: Transmission::new(&mapping.transmission, mapping.positions.len())?,
         })
     }
 
@@ -210,6 +214,9 @@ impl Rows<'_> {
         samples.positions.extend(values.by_ref().take(n));
         samples.torques.extend(values.by_ref().take(n));
         samples.velocities.extend(values);
+        if let Some(transmission) = &self.files.transmission {
+            transmission.to_joints(samples);
+        }
         if finite {
             return Ok(true);
         }

@@ -84,7 +84,7 @@ fn true_value(column: &Column, values: &BTreeMap<String, f64>) -> Option<f64> {
     }
     let value = values.get(&column.standard).copied()?;
     match (column.direction, column.symbol) {
-        (Some((_, direction)), StandardParameter::Fs) => {
+        (Some(direction), StandardParameter::Fs) => {
             let offset = column
                 .standard
                 .strip_prefix(StandardParameter::Fs.name())
@@ -167,7 +167,7 @@ fn collect(base: &mut BaseParameters, columns: &ColumnSet, found: Elimination) {
 fn symmetric_order(columns: &ColumnSet, mut indices: Vec<usize>) -> Vec<usize> {
     indices.sort_by_key(|&index| {
         columns.as_slice().get(index).map(|column| {
-            let direction = column.direction.map(|(_, direction)| direction);
+            let direction = column.direction;
             match column.body {
                 Body::Platform => (0, 0, column.symbol, direction, 0, 0),
                 Body::Leg { leg, index, shape } => (1, index, column.symbol, direction, shape, leg),

@@ -14,7 +14,7 @@
 
 use overact::{Body, Columns, Function, Model, Parameter, SampleError, StandardParameter};
 
-use super::friction::friction_joints;
+use super::friction::{Rate, friction_rates};
 use crate::{error::Error, settings::Settings};
 
 /// Where the numbers of a column come from.
@@ -49,9 +49,11 @@ pub struct Column {
     pub symbol: StandardParameter,
     /// Where its body is.
     pub body: Body,
-    /// The joint, and the direction of its motion, to which a friction parameter is confined.
-    pub direction: Option<(usize, Direction)>,
-    /// How the column of a Coulomb parameter is evaluated around reversals of its joint.
+    /// The direction of motion to which a friction parameter is confined.
+    pub direction: Option<Direction>,
+    /// The rate, of a joint or a combination of joints, on which the column depends beside the model.
+    rate: Option<Rate>,
+    /// How the column of a Coulomb parameter is evaluated around reversals.
     reversal: Option<Reversal>,
     origin: Origin,
 }
@@ -59,7 +61,6 @@ pub struct Column {
 /// The column of a Coulomb parameter around reversals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Reversal {
-    joint: usize,
     /// The speed below which the column is zero.
     band: f64,
     /// Whether the sign is the mean over the sampling interval.
@@ -76,18 +77,13 @@ impl Column {
             symbol: parameter.symbol,
             body: parameter.body,
             direction: None,
+            rate: None,
             reversal: None,
             origin,
         }
     }
 
-    /// The joint on whose motion the column depends beside the model.
-    fn joint(&self) -> Option<usize> {
-        let split = self.direction.map(|(joint, _)| joint);
-        split.or(self.reversal.map(|reversal| reversal.joint))
-    }
-
-    /// The factor of the model's column at a velocity of its joint, which changes by `step` in a sampling
+    /// The factor of the model's column at a velocity of its coordinate, which changes by `step` in a sampling
     /// interval.
     fn factor(&self, velocity: f64, step: f64) -> f64 {
         let sign = match self.reversal {
@@ -98,19 +94,20 @@ impl Column {
         // The model's column has the sign of the velocity or, of fv, the velocity itself.
         match self.direction {
             None => sign * velocity.signum(),
-            Some((_, Direction::Positive)) => 0.5 * (1.0 + sign) * velocity.signum(),
-            Some((_, Direction::Negative)) => 0.5 * (1.0 - sign) * -velocity.signum(),
+            Some(Direction::Positive) => 0.5 * (1.0 + sign) * velocity.signum(),
+            Some(Direction::Negative) => 0.5 * (1.0 - sign) * -velocity.signum(),
         }
     }
 
-    /// The column of a friction parameter split by the direction of its joint.
-    fn split(self, joint: usize) -> [Self; 2] {
+    /// The column of a friction parameter split by the direction of its rate.
+    fn split(self, rate: &Rate) -> [Self; 2] {
         let symbol = self.symbol.name();
         [(Direction::Positive, "pos"), (Direction::Negative, "neg")].map(|(direction, suffix)| {
             let rest = self.standard.strip_prefix(symbol).unwrap_or(&self.standard);
             Self {
                 name: format!("{symbol}_{suffix}{rest}"),
-                direction: Some((joint, direction)),
+                direction: Some(direction),
+                rate: Some(rate.clone()),
                 ..self.clone()
             }
         })
@@ -128,7 +125,7 @@ impl ColumnSet {
     /// friction split by direction on request.
     ///
     /// # Errors
-    /// A friction parameter whose joint can't be recognised.
+    /// A friction parameter whose rate can't be recognised.
     pub fn new(
         model: &dyn Model,
         payload: bool,
@@ -136,8 +133,8 @@ impl ColumnSet {
         seed: u64,
     ) -> Result<Self, Error> {
         let info = model.info();
-        let joints = if asymmetric_friction {
-            friction_joints(model, seed)?
+        let rates = if asymmetric_friction {
+            friction_rates(model, seed)?
         } else {
             vec![None; info.parameters.len()]
         };
@@ -147,10 +144,10 @@ impl ColumnSet {
                 .any(|p| p.symbol == StandardParameter::Fs && p.body == body)
         };
         let mut columns = Vec::new();
-        for (index, (parameter, joint)) in info.parameters.iter().zip(joints).enumerate() {
+        for (index, (parameter, rate)) in info.parameters.iter().zip(rates).enumerate() {
             let whole = Column::new(parameter, Origin::Robot(index));
-            match joint {
-                Some(joint) => columns.extend(whole.split(joint)),
+            match rate {
+                Some(rate) => columns.extend(whole.split(&rate)),
                 None if asymmetric_friction
                     && parameter.symbol == StandardParameter::Off
                     && has_fs(parameter.body) => {}
@@ -169,20 +166,17 @@ impl ColumnSet {
     /// for it.
     ///
     /// # Errors
-    /// A friction parameter whose joint can't be recognised.
+    /// A friction parameter whose rate can't be recognised.
     pub fn with_reversals(mut self, model: &dyn Model, settings: &Settings) -> Result<Self, Error> {
         let (band, averaged) = (settings.velocity_dead_band, settings.averaged_reversals);
         if band > 0.0 || averaged {
-            let joints = friction_joints(model, settings.seed)?;
+            let rates = friction_rates(model, settings.seed)?;
             for column in &mut self.columns {
                 if let (Origin::Robot(index), StandardParameter::Fs) =
                     (column.origin, column.symbol)
                 {
-                    column.reversal = joints[index].map(|joint| Reversal {
-                        joint,
-                        band,
-                        averaged,
-                    });
+                    column.rate.clone_from(&rates[index]);
+                    column.reversal = Some(Reversal { band, averaged });
                 }
             }
         }
@@ -240,7 +234,7 @@ impl ColumnSet {
             Ok(output)
         };
         let columns = || picked.iter().filter_map(|&index| self.columns.get(index));
-        let split = columns().any(|column| column.joint().is_some());
+        let split = columns().any(|column| column.rate.is_some());
         let has_payload = columns().any(|column| matches!(column.origin, Origin::Payload(_)));
         let robot = ask(Function::IdmRedPlatform(Columns::Standard), true)?;
         let payload = ask(Function::IdmRedPayload, loaded && has_payload)?;
@@ -280,13 +274,13 @@ impl ColumnSet {
             }
         }
         for (place, column) in columns().enumerate() {
-            let Some(joint) = column.joint() else {
+            let Some(rate) = &column.rate else {
                 continue;
             };
-            let rates = velocities[joint..].iter().step_by(sizes.joints);
-            for (sample, rate) in rates.enumerate() {
-                let change = accelerations.get(sample * sizes.joints + joint);
-                let factor = column.factor(*rate, change.map_or(0.0, |a| a * interval));
+            let mut changes = accelerations.chunks_exact(sizes.joints);
+            for (sample, joints) in velocities.chunks_exact(sizes.joints).enumerate() {
+                let change = changes.next().map_or(0.0, |joints| rate.of(joints));
+                let factor = column.factor(rate.of(joints), change * interval);
                 if factor != 1.0 {
                     let place = sample * width + place;
                     lines.iter_mut().for_each(|rows| rows[place] *= factor);

@@ -29,6 +29,7 @@ robot!(spherical_3rrr: Spherical3Rrr);
 robot!(spherical_4rrr: Spherical4Rrr);
 robot!(stanford: Stanford);
 robot!(two_motor_axis: TwoMotorAxis);
+robot!(tx40: Tx40);
 
 pub mod partitions;
 
@@ -58,6 +59,7 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
         "stanford" => &Stanford,
         "three_leg_point" => &ThreeLegPoint,
         "two_motor_axis" => &TwoMotorAxis,
+        "tx40" => &Tx40,
         _ => return None,
     })
 }

@@ -34,6 +34,7 @@ macro_rules! library {
             stanford: Stanford,
             three_leg_point: ThreeLegPoint,
             two_motor_axis: TwoMotorAxis,
+            tx40: Tx40,
         }
     };
     ($check:path; $($stem:ident: $robot:ident,)*) => {

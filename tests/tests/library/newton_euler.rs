@@ -31,6 +31,12 @@ fn rx90() -> Result<(), Failure> {
 }
 
 #[test]
+fn tx40() -> Result<(), Failure> {
+    let (model, expected) = described("tx40")?;
+    agree(model, expected, &overact_compiled::Tx40)
+}
+
+#[test]
 fn kuka_lwr() -> Result<(), Failure> {
     let (model, expected) = described("kuka_lwr")?;
     agree(model, expected, &overact_compiled::KukaLwr)

@@ -33,6 +33,9 @@ zzzz7 = 1
 type = "prismatic"
 alpha = "90 deg"
 actuated = true
+[[leg.slide.motor]]
+zzzz16 = 1
+turns = "q1"
 [[place]]
 zzzz8 = 1
 name = "slide"
@@ -61,7 +64,7 @@ terms = [{ zzzz14 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
 "#;
 
 /// Headings, in the order of the unknown keys, and what stands before the keys there.
-const SECTIONS: [(&str, &str); 16] = [
+const SECTIONS: [(&str, &str); 17] = [
     ("## The robot", ""),
     ("### `[platform]`", ""),
     ("### `[platform]`", "axis."),
@@ -78,6 +81,10 @@ const SECTIONS: [(&str, &str); 16] = [
     ("### `[[experiment.run]]`", ""),
     ("### A term", ""),
     ("## `[controller]`: the loops of the drives", ""),
+    (
+        "### `[[leg.NAME.motor]]`: motors that turn several joints",
+        "",
+    ),
 ];
 
 fn folder(path: &str) -> PathBuf {

@@ -3,6 +3,7 @@
 mod documentation;
 mod errors;
 mod experiments;
+mod motors;
 mod robots;
 mod structure;
 mod values;

@@ -1,0 +1,117 @@
+//! Motors that turn several joints, and logs in their coordinates.
+
+use super::{good, listed};
+
+/// An arm of two joints with a log of motors and these motors, whose tables start at line 8.
+fn arm(motors: &str) -> String {
+    format!(
+        "name = \"Arm\"\n[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n\
+         [[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n{motors}\n\
+         [[place]]\nname = \"arm\"\nshape = \"arm\"\n\
+         [data]\ntime = \"t\"\ncoordinates = \"motors\"\n\
+         positions = [\"a\", \"b\"]\ntorques = [\"c\", \"d\"]\n"
+    )
+}
+
+const BOTH: &str = "[[leg.arm.motor]]\nturns = \"q1\"\nratio = 45\n\
+                    [[leg.arm.motor]]\nname = \"wrist\"\nturns = \"(q1 + q2)/2\"\nratio = -32";
+
+#[test]
+fn a_coupled_motor_follows_joints_and_has_parameters_of_its_own() {
+    let robot = good(&arm(BOTH));
+    let joints = &robot.legs[0].joints;
+    assert_eq!(joints.len(), 4);
+    assert!(joints[2].parameters.is_empty(), "those of joint 1");
+    let names: Vec<&str> = joints[3].parameters.iter().map(|p| p.name()).collect();
+    assert_eq!(names, ["ia", "fv", "fs"]);
+    assert_eq!(joints[3].name.value, "wrist");
+    let terms: Vec<(usize, f64)> = joints[3]
+        .variable
+        .iter()
+        .map(|(joint, factor)| (*joint, factor.value()))
+        .collect();
+    assert_eq!(terms, [(0, 0.5), (1, 0.5)]);
+    assert_eq!(
+        robot.actuators().len(),
+        2,
+        "motors are no actuators of their own"
+    );
+    let data = robot.data.expect("a log");
+    assert_eq!(data.transmission, [[45.0, 0.0], [-16.0, -16.0]]);
+}
+
+#[test]
+fn errors() {
+    let motor = |keys: &str| {
+        let all = listed(&arm(&format!("{BOTH}\n{keys}")).replace("\"motors\"", "\"joints\""));
+        assert_eq!(all.len(), 1, "{keys}: {all:#?}");
+        all.concat()
+    };
+    let cases = [
+        (
+            "[[leg.arm.motor]]",
+            "15:1 a motor has no `turns`; what the motor turns behind its gear, for instance turns = \"q5 + q6\"",
+        ),
+        (
+            "[[leg.arm.motor]]\nturns = 0",
+            "16:9 a motor that turns no joint drives nothing; name the joint variables, for instance \"q5 + q6\"",
+        ),
+        (
+            "[[leg.arm.motor]]\nturns = \"q1 - q1\"",
+            "16:9 a motor that turns no joint drives nothing; name the joint variables, for instance \"q5 + q6\"",
+        ),
+        (
+            "[[leg.arm.motor]]\nturns = \"q2 + 5 deg\"",
+            "16:9 a motor turns joint variables without a constant; what its encoder shows too much stands in `position_offset` of [data]",
+        ),
+        (
+            "[[leg.arm.motor]]\nturns = \"q3\"",
+            "16:10 unknown name `q3`; did you mean `q1`?",
+        ),
+        (
+            "[[leg.arm.motor]]\nturns = \"q2\"\nratio = 0",
+            "17:9 a gear of ratio 0 turns nothing; give the turns of the motor for one of what it turns, for instance 100",
+        ),
+        (
+            "[[leg.arm.motor]]\nturns = \"q2\"\nratio = \"1e40\"",
+            "17:9 the value is too large; in SI units numbers go from 1e-50 to 1e30",
+        ),
+        (
+            "[[leg.arm.motor]]\nname = \"wrist\"\nturns = \"q2\"",
+            "16:8 there are two joints or motors `wrist` in this leg; a motor without a name is called by its number, `m1`",
+        ),
+        (
+            "[[leg.arm.motor]]\nturns = \"q2\"\nparameters = \"inertia\"",
+            "17:14 a motor has no parameter `xx`; its parameters are \"ia\", \"fv\", \"fs\" and \"off\"",
+        ),
+    ];
+    for (keys, expected) in cases {
+        assert_eq!(motor(keys), expected, "{keys}");
+    }
+}
+
+#[test]
+fn logs_of_motors_need_motors_that_determine_the_joints() {
+    let one = "[[leg.arm.motor]]\nturns = \"q1\"";
+    let help =
+        "; describe each motor as [[leg.NAME.motor]] with turns = \"q1\" and its gear's ratio";
+    let expected = format!(
+        "15:15 a log of motors needs as many motors as actuated joints, 2, but 1 are described{help}"
+    );
+    assert_eq!(listed(&arm(one)), [expected]);
+    let twice = format!("{one}\n{one}\nratio = 3");
+    let expected = "18:15 the motors do not determine the joints: some turn the same combinations; \
+                    each motor turns something that the others do not";
+    assert_eq!(listed(&arm(&twice)), [expected]);
+}
+
+#[test]
+fn robots_with_a_platform_have_no_motors_of_their_own() {
+    let text = "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
+                [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\n\
+                [[leg.slide.motor]]\nturns = \"q1\"\n[leg.slide.end]\n\
+                [[place]]\nname = \"slide\"\nshape = \"slide\"\n";
+    let expected = "8:1 motors of their own are described of robots without platform only; \
+                    actuate the joint itself: its `ia`, `fv`, `fs` and `off` are those of its motor";
+    assert_eq!(listed(text), [expected]);
+}

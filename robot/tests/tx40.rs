@@ -1,0 +1,87 @@
+//! The measured TX40: its two files as its controller wrote them, with a wrist whose sixth motor turns two
+//! joints.
+
+use overact_identification::{Estimate, Removal, Stage};
+use overact_robot::{Identifier, Robot};
+use overact_tier::by_tier;
+use std::path::{Path, PathBuf};
+
+/// Base parameters, and relative errors of ordinary and of weighted least squares in percent, as they were
+/// published with these decimated rows left out at standstill.
+const PUBLISHED: (usize, [f64; 2]) = (61, [4.989, 5.034]);
+
+/// Essential parameters at r_sigma = 30 of the published elimination.
+const ESSENTIAL: usize = 27;
+
+/// The ratio of relative deviations at which it ends.
+const R_SIGMA: f64 = 30.0;
+
+/// The files of the log in the folder of reference data: `OVERACT_SHARED`, or `shared` beside the repository.
+fn files() -> Option<PathBuf> {
+    let folder = std::env::var_os("OVERACT_SHARED").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
+        PathBuf::from,
+    );
+    let [positions, torques] =
+        ["pos_read_data.csv", "curr_data.csv"].map(|file| folder.join("data/tx40").join(file));
+    if positions.exists() && torques.exists() {
+        return Some(format!("{}+{}", positions.display(), torques.display()).into());
+    }
+    eprintln!("skipped: the TX40 data are not here; set OVERACT_SHARED to their folder");
+    None
+}
+
+/// The estimates of the log by ordinary or weighted least squares.
+fn estimates(robot: &Robot, log: &Path, weighted: bool) -> Vec<Estimate> {
+    let logs = robot.read_logs(&[(log, false)], &|_| {}).expect("a log");
+    let mut settings = robot.settings(logs[0].sampling_frequency());
+    settings.weighted = weighted;
+    let identifier = Identifier::new(robot).runs(&logs).settings(settings);
+    identifier.run().expect("a result").estimates
+}
+
+#[test]
+fn errors_are_those_that_were_published() {
+    let Some(log) = files() else {
+        return;
+    };
+    let toml = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots/tx40.toml");
+    let robot = Robot::from_toml(toml).expect("a robot");
+    let (count, errors) = PUBLISHED;
+    let both = [(true, errors[1]), (false, errors[0])];
+    for &(weighted, published) in by_tier([&both[..1], &both]) {
+        let estimates = estimates(&robot, &log, weighted);
+        let stage = |stage| {
+            let mut own = estimates.iter().filter(move |one| one.stage == stage);
+            own.next().expect("an estimate")
+        };
+        let base = stage(Stage::Base);
+        assert_eq!(base.weighted, weighted);
+        assert_eq!(base.parameters.len(), count);
+        let error = base.relative_error_percent;
+        assert!((error - published).abs() < 0.1, "{error} {published}");
+        // Joint 6 has little friction of its own: nearly all of it is the motor's, at the sum of both rates.
+        let value = |name: &str| {
+            let mut all = base.parameters.iter();
+            all.find(|one| one.name == name).expect("a parameter").value
+        };
+        assert!(value("fs_m6") > 5.0 * value("fs_6"));
+        // Where the published elimination ends with two parameters more, the ratio of deviations is a few
+        // percent above 30: a log that is filtered a little differently ends on either side.
+        let essential = stage(Stage::Essential);
+        let beyond = ESSENTIAL - essential.parameters.len();
+        assert!(beyond <= 2, "{beyond}");
+        let ratio = |removal: &Removal| removal.deviation_ratio;
+        let ratios: Vec<f64> = essential
+            .removals
+            .iter()
+            .rev()
+            .take(beyond)
+            .map(ratio)
+            .collect();
+        assert!(
+            ratios.iter().all(|ratio| *ratio < 1.1 * R_SIGMA) || !weighted,
+            "{ratios:?}"
+        );
+    }
+}
