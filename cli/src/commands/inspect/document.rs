@@ -155,6 +155,8 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
     for (leg, l) in mechanism.legs.iter().enumerate() {
         for (joint, j) in l.joints.iter().enumerate() {
             let kind = match j.kind {
+                // A motor that turns several joints carries no body.
+                _ if j.motor.is_some() => "motor",
                 JointKind::Revolute => "revolute",
                 JointKind::Prismatic => "prismatic",
                 JointKind::Fixed => "fixed",
