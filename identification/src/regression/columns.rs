@@ -58,13 +58,29 @@ pub struct Column {
     origin: Origin,
 }
 
-/// The column of a Coulomb parameter around reversals.
+/// How the sign of a velocity is taken around reversals.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Reversal {
-    /// The speed below which the column is zero.
+pub(crate) struct Reversal {
+    /// The speed below which there is none.
     band: f64,
-    /// Whether the sign is the mean over the sampling interval.
+    /// Whether it is the mean over the sampling interval.
     averaged: bool,
+}
+
+impl Reversal {
+    /// As the settings ask for it.
+    pub(crate) fn new(settings: &Settings) -> Self {
+        Self {
+            band: settings.velocity_dead_band,
+            averaged: settings.averaged_reversals,
+        }
+    }
+
+    /// The sign of a velocity that changes by `step` in a sampling interval; none within the dead band.
+    pub(crate) fn sign(self, velocity: f64, step: f64) -> Option<f64> {
+        let step = if self.averaged { step } else { 0.0 };
+        (velocity.abs() >= self.band).then(|| mean_sign(velocity, step))
+    }
 }
 
 impl Column {
@@ -87,9 +103,11 @@ impl Column {
     /// interval.
     fn factor(&self, velocity: f64, step: f64) -> f64 {
         let sign = match self.reversal {
-            Some(reversal) if velocity.abs() < reversal.band => return 0.0,
-            Some(reversal) if reversal.averaged => mean_sign(velocity, step),
-            _ => mean_sign(velocity, 0.0),
+            Some(reversal) => reversal.sign(velocity, step),
+            None => Some(mean_sign(velocity, 0.0)),
+        };
+        let Some(sign) = sign else {
+            return 0.0;
         };
         // The model's column has the sign of the velocity or, of fv, the velocity itself.
         match self.direction {
@@ -168,15 +186,15 @@ impl ColumnSet {
     /// # Errors
     /// A friction parameter whose rate can't be recognised.
     pub fn with_reversals(mut self, model: &dyn Model, settings: &Settings) -> Result<Self, Error> {
-        let (band, averaged) = (settings.velocity_dead_band, settings.averaged_reversals);
-        if band > 0.0 || averaged {
+        let reversal = Reversal::new(settings);
+        if reversal.band > 0.0 || reversal.averaged {
             let rates = friction_rates(model, settings.seed)?;
             for column in &mut self.columns {
                 if let (Origin::Robot(index), StandardParameter::Fs) =
                     (column.origin, column.symbol)
                 {
                     column.rate.clone_from(&rates[index]);
-                    column.reversal = Some(Reversal { band, averaged });
+                    column.reversal = Some(reversal);
                 }
             }
         }

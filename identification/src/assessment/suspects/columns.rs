@@ -2,10 +2,13 @@
 
 use std::ops::Range;
 
-use overact::{Info, Model};
+use overact::Model;
 
 use super::shapes::{Moment, Reach, SHAPES, Shape, WAVES};
-use crate::{kinematics::Motion, regression::projection::ModelKind};
+use crate::{
+    kinematics::Motion,
+    regression::{columns::Reversal, projection::ModelKind},
+};
 
 /// A fault of one unknown size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -162,33 +165,26 @@ impl Sample<'_> {
     }
 }
 
-/// The motion of all actuators at all samples of a motion, samples x n, with these torques.
+/// The motion of all actuators at all samples of a motion, samples x n: positions, velocities, accelerations
+/// and torques, the signs of velocities being taken as for dry friction.
 pub(super) fn moments(
-    info: &Info<'_>,
-    motion: &Motion,
-    (positions, torques): (&[f64], &[f64]),
-    jacobians: &[f64],
+    (motion, reversal): (&Motion, Reversal),
+    [positions, velocities, accelerations, torques]: [&[f64]; 4],
 ) -> Vec<Moment> {
-    let (n, r) = (info.sizes.actuators, info.sizes.dof);
-    let velocity = |sample: usize, actuator: usize| -> f64 {
-        let first = (sample * n + actuator) * r;
-        let row = &jacobians[first..first + r];
-        let twist = &motion.twist[sample * r..(sample + 1) * r];
-        row.iter().zip(twist).map(|(a, b)| a * b).sum()
-    };
-    let velocities: Vec<f64> = (0..motion.samples * n)
-        .map(|place| velocity(place / n, place % n))
-        .collect();
-    let rates = rates(&velocities, n, motion.sampling_frequency);
-    (0..motion.samples * n)
-        .map(|place| Moment {
+    let n = positions.len() / motion.samples.max(1);
+    let moment = |place: usize| {
+        let (velocity, acceleration) = (velocities[place], accelerations[place]);
+        let step = acceleration / motion.sampling_frequency;
+        Moment {
             position: positions[place],
-            velocity: velocities[place],
-            acceleration: rates[place],
+            velocity,
+            sign: reversal.sign(velocity, step).unwrap_or(0.0),
+            acceleration,
             torque: torques[place],
             time: motion.time(place / n),
-        })
-        .collect()
+        }
+    };
+    (0..positions.len()).map(moment).collect()
 }
 
 /// Derivatives of `width` signals that stand side by side, by central differences; one-sided at both

@@ -17,6 +17,9 @@ use crate::{
 /// Step of a position (m, rad) and relative step of the clock.
 const STEP: f64 = 1e-5;
 
+/// Step of the time, s.
+const INSTANT: f64 = 1e-6;
+
 /// An estimate that explains a motion.
 pub(super) struct Nearby<'a> {
     pub(super) model: &'a dyn Model,
@@ -27,8 +30,13 @@ pub(super) struct Nearby<'a> {
 }
 
 impl Nearby<'_> {
-    /// Γ¹ as the estimate explains it, samples x r.
-    fn explained(&self, motion: &Motion, states: [&[f64]; 3]) -> Result<Vec<f64>, Error> {
+    /// Γ¹ as the estimate explains it, samples x r, of samples one `interval` (s) apart.
+    fn explained(
+        &self,
+        motion: &Motion,
+        states: [&[f64]; 3],
+        interval: f64,
+    ) -> Result<Vec<f64>, Error> {
         let sizes = self.model.info().sizes;
         let r = sizes.dof;
         let mut all = Vec::with_capacity(motion.samples * r);
@@ -36,7 +44,6 @@ impl Nearby<'_> {
             let count = BLOCK.min(motion.samples - first);
             let widths = [sizes.pose, r, r];
             let parts = [0, 1, 2].map(|i| slice(states[i], widths[i], first, count));
-            let interval = 1.0 / motion.sampling_frequency;
             let lines = self
                 .columns
                 .evaluate(
@@ -58,7 +65,43 @@ impl Nearby<'_> {
         Ok(all)
     }
 
+    /// Velocities J v and accelerations J v̇ + J̇ v of the actuators, samples x n, with J = J_p^inv, n x r.
+    pub(super) fn actuators(
+        &self,
+        motion: &Motion,
+        jacobians: &[f64],
+    ) -> Result<[Vec<f64>; 2], Error> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let mut poses = motion.pose.clone();
+        for (pose, twist) in poses
+            .chunks_exact_mut(sizes.pose)
+            .zip(motion.twist.chunks_exact(r))
+        {
+            let step: Vec<f64> = twist.iter().map(|v| v * INSTANT).collect();
+            self.model.displace(pose, &step);
+        }
+        let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
+        let function = Function::InverseJacobian;
+        let later = evaluate(self.model, function, &[&poses], motion.samples).map_err(at)?;
+        let mut all = [vec![0.0; motion.samples * n], vec![0.0; motion.samples * n]];
+        for place in 0..motion.samples * n {
+            let sample = place / n;
+            let rows = [jacobians, &later].map(|all| slice(all, r, place, 1));
+            let rates = [&motion.twist, &motion.acceleration].map(|all| slice(all, r, sample, 1));
+            let product = |row: &[f64], rate: &[f64]| -> f64 {
+                row.iter().zip(rate).map(|(a, b)| a * b).sum()
+            };
+            let velocity = product(rows[0], rates[0]);
+            let change = (product(rows[1], rates[0]) - velocity) / INSTANT;
+            all[0][place] = velocity;
+            all[1][place] = product(rows[0], rates[1]) + change;
+        }
+        Ok(all)
+    }
+
     /// By how much Y - W χ changes with the part by which the sampling frequency is too high, samples x r.
+    /// The sampling interval changes with it: where in an interval a velocity reverses depends on no clock.
     pub(super) fn clock(&self, motion: &Motion) -> Result<Vec<f64>, Error> {
         let faster = 1.0 + STEP;
         let twist: Vec<f64> = motion.twist.iter().map(|v| v * faster).collect();
@@ -67,8 +110,11 @@ impl Nearby<'_> {
             .iter()
             .map(|a| a * faster * faster)
             .collect();
-        let here = self.explained(motion, [&motion.pose, &motion.twist, &motion.acceleration])?;
-        let there = self.explained(motion, [&motion.pose, &twist, &acceleration])?;
+        let interval = 1.0 / motion.sampling_frequency;
+        let states: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
+        let here = self.explained(motion, states, interval)?;
+        let states: [&[f64]; 3] = [&motion.pose, &twist, &acceleration];
+        let there = self.explained(motion, states, interval / faster)?;
         Ok(here
             .iter()
             .zip(there)
@@ -129,7 +175,8 @@ impl Nearby<'_> {
             &[poses, &twist, changes],
         )?;
         let jacobians = ask(Function::InverseJacobian, &[poses])?;
-        let explained = self.explained(motion, [poses, &twist, &acceleration])?;
+        let interval = 1.0 / motion.sampling_frequency;
+        let explained = self.explained(motion, [poses, &twist, &acceleration], interval)?;
         let mut left = Vec::with_capacity(explained.len());
         for sample in 0..motion.samples {
             let jacobian = slice(&jacobians, n * r, sample, 1);

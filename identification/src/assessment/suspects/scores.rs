@@ -20,7 +20,11 @@ use crate::{
         conditioning::{KeptActuators, home_scales},
         distribution::{least_norm, product},
     },
-    regression::{chunk::projected, columns::ColumnSet, projection::ModelKind},
+    regression::{
+        chunk::projected,
+        columns::{ColumnSet, Reversal},
+        projection::ModelKind,
+    },
     result::Estimate,
     settings::Settings,
 };
@@ -198,13 +202,15 @@ impl Pass<'_> {
         }
         let torques = self.inputs(motion, &jacobians, &mut lines);
         let torque_rates = rates(&torques, n, motion.sampling_frequency);
-        let actuators = moments(&info, motion, (&positions, &torques), &jacobians);
         let nearby = Nearby {
             model: self.model,
             columns: self.columns,
             base: self.base,
             values: self.frame.values,
         };
+        let [velocities, accelerations] = nearby.actuators(motion, &jacobians)?;
+        let signals: [&[f64]; 4] = [&positions, &velocities, &accelerations, &torques];
+        let actuators = moments((motion, Reversal::new(self.settings)), signals);
         let clock = nearby.clock(motion)?;
         let moved = self
             .frame

@@ -61,6 +61,8 @@ pub(super) const SHAPES: [Shape; 14] = [
 pub(super) struct Moment {
     pub(super) position: f64,
     pub(super) velocity: f64,
+    /// The sign of the velocity, as the columns of dry friction take it around reversals.
+    pub(super) sign: f64,
     pub(super) acceleration: f64,
     /// The torque or force, freed of the residual.
     pub(super) torque: f64,
@@ -138,15 +140,11 @@ impl Shape {
         let Moment {
             position,
             velocity,
+            sign,
             acceleration,
             torque,
             time,
         } = motion;
-        let sign = if velocity == 0.0 {
-            0.0
-        } else {
-            velocity.signum()
-        };
         match self {
             Self::Constant => 1.0,
             Self::Velocity => velocity,
