@@ -69,6 +69,7 @@ fn noise_percent(context: &Context<'_>) -> f64 {
         0 | 1 => 1.0,
         factor => PASSED / factor as f64,
     };
-    let part = scores.noise(&variances, passed);
-    base.relative_error_percent * part.min(1.0).sqrt()
+    let part = scores.noise(&variances, passed) / base.residual_deviation.powi(2);
+    let part = if part.is_finite() { part.min(1.0) } else { 1.0 };
+    base.relative_error_percent * part.sqrt()
 }

@@ -14,6 +14,15 @@
 //! parameters: a fault that is there for sure and moves none of them is a remark, one that moves them by
 //! several of their deviations spoils them.
 //!
+//! Two errors of the model are no faults, but would look like some:
+//!
+//! - Errors of positions come back as accelerations, with the square of the frequency, and the controller
+//!   answers them with torques: what is measured of both hangs together, as a delay would make it. So the
+//!   equations keep half of the estimate's band only, in which there is a thirtieth of it.
+//! - A joint whose friction changes its sign sticks for a while, which no function of a filtered velocity
+//!   tells. So every column w of dry friction has a column -ẇ beside it, as if it came late by a time of
+//!   its own, and no suspect is held against what that explains.
+//!
 //! - `shapes`: how something missing may depend on the motion;
 //! - `columns`: the suspects and their columns;
 //! - `nearby`: what the model would explain of a motion that is slightly different;

@@ -1,20 +1,23 @@
 //! One pass over the beginnings of the runs. What is kept does not grow with the data.
 
-use overact::{Function, Model};
+use nalgebra::DMatrix;
+use overact::{Function, Model, StandardParameter};
 use rayon::prelude::*;
 
 use super::{
     columns::{Layout, Sample, Suspect, moments, rates, suspects},
     nearby::Nearby,
     pairs::{Correlation, correlations},
+    scaled::Scaled,
     sections::{Frame, RunScores, Sink},
     shapes::{Reach, Shape},
+    test::told,
 };
 use crate::{
     blocks::{BLOCK, evaluate, slice},
     data::Log,
     error::Error,
-    filters::{Decimation, Decimator},
+    filters::{DECIMATION_PADDING, Decimation, Decimator},
     kinematics::{
         Motion, Motions,
         conditioning::{KeptActuators, home_scales},
@@ -32,6 +35,13 @@ use crate::{
 /// Samples of all runs together that are gone through, at most.
 const MOST_SAMPLES: usize = 100_000;
 
+/// The band of the equations is so many times narrower than that of the estimate. Errors of positions come in
+/// as accelerations and rates of torques, by a power that grows with the fifth power of the band.
+const NARROWER: usize = 2;
+
+/// Equations for each column of the model, at least: below, they are decimated less.
+const LEAST_EQUATIONS: usize = 4;
+
 /// What all runs tell.
 #[derive(Debug, Clone)]
 pub(crate) struct Scores {
@@ -42,6 +52,9 @@ pub(crate) struct Scores {
     pub(super) layout: Layout,
     /// Places of the estimate's parameters among the base parameters.
     pub(super) selected: Vec<usize>,
+    /// Columns of dry friction that is late, which stand behind the base parameters', as far as the data tell
+    /// them.
+    pub(super) late: Vec<usize>,
     /// What each run tells.
     pub(super) runs: Vec<RunScores>,
 }
@@ -51,8 +64,12 @@ struct Pass<'a> {
     model: &'a dyn Model,
     columns: &'a ColumnSet,
     base: &'a [usize],
+    /// Places of the columns of dry friction among the base parameters.
+    friction: &'a [usize],
     kind: ModelKind,
     frame: Frame<'a>,
+    /// One sample in so many is kept.
+    decimation: usize,
     settings: &'a Settings,
 }
 
@@ -69,15 +86,21 @@ pub(crate) fn scores(
 ) -> Result<Scores, Error> {
     let suspects = suspects(model, estimate.model);
     let payload = model.info().payload_parameters;
-    let layout = Layout::new(base.len(), &suspects, payload.len());
-    let mut values = vec![0.0; base.len()];
+    let friction = coulomb(columns, base);
+    let layout = Layout::new(base.len() + friction.len(), &suspects, payload.len());
+    let mut values = vec![0.0; layout.base];
     for parameter in &estimate.parameters {
         values[parameter.column] = parameter.value;
     }
+    let most = (MOST_SAMPLES / runs.len().max(1)).max(settings.samples_needed());
+    let beginning = |log: &Log| log.beginning(most.min(log.samples()));
+    let runs: Vec<Log> = runs.iter().map(beginning).collect::<Result<_, _>>()?;
+    let narrower = narrower(&runs, settings, (layout.base, model.info().sizes.dof));
     let pass = Pass {
         model,
         columns,
         base,
+        friction: &friction,
         kind: estimate.model,
         frame: Frame {
             suspects: &suspects,
@@ -86,21 +109,66 @@ pub(crate) fn scores(
             weights: &estimate.weights,
             values: &values,
         },
+        decimation: settings.decimation * narrower,
         settings,
     };
-    let most = (MOST_SAMPLES / runs.len().max(1)).max(settings.samples_needed());
-    let run = |log: &Log| pass.run(&log.beginning(most.min(log.samples()))?);
     let scores = runs
         .par_iter()
-        .map(run)
+        .map(|log| pass.run(log))
         .collect::<Result<Vec<_>, Error>>()?;
+    let selected = estimate.columns();
     Ok(Scores {
+        late: late(&layout, &scores, (&selected, base.len())),
         payload: payload.iter().map(|one| one.name.to_owned()).collect(),
         layout,
-        selected: estimate.columns(),
+        selected,
         runs: scores,
         suspects,
     })
+}
+
+/// By how many times narrower the band of the equations is than that of the estimate, for a model of so
+/// many columns and lines.
+fn narrower(runs: &[Log], settings: &Settings, (columns, lines): (usize, usize)) -> usize {
+    let kept = |log: &Log| log.samples() - settings.skip_start - settings.skip_end;
+    if runs.iter().any(|log| kept(log) <= DECIMATION_PADDING) {
+        return 1;
+    }
+    let samples: usize = runs.iter().map(kept).sum();
+    let equations = samples * lines / settings.decimation;
+    (equations / (LEAST_EQUATIONS * columns).max(1)).clamp(1, NARROWER)
+}
+
+/// Places of the columns of dry friction among the base parameters.
+fn coulomb(columns: &ColumnSet, base: &[usize]) -> Vec<usize> {
+    let is_coulomb = |column: usize| {
+        let column = columns.as_slice().get(column);
+        column.is_some_and(|column| column.symbol == StandardParameter::Fs)
+    };
+    let places = base.iter().enumerate();
+    let places = places.filter(|(_, column)| is_coulomb(**column));
+    places.map(|(place, _)| place).collect()
+}
+
+/// The columns behind the `base` ones that the runs tell from those `selected`, and from each other.
+fn late(layout: &Layout, runs: &[RunScores], (selected, base): (&[usize], usize)) -> Vec<usize> {
+    let late: Vec<usize> = (base..layout.base).collect();
+    let sum = |rows: &[usize], columns: &[usize]| {
+        let start = DMatrix::zeros(rows.len(), columns.len());
+        runs.iter().fold(start, |sum, run| {
+            sum + run
+                .cross(layout, 0)
+                .select_rows(rows)
+                .select_columns(columns)
+        })
+    };
+    let Some(gram) = Scaled::new(&sum(selected, selected)) else {
+        return Vec::new();
+    };
+    let (cross, square) = (sum(selected, &late), sum(&late, &late));
+    let outside = &square - cross.tr_mul(&gram.solve(&cross));
+    let places = told(&outside, &square).into_iter();
+    places.map(|place| late[place]).collect()
 }
 
 impl Scores {
@@ -109,23 +177,23 @@ impl Scores {
         correlations(self.runs.iter().map(|run| (&run.pairs, run.cosines)))
     }
 
-    /// The part of the squared residual that white noise of the torques explains, given its variance for
-    /// each run and actuator at the full rate, of which decimation leaves the part `passed`.
+    /// The mean of λ² e² over all equations, of errors e that come from white noise of the torques, given its
+    /// variance for each run and actuator at the full rate, of which decimation leaves the part `passed`.
     pub(crate) fn noise(&self, variances: &[Vec<f64>], passed: f64) -> f64 {
         let offset = |actuator: usize| {
             let wanted = Suspect::Torque(actuator, Shape::Constant);
             self.suspects.iter().position(|one| *one == wanted)
         };
-        let (mut noise, mut square) = (0.0, 0.0);
+        let (mut noise, mut equations) = (0.0, 0);
         for (run, variances) in self.runs.iter().zip(variances) {
-            square += run.square;
+            equations += run.equations;
             for (actuator, variance) in variances.iter().enumerate() {
                 // Σ λ² J² over all equations.
                 let shares = offset(actuator).map(|k| run.own(&self.layout, k, 0)[(0, 0)]);
                 noise += shares.unwrap_or(0.0) * variance * passed;
             }
         }
-        if square > 0.0 { noise / square } else { 1.0 }
+        noise / equations.max(1) as f64
     }
 }
 
@@ -138,7 +206,7 @@ impl Pass<'_> {
     fn run(&self, log: &Log) -> Result<RunScores, Error> {
         let lines = self.model.info().sizes.dof;
         let mut motions = Motions::new(self.model, log, self.settings)?;
-        let decimator = Decimator::new(self.settings.decimation)?;
+        let decimator = Decimator::new(self.decimation)?;
         let samples = motions.samples();
         let mut streams: Vec<Decimation> = (0..lines)
             .map(|_| decimator.stream(self.width(), samples))
@@ -175,7 +243,8 @@ impl Pass<'_> {
             0 => Vec::new(),
             _ => ask(Function::IdmRedPayload, &states)?,
         };
-        let more = self.width() - self.base.len();
+        let (layout, p) = (self.frame.layout, self.base.len());
+        let more = self.width() - p;
         let mut lines: Vec<Vec<f64>> = vec![Vec::new(); r];
         for first in (0..motion.samples).step_by(BLOCK) {
             let count = BLOCK.min(motion.samples - first);
@@ -200,6 +269,15 @@ impl Pass<'_> {
                 .zip(rows)
                 .for_each(|(all, rows)| all.extend(rows));
         }
+        for (to, from) in self.friction.iter().enumerate() {
+            for rows in &mut lines {
+                let column = rows.iter().skip(*from).step_by(self.width());
+                let column: Vec<f64> = column.copied().collect();
+                let late = rates(&column, 1, motion.sampling_frequency);
+                let places = rows.iter_mut().skip(p + to).step_by(self.width());
+                places.zip(late).for_each(|(place, rate)| *place = -rate);
+            }
+        }
         let torques = self.inputs(motion, &jacobians, &mut lines);
         let torque_rates = rates(&torques, n, motion.sampling_frequency);
         let nearby = Nearby {
@@ -222,7 +300,7 @@ impl Pass<'_> {
             false => Vec::new(),
         };
         let width = self.width();
-        let own = self.base.len() + 1;
+        let own = layout.base + 1;
         for sample in 0..motion.samples {
             let here = Sample {
                 jacobian: slice(&jacobians, n * r, sample, 1),
@@ -252,7 +330,7 @@ impl Pass<'_> {
     fn inputs(&self, motion: &Motion, jacobians: &[f64], lines: &mut [Vec<f64>]) -> Vec<f64> {
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);
-        let (width, p) = (self.width(), self.base.len());
+        let (width, p, y) = (self.width(), self.base.len(), self.frame.layout.base);
         let mut freed = motion.torques.clone();
         for (sample, torques) in freed.chunks_exact_mut(n).enumerate() {
             let jacobian = slice(jacobians, n * r, sample, 1);
@@ -268,7 +346,7 @@ impl Pass<'_> {
                     .zip(self.frame.values)
                     .map(|(w, x)| w * x)
                     .sum();
-                row[p] = input;
+                row[y] = input;
                 residual[line] = input - explained;
             }
             if let Some(distribution) = least_norm(jacobian, r) {

@@ -33,8 +33,9 @@ pub(super) struct RunScores {
     pub(super) pairs: Pairs,
     /// B, the cosines of the covariance.
     pub(super) cosines: usize,
-    /// Σ ρ², weighted.
+    /// Σ ρ², weighted, and how many equations it is of.
     pub(super) square: f64,
+    pub(super) equations: usize,
 }
 
 impl Products {
@@ -124,6 +125,7 @@ pub(super) struct Sink<'a> {
     products: Products,
     pairs: Pairs,
     square: f64,
+    equations: usize,
 }
 
 impl<'a> Sink<'a> {
@@ -142,6 +144,7 @@ impl<'a> Sink<'a> {
             constants,
             products: Products::new(frame.layout, sections),
             square: 0.0,
+            equations: 0,
         }
     }
 
@@ -158,6 +161,7 @@ impl<'a> Sink<'a> {
             pairs: self.pairs.over(&waves),
             cosines,
             square: self.square,
+            equations: self.equations,
         }
     }
 
@@ -216,6 +220,7 @@ impl<'a> Sink<'a> {
             first = part.end;
         }
         self.square += residual.norm_squared();
+        self.equations += count;
         (all.select_columns(&self.constants), residual)
     }
 

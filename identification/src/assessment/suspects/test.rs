@@ -109,6 +109,8 @@ impl Scores {
     /// it from them.
     pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<Accused> {
         let layout = &self.layout;
+        let selected: Vec<usize> = selected.iter().chain(&self.late).copied().collect();
+        let selected = selected.as_slice();
         let columns: Vec<usize> = layout.blocks[group.block].clone().collect();
         let inside = |run: usize| group.run.is_none_or(|own| own == run);
         let mut gram = DMatrix::zeros(selected.len(), selected.len());
@@ -190,7 +192,7 @@ impl Scores {
 }
 
 /// Columns that the data can tell from the model's, and from those before them.
-fn told(outside: &DMatrix<f64>, square: &DMatrix<f64>) -> Vec<usize> {
+pub(super) fn told(outside: &DMatrix<f64>, square: &DMatrix<f64>) -> Vec<usize> {
     let mut rest = outside.clone();
     let mut told = Vec::new();
     for i in 0..rest.nrows() {
