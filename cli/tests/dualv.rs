@@ -5,6 +5,7 @@
 mod common;
 
 use common::{Bench, NINE, list, number, robot};
+use overact_tier::by_tier;
 use serde_json::Value;
 use std::fs;
 
@@ -27,7 +28,7 @@ fn essential(document: &Value) -> Vec<&Value> {
 
 #[test]
 fn logs_give_the_nine_parameters_of_table_2_and_the_papers_tables() {
-    let bench = described("4 s", |text| text);
+    let bench = described(by_tier(["1.5 s", "4 s"]), |text| text);
     bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
     let published = robot("published/dualv.toml");
     let arguments = [
@@ -143,7 +144,7 @@ terms = [
 
 #[test]
 fn a_crossed_singularity_of_the_kept_actuators_is_told() {
-    let bench = described("3 s", crossing);
+    let bench = described(by_tier(["1.5 s", "3 s"]), crossing);
     let document = bench.json(&["identify", "my.toml"]);
     let verdict = |subject: &str| {
         let mut verdicts = list(&document["verdicts"]).iter();

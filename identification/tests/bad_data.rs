@@ -15,11 +15,11 @@ use overact_identification::{
 use overact_simulation::Record;
 use overact_tier::{by_tier, is_full};
 
-/// Two unloaded and two loaded runs of five seconds.
+/// Two unloaded and two loaded runs.
 static RECORDS: LazyLock<Vec<Record>> = LazyLock::new(|| {
     let robot = DualV::new();
     let mut experiment = experiment(&robot, 1.0, 5);
-    experiment.duration_s = 4.0;
+    experiment.duration_s = by_tier([2.5, 4.0]);
     records(&robot, &experiment)
 });
 

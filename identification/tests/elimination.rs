@@ -6,6 +6,7 @@ mod dualv;
 
 use dualv::{DualV, experiment, logs, records, settings, truth};
 use overact_identification::{Dataset, Estimate, Identification, Stage, identify};
+use overact_tier::by_tier;
 
 fn identified(robot: &DualV, rotation: f64) -> Identification {
     let truth = truth();
@@ -40,7 +41,8 @@ const NINE: [&str; 9] = [
 fn the_nine_parameters_of_table_2_are_left_whatever_the_rotation() {
     let robot = DualV::new();
     // Errors grow as the rotation gets weaker; with r_sigma alone they would be above 50 %.
-    for (rotation, largest) in [(1.0, 2.0), (0.15, 6.0)] {
+    let [weak, full] = [(0.15, 6.0), (1.0, 2.0)];
+    for &(rotation, largest) in by_tier([&[weak][..], &[full, weak]]) {
         let result = identified(&robot, rotation);
         for estimate in essential(&result) {
             println!("{estimate:#?}");

@@ -37,7 +37,9 @@ fn the_truth_is_within_three_correlated_deviations() {
     ]);
     for &(cogging, seed) in seeds {
         let mut made = Vec::new();
-        for record in records(&robot, &experiment(&robot, 1.0, seed)) {
+        let mut experiment = experiment(&robot, 1.0, seed);
+        experiment.duration_s = by_tier([4.0, 6.0]);
+        for record in records(&robot, &experiment) {
             made.push(log(record, |positions, torques| {
                 for (torque, q) in torques.iter_mut().zip(positions) {
                     *torque += cogging * (48.0 * *q).sin();

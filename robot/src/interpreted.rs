@@ -134,6 +134,23 @@ impl InterpretedRobot {
         }
     }
 
+    /// Whether a function serves to find pose and joints from what encoders read: those of `serves` that a
+    /// caller needs who asks for one function more.
+    #[must_use]
+    pub fn finds_pose(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
+        let finds = matches!(
+            function,
+            Function::PoseInClosedForm
+                | Function::Joints
+                | Function::ActuatorPositions
+                | Function::InverseJacobian
+                | Function::ClosureError
+                | Function::ClosureActuatorJacobian
+                | Function::LegsJacobian
+        );
+        finds && Self::serves(mechanism, function, from)
+    }
+
     /// The model.
     #[must_use]
     pub const fn model(&self) -> &RobotModel {

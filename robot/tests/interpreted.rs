@@ -4,6 +4,7 @@ use overact::{Body, Columns, Error, Function, Model, StandardParameter};
 use overact_codegen::Request;
 use overact_robot::{CompiledFile, InterpretedRobot, Robot};
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 /// The path of a description of `robots/`.
 fn description(name: &str) -> PathBuf {
@@ -18,6 +19,9 @@ fn robot(name: &str) -> InterpretedRobot {
         Err(failure) => panic!("{}", failure.render(false)),
     }
 }
+
+/// The DualV, compiled once for all tests.
+static DUALV: LazyLock<InterpretedRobot> = LazyLock::new(|| robot("dualv.toml"));
 
 const POSE: [f64; 3] = [0.03, -0.02, 0.15];
 const TWIST: [f64; 3] = [0.4, -0.3, 1.1];
@@ -42,7 +46,7 @@ fn the_closure_is_served_from_joints() {
     let loaded =
         Robot::from_toml(description("dualv.toml")).map_err(|failure| failure.render(false));
     let lean = loaded.expect("a robot");
-    for robot in [&robot("dualv.toml"), lean.model()] {
+    for robot in [&*DUALV, lean.model()] {
         let joints = evaluate(robot, Function::Joints, &[&POSE], 12);
         let closure = evaluate(
             robot,
@@ -69,14 +73,14 @@ fn moved(time: f64) -> [f64; 3] {
 
 #[test]
 fn rates_are_derivatives_of_positions() {
-    let robot = robot("dualv.toml");
+    let robot = &*DUALV;
     let h = 1e-4;
-    let joints = |time: f64| evaluate(&robot, Function::Joints, &[&moved(time)], 12);
+    let joints = |time: f64| evaluate(robot, Function::Joints, &[&moved(time)], 12);
     let (before, now, after) = (joints(-h), joints(0.0), joints(h));
     let inputs: [&[f64]; 3] = [&POSE, &TWIST, &ACCELERATION];
-    let velocities = evaluate(&robot, Function::JointVelocities, &inputs[..2], 12);
-    let accelerations = evaluate(&robot, Function::JointAccelerations, &inputs, 12);
-    let jacobian = evaluate(&robot, Function::InverseJacobian, &[&POSE], 12);
+    let velocities = evaluate(robot, Function::JointVelocities, &inputs[..2], 12);
+    let accelerations = evaluate(robot, Function::JointAccelerations, &inputs, 12);
+    let jacobian = evaluate(robot, Function::InverseJacobian, &[&POSE], 12);
     for i in 0..12 {
         let velocity = (after[i] - before[i]) / (2.0 * h);
         let acceleration = (after[i] - 2.0 * now[i] + before[i]) / (h * h);
@@ -88,7 +92,7 @@ fn rates_are_derivatives_of_positions() {
         );
         assert!((acceleration - accelerations[i]).abs() < 1e-4 * (1.0 + acceleration.abs()));
     }
-    let actuators = evaluate(&robot, Function::ActuatorPositions, &[&POSE], 4);
+    let actuators = evaluate(robot, Function::ActuatorPositions, &[&POSE], 4);
     for (k, &i) in robot.info().actuated_joints.iter().enumerate() {
         let row = &jacobian[3 * k..3 * k + 3];
         let velocity: f64 = row.iter().zip(&TWIST).map(|(j, v)| j * v).sum();
@@ -99,8 +103,8 @@ fn rates_are_derivatives_of_positions() {
 
 #[test]
 fn forward_kinematics_finds_the_pose_back() {
-    let robot = robot("dualv.toml");
-    let actuators = evaluate(&robot, Function::ActuatorPositions, &[&POSE], 4);
+    let robot = &*DUALV;
+    let actuators = evaluate(robot, Function::ActuatorPositions, &[&POSE], 4);
     let mut pose = robot.info().home_pose.to_vec();
     robot
         .pose_from_actuators(&actuators, &mut pose)
@@ -123,7 +127,7 @@ fn forward_kinematics_finds_the_pose_back() {
 
 #[test]
 fn columns_times_parameters_are_the_torques() {
-    let robot = robot("dualv.toml");
+    let robot = &*DUALV;
     let info = robot.info();
     let (own, payload) = (info.sizes.parameters, info.sizes.payload_parameters);
     let values: Vec<f64> = (0..own + payload)
@@ -131,15 +135,15 @@ fn columns_times_parameters_are_the_torques() {
         .collect();
     let inputs: [&[f64]; 3] = [&POSE, &TWIST, &ACCELERATION];
     let columns = evaluate(
-        &robot,
+        robot,
         Function::IdmRedPlatform(Columns::Standard),
         &inputs,
         3 * own,
     );
-    let loaded = evaluate(&robot, Function::IdmRedPayload, &inputs, 3 * payload);
+    let loaded = evaluate(robot, Function::IdmRedPayload, &inputs, 3 * payload);
     let inputs: [&[f64]; 4] = [&POSE, &TWIST, &ACCELERATION, &values];
-    let torques = evaluate(&robot, Function::InverseDynamics, &inputs, 4);
-    let projected = evaluate(&robot, Function::ProjectPlatform, &[&POSE, &torques], 3);
+    let torques = evaluate(robot, Function::InverseDynamics, &inputs, 4);
+    let projected = evaluate(robot, Function::ProjectPlatform, &[&POSE, &torques], 3);
     for r in 0..3 {
         let row = columns[r * own..(r + 1) * own]
             .iter()
@@ -152,7 +156,7 @@ fn columns_times_parameters_are_the_torques() {
         );
     }
     // The least-norm torques have no internal part.
-    let same = evaluate(&robot, Function::ProjectTorques, &[&POSE, &torques], 4);
+    let same = evaluate(robot, Function::ProjectTorques, &[&POSE, &torques], 4);
     assert!(
         same.iter()
             .zip(&torques)
@@ -162,7 +166,7 @@ fn columns_times_parameters_are_the_torques() {
 
 #[test]
 fn bad_samples_are_named() {
-    let robot = robot("dualv.toml");
+    let robot = &*DUALV;
     let mut output = vec![0.0; 24];
     let mut poses = [POSE, POSE].concat();
     poses[3] = f64::INFINITY;
@@ -189,7 +193,7 @@ fn bad_samples_are_named() {
 
 #[test]
 fn what_a_robot_says_of_itself() {
-    let robot = robot("dualv.toml");
+    let robot = &*DUALV;
     let info = robot.info();
     assert_eq!(
         (info.name, info.coordinates),
@@ -226,17 +230,17 @@ fn what_a_robot_says_of_itself() {
 
 #[test]
 fn a_tree_is_its_joints() {
-    let robot = robot("emps.toml");
+    let robot = &robot("emps.toml");
     let mut pose = [0.0];
     robot
         .pose_from_actuators(&[0.3], &mut pose)
         .expect("a pose");
     assert_eq!(pose, [0.3]);
-    let velocity = evaluate(&robot, Function::JointVelocities, &[&[0.3], &[2.0]], 1);
+    let velocity = evaluate(robot, Function::JointVelocities, &[&[0.3], &[2.0]], 1);
     assert_eq!(velocity, [2.0]);
     // There are no internal torques, and neither a null space nor a payload.
     assert_eq!(
-        evaluate(&robot, Function::ProjectTorques, &[&[0.3], &[5.0]], 1),
+        evaluate(robot, Function::ProjectTorques, &[&[0.3], &[5.0]], 1),
         [5.0]
     );
     let states: [&[f64]; 3] = [&[0.3], &[2.0], &[1.0]];

@@ -2,13 +2,14 @@
 
 use overact_codegen::emission;
 use overact_tests::support::{Failure, description, model_of, repository};
+use overact_tier::by_tier;
 use std::fs;
 use std::time::Instant;
 
 #[test]
 fn the_same_description_gives_the_same_bytes() -> Result<(), Failure> {
     // That the checked-in modules are fresh says the same of every robot.
-    for stem in ["emps", "planar_3prr"] {
+    for stem in ["emps", by_tier(["five_bar", "planar_3prr"])] {
         let source = description(stem)?;
         let mut files = Vec::new();
         for _ in 0..2 {
@@ -29,7 +30,7 @@ fn the_same_description_gives_the_same_bytes() -> Result<(), Failure> {
 
 #[test]
 fn threads_give_the_same_bytes() -> Result<(), Failure> {
-    let source = description("dualv")?;
+    let source = description(by_tier(["three_leg_point", "dualv"]))?;
     let one = || model_of(&source).map(|model| emission::file(&model, &source.name));
     let (a, b) = std::thread::scope(|scope| {
         let (a, b) = (scope.spawn(one), scope.spawn(one));

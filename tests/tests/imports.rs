@@ -5,6 +5,7 @@ use overact_tests::support::imports::{Module, modules};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
+    sync::{Mutex, PoisonError},
 };
 
 /// The order of a crate's modules, from the bottom up.
@@ -138,13 +139,14 @@ const CIRCLES: [(&str, &[&str]); 4] = [
     ("identification/regression", &["instruments", "observation"]),
 ];
 
-fn crate_of(folder: &str) -> Vec<Module> {
-    modules(
-        &Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("..")
-            .join(folder)
-            .join("src"),
-    )
+/// The files of a crate, parsed once for all tests.
+fn crate_of(folder: &'static str) -> &'static [Module] {
+    static ALL: Mutex<BTreeMap<&str, &[Module]>> = Mutex::new(BTreeMap::new());
+    let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
+    all.entry(folder).or_insert_with(|| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        modules(&root.join(folder).join("src")).leak()
+    })
 }
 
 /// What is wrong with the imports of a file, by the order of its crate.
@@ -219,7 +221,7 @@ fn imports_run_downwards() {
         let mut seen = BTreeSet::new();
         for module in crate_of(house.folder) {
             seen.insert(module.path[0].clone());
-            let complaints = wrong(house, &module).into_iter();
+            let complaints = wrong(house, module).into_iter();
             all.extend(complaints.map(|one| format!("{}: {one}", house.folder)));
         }
         let gone = house.order.iter().filter(|module| !seen.contains(**module));
@@ -234,7 +236,7 @@ fn no_folder_has_a_circle_of_imports() {
     let mut left = BTreeMap::new();
     let folders = HOUSES.iter().map(|house| house.folder).chain(OTHERS);
     for folder in folders {
-        for (inside, files) in circles(&crate_of(folder)) {
+        for (inside, files) in circles(crate_of(folder)) {
             left.insert(format!("{folder}/{inside}"), files);
         }
     }

@@ -107,7 +107,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let name = arguments.function.as_str();
     let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
         let full = || function_name(function, from, mechanism.platform.is_none());
-        InterpretedRobot::serves(mechanism, function, from)
+        InterpretedRobot::finds_pose(mechanism, function, from)
             || function.name() == name
             || full() == name
     };

@@ -16,6 +16,11 @@ pub trait Kinematics: Sync {
     fn jacobian(&self, x: &[f64], j: &mut [f64]) -> Result<(), Error>;
     /// c(x, v) = dJ/dt v.
     fn convection(&self, x: &[f64], v: &[f64], c: &mut [f64]) -> Result<(), Error>;
+    /// J_p^inv and c(x, v) at once.
+    fn motion(&self, x: &[f64], v: &[f64], j: &mut [f64], c: &mut [f64]) -> Result<(), Error> {
+        self.jacobian(x, j)?;
+        self.convection(x, v, c)
+    }
     fn displace(&self, pose: &mut [f64], step: &[f64]) {
         for (x, s) in pose.iter_mut().zip(step) {
             *x += s;
@@ -155,8 +160,10 @@ static MOTORS: LazyLock<[[f64; 2]; 4]> = LazyLock::new(|| {
 
 /// Geometry of a leg.
 struct Leg {
-    /// The motor's angle, and the direction of the arm B - A.
-    motor: f64,
+    /// From the motor to C, B - A + C - B, and its length.
+    span: [f64; 2],
+    length: f64,
+    /// The direction of the arm B - A.
     direction: [f64; 2],
     /// C - B.
     forearm: [f64; 2],
@@ -164,33 +171,42 @@ struct Leg {
     lever: [f64; 2],
 }
 
-impl DualV {
-    fn leg(x: &[f64], i: usize) -> Result<Leg, Error> {
+impl Leg {
+    /// Leg `i`, by sine and cosine of the platform's angle.
+    fn new(x: &[f64], (sin, cos): (f64, f64), i: usize) -> Result<Self, Error> {
         let side = if i < 2 { HALF_PLATFORM } else { -HALF_PLATFORM };
-        let (sin, cos) = x[2].sin_cos();
         let lever = [-side * sin, side * cos];
         let [ca, sa] = MOTORS[i];
-        let arm = [x[0] + lever[0] - BASE * ca, x[1] + lever[1] - BASE * sa];
-        let reach = arm[0].hypot(arm[1]) / (2.0 * LINK);
-        if reach > 1.0 {
+        let span = [x[0] + lever[0] - BASE * ca, x[1] + lever[1] - BASE * sa];
+        let length = (span[0] * span[0] + span[1] * span[1]).sqrt();
+        // The arm is turned away from the span by the angle of this cosine.
+        let c = length / (2.0 * LINK);
+        if c > 1.0 {
             return Err(Error::OutOfReach {
                 leg: ["leg1", "leg2", "leg3", "leg4"][i],
             });
         }
-        let motor = arm[1].atan2(arm[0]) + MODE[i] * reach.acos();
-        let (s, c) = motor.sin_cos();
-        Ok(Leg {
-            motor,
-            direction: [c, s],
-            forearm: [arm[0] - LINK * c, arm[1] - LINK * s],
+        let s = MODE[i] * (1.0 - c * c).sqrt();
+        let along = span.map(|span| span / length);
+        let direction = [along[0] * c - along[1] * s, along[1] * c + along[0] * s];
+        Ok(Self {
+            span,
+            length,
+            direction,
+            forearm: [span[0] - LINK * direction[0], span[1] - LINK * direction[1]],
             lever,
         })
     }
 
+    /// The motor's angle.
+    fn motor(&self, i: usize) -> f64 {
+        self.span[1].atan2(self.span[0]) + MODE[i] * (self.length / (2.0 * LINK)).acos()
+    }
+
     /// (C - B) . ∂B/∂q.
-    fn determinant(leg: &Leg) -> Result<f64, Error> {
-        let [c, s] = leg.direction;
-        let value = LINK * (leg.forearm[1] * c - leg.forearm[0] * s);
+    fn determinant(&self) -> Result<f64, Error> {
+        let [c, s] = self.direction;
+        let value = LINK * (self.forearm[1] * c - self.forearm[0] * s);
         if value.abs() < 1e-4 {
             return Err(Error::SingularLeg {
                 leg: "leg",
@@ -198,6 +214,29 @@ impl DualV {
             });
         }
         Ok(value)
+    }
+
+    /// The motor's rate per twist: (C - B) . (Ċ - Ḃ) = 0.
+    fn rates(&self) -> Result<[f64; 3], Error> {
+        let (f, b) = (self.forearm, self.determinant()?);
+        let turn = f[1] * self.lever[0] - f[0] * self.lever[1];
+        Ok([f[0] / b, f[1] / b, turn / b])
+    }
+
+    /// The motor's acceleration at a twist without acceleration:
+    /// (C - B) . (C̈ - B̈) + |Ċ - Ḃ|² = 0.
+    fn convection(&self, v: &[f64]) -> Result<f64, Error> {
+        let (f, b) = (self.forearm, self.determinant()?);
+        let tip = [v[0] - v[2] * self.lever[1], v[1] + v[2] * self.lever[0]];
+        let rate = (f[0] * tip[0] + f[1] * tip[1]) / b;
+        let [co, s] = self.direction;
+        let elbow = [-LINK * s * rate, LINK * co * rate];
+        let slip = (tip[0] - elbow[0]).powi(2) + (tip[1] - elbow[1]).powi(2);
+        let centripetal = [
+            -v[2] * v[2] * self.lever[0] + LINK * co * rate * rate,
+            -v[2] * v[2] * self.lever[1] + LINK * s * rate * rate,
+        ];
+        Ok((f[0] * centripetal[0] + f[1] * centripetal[1] + slip) / b)
     }
 }
 
@@ -213,36 +252,32 @@ impl Kinematics for DualV {
         vec![0.0; 3]
     }
     fn positions(&self, x: &[f64], q: &mut [f64]) -> Result<(), Error> {
+        let turn = x[2].sin_cos();
         for (i, q) in q.iter_mut().enumerate() {
-            *q = Self::leg(x, i)?.motor;
+            *q = Leg::new(x, turn, i)?.motor(i);
         }
         Ok(())
     }
     fn jacobian(&self, x: &[f64], j: &mut [f64]) -> Result<(), Error> {
-        // (C - B) . (Ċ - Ḃ) = 0.
+        let turn = x[2].sin_cos();
         for i in 0..4 {
-            let leg = Self::leg(x, i)?;
-            let (f, b) = (leg.forearm, Self::determinant(&leg)?);
-            let turn = f[1] * leg.lever[0] - f[0] * leg.lever[1];
-            j[3 * i..3 * i + 3].copy_from_slice(&[f[0] / b, f[1] / b, turn / b]);
+            j[3 * i..3 * i + 3].copy_from_slice(&Leg::new(x, turn, i)?.rates()?);
         }
         Ok(())
     }
     fn convection(&self, x: &[f64], v: &[f64], c: &mut [f64]) -> Result<(), Error> {
-        // (C - B) . (C̈ - B̈) + |Ċ - Ḃ|² = 0.
+        let turn = x[2].sin_cos();
         for (i, c) in c.iter_mut().enumerate().take(4) {
-            let leg = Self::leg(x, i)?;
-            let (f, b) = (leg.forearm, Self::determinant(&leg)?);
-            let tip = [v[0] - v[2] * leg.lever[1], v[1] + v[2] * leg.lever[0]];
-            let rate = (f[0] * tip[0] + f[1] * tip[1]) / b;
-            let [co, s] = leg.direction;
-            let elbow = [-LINK * s * rate, LINK * co * rate];
-            let slip = (tip[0] - elbow[0]).powi(2) + (tip[1] - elbow[1]).powi(2);
-            let centripetal = [
-                -v[2] * v[2] * leg.lever[0] + LINK * co * rate * rate,
-                -v[2] * v[2] * leg.lever[1] + LINK * s * rate * rate,
-            ];
-            *c = (f[0] * centripetal[0] + f[1] * centripetal[1] + slip) / b;
+            *c = Leg::new(x, turn, i)?.convection(v)?;
+        }
+        Ok(())
+    }
+    fn motion(&self, x: &[f64], v: &[f64], j: &mut [f64], c: &mut [f64]) -> Result<(), Error> {
+        let turn = x[2].sin_cos();
+        for i in 0..4 {
+            let leg = Leg::new(x, turn, i)?;
+            j[3 * i..3 * i + 3].copy_from_slice(&leg.rates()?);
+            c[i] = leg.convection(v)?;
         }
         Ok(())
     }

@@ -34,6 +34,8 @@ struct Moving {
     jacobian: [f64; MAX * MAX],
     /// c(x, v) = dJ/dt v.
     convection: [f64; MAX],
+    /// Sine and cosine of a platform's angle.
+    turn: (f64, f64),
 }
 
 /// Columns: ia, fv, fs of each actuator, then the platform's; the payload's are like the platform's.
@@ -100,14 +102,15 @@ impl<K: Kinematics> Robot<K> {
         let mut moving = Moving {
             jacobian: [0.0; MAX * MAX],
             convection: [0.0; MAX],
+            turn: x.get(2).map_or((0.0, 1.0), |phi| phi.sin_cos()),
         };
-        self.kinematics.jacobian(x, &mut moving.jacobian)?;
-        self.kinematics.convection(x, v, &mut moving.convection)?;
+        let (jacobian, convection) = (&mut moving.jacobian, &mut moving.convection);
+        self.kinematics.motion(x, v, jacobian, convection)?;
         Ok(moving)
     }
 
-    /// Γ¹ of the motion (pose, twist, acceleration) for parameters χ (own and payload's).
-    fn force(&self, moving: &Moving, [x, v, a]: [&[f64]; 3], chi: &[f64], out: &mut [f64]) {
+    /// Γ¹ of the motion (twist, acceleration) for parameters χ (own and payload's).
+    fn force(&self, moving: &Moving, [v, a]: [&[f64]; 2], chi: &[f64], out: &mut [f64]) {
         let (n, r) = (self.sizes.actuators, self.sizes.dof);
         let own = self.sizes.parameters - self.sizes.payload_parameters;
         out.fill(0.0);
@@ -129,7 +132,7 @@ impl<K: Kinematics> Robot<K> {
         } else {
             let sum = |k: usize| platform[k] + payload[k];
             let [m, mx, my, zz] = [sum(0), sum(1), sum(2), sum(3)];
-            let (s, c) = x[2].sin_cos();
+            let (s, c) = moving.turn;
             let (w2, wd) = (v[2] * v[2], a[2]);
             out[0] += m * a[0] - mx * (wd * s + w2 * c) + my * (w2 * s - wd * c);
             out[1] += m * a[1] + mx * (wd * c - w2 * s) - my * (wd * s + w2 * c);
@@ -197,7 +200,7 @@ impl<K: Kinematics> Robot<K> {
             Function::ProjectPlatform => project(input[1], out),
             Function::Bias => {
                 let moving = self.moving(x, input[1])?;
-                self.force(&moving, [x, input[1], &zero[..r]], input[2], out);
+                self.force(&moving, [input[1], &zero[..r]], input[2], out);
                 Ok(())
             }
             Function::MassMatrix => {
@@ -205,7 +208,7 @@ impl<K: Kinematics> Robot<K> {
                 columns(r, r, out, |k, column| {
                     let mut unit = [0.0; MAX];
                     unit[k] = 1.0;
-                    self.force(&moving, [x, &zero[..r], &unit[..r]], input[1], column);
+                    self.force(&moving, [&zero[..r], &unit[..r]], input[1], column);
                 });
                 Ok(())
             }
@@ -220,14 +223,14 @@ impl<K: Kinematics> Robot<K> {
                 columns(r, count, out, |k, column| {
                     chi.fill(0.0);
                     chi[first + k] = 1.0;
-                    self.force(&moving, [x, input[1], input[2]], &chi, column);
+                    self.force(&moving, [input[1], input[2]], &chi, column);
                 });
                 Ok(())
             }
             Function::InverseDynamics => {
                 let mut force = [0.0; MAX];
                 let moving = self.moving(x, input[1])?;
-                let motion = [x, input[1], input[2]];
+                let motion = [input[1], input[2]];
                 self.force(&moving, motion, input[3], &mut force[..r]);
                 self.least_norm(x, &mut force[..r], out)
             }

@@ -89,8 +89,18 @@ fn turn(columns: &mut [Vec<f64>], p: usize, q: usize, c: f64, s: f64) {
     }
 }
 
+/// The scalar product, in eight sums that the processor can take at once.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let (a, a_rest) = a.as_chunks::<8>();
+    let (b, b_rest) = b.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        for (sum, (x, y)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += x * y;
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Moore-Penrose pseudo-inverse by singular value decomposition.
@@ -119,8 +129,13 @@ pub fn singular_values(matrix: &DMatrix<f64>) -> DVector<f64> {
     } else {
         matrix.clone()
     };
-    // The triangular factor has the same singular values and fewer rows.
-    let small = if tall.is_empty() { tall } else { tall.qr().r() };
+    // The triangular factor has the same singular values and fewer rows. Its rows are more nearly
+    // orthogonal than its columns where the columns were taken in the order of what they add.
+    let small = if tall.is_empty() {
+        tall
+    } else {
+        tall.col_piv_qr().r().transpose()
+    };
     decompose(&small).values
 }
 

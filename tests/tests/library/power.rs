@@ -18,7 +18,7 @@ use overact_tier::by_tier;
 
 const TOLERANCE: f64 = 1e-9;
 /// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [10, 200];
+const STATES: [usize; 2] = [6, 200];
 
 overact_tests::library!(balance);
 
