@@ -55,6 +55,7 @@ pub use data::{Dataset, Gain, Log, Mapping, Periods, Time};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
+    consistent::{Consistent, ConsistentBody, ConsistentParameter, Prior},
     essential::{Drift, Essential, Removal, essential},
     estimate::{Estimation, LineError, estimate},
     instruments::regressor::{

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Problem},
+    estimation::consistent::Prior,
     filters::{DECIMATION_PADDING, butterworth, settling},
 };
 
@@ -101,6 +102,9 @@ pub struct Settings {
     pub instruments: Instruments,
     /// Period of the motion, s, for instruments from other periods; found from each run if absent.
     pub period_s: Option<f64>,
+    /// What is believed of the standard parameters before the data speak, for the consistent estimate.
+    #[serde(default)]
+    pub prior: Prior,
     /// Kept actuators of case 2, indices among the actuators; r of them.
     pub kept_actuators: Vec<usize>,
     /// Seed of the random states from which the base parameters are found.
@@ -138,6 +142,7 @@ impl Settings {
             weighted: true,
             instruments: Instruments::default(),
             period_s: None,
+            prior: Prior::default(),
             kept_actuators: info.kept_actuators.to_vec(),
             seed: 1,
         }

@@ -7,7 +7,8 @@ use crate::{
     assessment::{self, Watched},
     data::Log,
     error::Error,
-    regression::observation::Observer,
+    estimation::consistent::Consistent,
+    regression::{observation::Observer, projection::ModelKind},
     result::{CrossValidation, Estimate, Stage},
     series::RunFigures,
     settings::Settings,
@@ -25,13 +26,55 @@ pub(super) struct HeldOut {
     pub(super) warnings: Vec<String>,
 }
 
-/// Compares the runs of the cross-validation with the predictions of all estimates, of which each comes
-/// with the number of its projection.
+/// Parameters whose predictions are compared.
+pub(super) struct Predictor {
+    /// Number of the projection.
+    pub(super) projection: usize,
+    pub(super) model: ModelKind,
+    pub(super) stage: Stage,
+    /// Places among the base parameters, and values.
+    pub(super) columns: Vec<usize>,
+    pub(super) values: Vec<f64>,
+}
+
+impl Predictor {
+    /// The parameters of an estimate.
+    pub(super) fn of_estimate((projection, estimate): &(usize, Estimate)) -> Self {
+        Self {
+            projection: *projection,
+            model: estimate.model,
+            stage: estimate.stage,
+            columns: estimate.columns(),
+            values: estimate.values(),
+        }
+    }
+
+    fn candidate(&self) -> Candidate<'_> {
+        Candidate {
+            projection: self.projection,
+            selected: &self.columns,
+            values: &self.values,
+        }
+    }
+
+    /// The base parameters of a consistent estimate.
+    pub(super) fn of_consistent((projection, own): &(usize, Consistent)) -> Self {
+        Self {
+            projection: *projection,
+            model: own.model,
+            stage: Stage::Consistent,
+            columns: (0..own.base_values.len()).collect(),
+            values: own.base_values.clone(),
+        }
+    }
+}
+
+/// Compares the runs of the cross-validation with all predictions.
 pub(super) fn cross_validate(
     model: &dyn Model,
     prepared: &Prepared,
     runs: &[Log],
-    estimates: &[(usize, Estimate)],
+    predictors: &[Predictor],
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<HeldOut, Error> {
@@ -42,19 +85,7 @@ pub(super) fn cross_validate(
         projections: &prepared.projections,
         settings,
     };
-    let parameters: Vec<(Vec<usize>, Vec<f64>)> = estimates
-        .iter()
-        .map(|(_, estimate)| (estimate.columns(), estimate.values()))
-        .collect();
-    let candidates: Vec<Candidate<'_>> = estimates
-        .iter()
-        .zip(&parameters)
-        .map(|((projection, _), (selected, values))| Candidate {
-            projection: *projection,
-            selected,
-            values,
-        })
-        .collect();
+    let candidates: Vec<Candidate<'_>> = predictors.iter().map(Predictor::candidate).collect();
     let mut held_out = HeldOut::default();
     let (mut all, mut problems) = (Vec::new(), Vec::new());
     for log in runs {
@@ -74,9 +105,9 @@ pub(super) fn cross_validate(
     }
     Error::check(problems)?;
     // In the order of the estimates, each on all runs.
-    for (index, (projection, estimate)) in estimates.iter().enumerate() {
+    for (index, predictor) in predictors.iter().enumerate() {
         for (payload, validations) in &all {
-            held_out.add(*projection, estimate, *payload, &validations[index]);
+            held_out.add(predictor, *payload, &validations[index]);
         }
     }
     Ok(held_out)
@@ -84,20 +115,15 @@ pub(super) fn cross_validate(
 
 impl HeldOut {
     /// Adds what a run tells of an estimate.
-    fn add(
-        &mut self,
-        projection: usize,
-        estimate: &Estimate,
-        payload: bool,
-        validation: &Result<Validation, Error>,
-    ) {
+    fn add(&mut self, own: &Predictor, payload: bool, validation: &Result<Validation, Error>) {
         match validation {
             Ok(validation) => {
-                let validation = CrossValidation::new(estimate, payload, validation.clone());
+                let validation =
+                    CrossValidation::new((own.model, own.stage), payload, validation.clone());
                 self.validations.push(validation);
-                self.owners.push(projection);
+                self.owners.push(own.projection);
             }
-            Err(error) if estimate.stage == Stage::Base => {
+            Err(error) if own.stage == Stage::Base => {
                 self.warnings.push(format!("no cross-validation: {error}"));
             }
             Err(_) => {}

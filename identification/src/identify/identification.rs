@@ -18,7 +18,9 @@ use crate::{
         verdict::Verdict,
     },
     calibration::Calibration,
-    estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
+    estimation::{
+        base::BaseParameters, consistent::Consistent, instruments::regressor::ErrorsInRegressor,
+    },
     regression::columns::ColumnSet,
     result::{CrossValidation, Estimate, Estimator, RunSummary},
     settings::Settings,
@@ -41,6 +43,8 @@ pub struct Identification {
     /// The estimates: for each model base, recommended and essential, all by least squares; then those
     /// of the base parameters by instruments, where there are some.
     pub estimates: Vec<Estimate>,
+    /// For each model the standard parameters that a robot can have and that explain the data best.
+    pub consistent: Vec<Consistent>,
     /// Every estimate on every run that was not identified from.
     pub cross_validation: Vec<CrossValidation>,
     /// What the user should know before trusting the numbers.

@@ -17,6 +17,7 @@ mod study;
 pub(crate) mod tracking;
 
 use overact::Model;
+use rayon::prelude::*;
 
 pub use estimates::{Outcome, estimate_projection};
 pub use identification::{BaseParameter, Identification, Regrouping};
@@ -24,7 +25,7 @@ pub use prepare::{Prepared, prepare};
 pub use progress::Progress;
 pub use study::{RankedProjection, Study, study};
 
-use cross_validation::cross_validate;
+use cross_validation::{Predictor, cross_validate};
 use estimates::estimate_all;
 use prepare::{check_runs, prepared_warnings};
 
@@ -38,7 +39,10 @@ use crate::{
     },
     data::Dataset,
     error::Error,
-    estimation::instruments::regressor::ErrorsInRegressor,
+    estimation::{
+        consistent::{Consistent, Prior, consistent},
+        instruments::regressor::ErrorsInRegressor,
+    },
     regression::projection::{ModelKind, Projection},
     result::{Estimate, Stage},
     settings::Settings,
@@ -64,11 +68,14 @@ pub fn identify(
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
     let (errors_in_regressor, instrumental) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
+    let consistent = consistent_all(&prepared, &estimates, &settings.prior);
+    let least_squares = estimates.iter().map(Predictor::of_estimate);
+    let others = consistent.iter().map(Predictor::of_consistent);
     let held_out = cross_validate(
         model,
         &prepared,
         dataset.validation,
-        &estimates,
+        &least_squares.chain(others).collect::<Vec<_>>(),
         settings,
         progress,
     )?;
@@ -126,9 +133,27 @@ pub fn identify(
         settings: settings.clone(),
         figures,
         estimates: estimates.into_iter().chain(instrumental).collect(),
+        consistent: consistent.into_iter().map(|(_, own)| own).collect(),
         cross_validation,
         errors_in_regressor,
     })
+}
+
+/// The consistent estimate of each projection, with its number.
+fn consistent_all(
+    prepared: &Prepared,
+    estimates: &[(usize, Estimate)],
+    prior: &Prior,
+) -> Vec<(usize, Consistent)> {
+    let base = estimates
+        .par_iter()
+        .filter(|(_, one)| one.stage == Stage::Base);
+    let of_projection = |(number, estimate): &(usize, Estimate)| {
+        let system = prepared.systems.get(*number)?.as_ref().ok()?;
+        let columns = (&prepared.columns, &prepared.base);
+        Some((*number, consistent(columns, system, estimate, prior)?))
+    };
+    base.filter_map(of_projection).collect()
 }
 
 /// Where the actuators moved in all runs.

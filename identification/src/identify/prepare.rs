@@ -86,6 +86,7 @@ pub fn prepare(
         settings.asymmetric_friction,
         settings.seed,
     )?;
+    Error::check(settings.prior.problems(&columns))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
     // Relations between columns are those of the model; reversals are those of the data.
     let columns = columns.with_reversals(model, settings)?;

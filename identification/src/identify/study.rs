@@ -10,7 +10,7 @@ use overact::Model;
 use serde::Serialize;
 
 use super::{
-    cross_validation::cross_validate,
+    cross_validation::{Predictor, cross_validate},
     estimates::{Outcome, estimate_all},
     prepare::{Prepared, prepare},
     progress::Progress,
@@ -108,7 +108,10 @@ pub fn study(
         model,
         &prepared,
         dataset.validation,
-        &estimated,
+        &estimated
+            .iter()
+            .map(Predictor::of_estimate)
+            .collect::<Vec<_>>(),
         settings,
         progress,
     )?;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{estimate::Estimate, stage::Stage};
+use super::stage::Stage;
 use crate::{
     estimation::estimate::LineError,
     regression::projection::ModelKind,
@@ -44,14 +44,14 @@ pub struct CrossValidation {
 }
 
 impl CrossValidation {
-    /// Joins an estimate's identity to its validation.
+    /// Joins what an estimate explains and of which parameters to its validation.
     #[must_use]
-    pub fn new(estimate: &Estimate, payload: bool, validation: Validation) -> Self {
+    pub fn new((model, stage): (ModelKind, Stage), payload: bool, validation: Validation) -> Self {
         Self {
             run: validation.run,
             payload,
-            model: estimate.model,
-            stage: estimate.stage,
+            model,
+            stage,
             residual_norm: validation.residual_norm,
             relative_error_percent: validation.relative_error_percent,
             lines: validation.lines,

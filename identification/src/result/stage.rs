@@ -12,16 +12,19 @@ pub enum Stage {
     Recommended,
     /// Only parameters that the data determine.
     Essential,
+    /// Standard parameters that a robot can have.
+    Consistent,
 }
 
 impl Stage {
-    /// `base`, `recommended` or `essential`.
+    /// `base`, `recommended`, `essential` or `consistent`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Base => "base",
             Self::Recommended => "recommended",
             Self::Essential => "essential",
+            Self::Consistent => "consistent",
         }
     }
 }

@@ -78,6 +78,7 @@ pub(crate) fn settings() -> Settings {
         weighted: true,
         instruments: crate::settings::Instruments::None,
         period_s: None,
+        prior: Default::default(),
         kept_actuators: Vec::new(),
         seed: 1,
     }

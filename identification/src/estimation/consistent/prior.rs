@@ -1,0 +1,221 @@
+//! What is believed of the standard parameters before the data speak.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use overact::StandardParameter;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    pseudo_inertia::{Inertia, divergence},
+    unknowns::{Kind, Unknowns, suffix},
+};
+use crate::{
+    error::Problem,
+    estimation::base::BaseParameters,
+    regression::columns::{Column, ColumnSet},
+    result::Estimate,
+};
+
+/// Mean square radius of a body of which nothing is known, m².
+const SQUARE_RADIUS: f64 = 0.01;
+
+/// Coefficients of friction and rotors of which nothing is known (SI units).
+const SMALL: f64 = 0.1;
+
+/// What is believed of the standard parameters before the data speak: it fills in what these leave open.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Prior {
+    /// Values by name (SI units), from CAD for instance. A body that is named needs its mass; second moments
+    /// that are missing are those of `uniform`, scaled to the mass.
+    pub values: BTreeMap<String, f64>,
+    /// Inertial parameters by name of bodies that are filled uniformly, all of one density, which is found
+    /// from the data; a body that is missing here is a small ball at the origin of its frame.
+    pub uniform: BTreeMap<String, f64>,
+    /// Smallest and largest value by name (SI units), of masses and of coefficients of friction and rotors.
+    pub bounds: BTreeMap<String, [f64; 2]>,
+}
+
+impl Prior {
+    /// What is wrong with it for a model's columns.
+    pub(crate) fn problems(&self, columns: &ColumnSet) -> Vec<Problem> {
+        let values = Values::new(self, columns);
+        let mut problems = Vec::new();
+        for (suffix, inertia) in &values.given {
+            if divergence(inertia, inertia).is_none() {
+                let message = format!(
+                    "no body has the prior parameters of `m{suffix}`: its pseudo-inertia is not positive definite"
+                );
+                let help = "give moments about the origin of the body's frame, products of inertia with the sign -∫xy dm, a positive mass";
+                problems.push(Problem::new(message).help(help));
+            }
+        }
+        for (name, [low, high]) in &self.bounds {
+            let bounded =
+                |symbol: StandardParameter| !symbol.is_inertial() || symbol == StandardParameter::M;
+            let known = columns.as_slice().iter().find(|one| one.name == *name);
+            if low.partial_cmp(high) != Some(std::cmp::Ordering::Less) {
+                let message = format!("the bounds of `{name}` are {low} and {high}");
+                problems.push(Problem::new(message).help("give the smaller one first"));
+            } else if known.is_some_and(|one| !bounded(one.symbol)) {
+                let message = format!("`{name}` can't be bounded");
+                let help = "masses, and coefficients of friction and rotors can";
+                problems.push(Problem::new(message).help(help));
+            } else if *high <= 0.0 && known.is_some_and(|one| one.symbol != StandardParameter::Off)
+            {
+                let message = format!("the bounds of `{name}` leave no positive value");
+                problems.push(Problem::new(message).help("it can't be negative"));
+            }
+        }
+        problems
+    }
+}
+
+/// The prior value of every unknown.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Values {
+    /// Bodies by the suffix of their names that are given.
+    given: BTreeMap<String, Inertia>,
+    /// Bodies by suffix of a common density.
+    uniform: BTreeMap<String, Inertia>,
+    density: f64,
+    /// Coefficients by name.
+    scalars: BTreeMap<String, f64>,
+}
+
+impl Values {
+    /// The values that are given, and uniform bodies of density 1.
+    pub(super) fn new(prior: &Prior, columns: &ColumnSet) -> Self {
+        let mut values = Self {
+            given: BTreeMap::new(),
+            uniform: BTreeMap::new(),
+            density: 1.0,
+            scalars: prior.values.clone(),
+        };
+        let inertial = columns.as_slice().iter();
+        for column in inertial.filter(|column| column.symbol.is_inertial()) {
+            let suffix = suffix(column);
+            let named = |from: &BTreeMap<String, f64>| {
+                StandardParameter::INERTIA
+                    .map(|p| from.get(&format!("{}{suffix}", p.name())).copied())
+            };
+            let uniform = named(&prior.uniform);
+            let uniform = match uniform.iter().any(Option::is_some) {
+                true => Inertia::from(uniform.map(Option::unwrap_or_default)),
+                false => ball(),
+            };
+            let own = named(&prior.values);
+            if own.iter().any(Option::is_some) {
+                values
+                    .given
+                    .insert(suffix.to_owned(), completed(own, &uniform));
+            }
+            values.uniform.insert(suffix.to_owned(), uniform);
+        }
+        values
+    }
+
+    /// The coefficients that are not given as the base parameters have them, or a part of them.
+    pub(super) fn with_estimate(
+        mut self,
+        columns: &ColumnSet,
+        base: &BaseParameters,
+        estimate: &Estimate,
+    ) -> Self {
+        let name = |index: usize| columns.as_slice().get(index).map(|one| one.name.clone());
+        for parameter in estimate.parameters.iter().filter(|one| one.value > 0.0) {
+            let Some(&kept) = base.columns.get(parameter.column) else {
+                continue;
+            };
+            let regrouped = &base.regroupings[parameter.column];
+            let members = regrouped.iter().map(|(index, _)| *index).chain([kept]);
+            let part = parameter.value / (regrouped.len() + 1) as f64;
+            for name in members.filter_map(name) {
+                self.scalars.entry(name).or_insert(part);
+            }
+        }
+        self
+    }
+
+    /// With the density by which uniform bodies explain best what is measured.
+    pub(super) fn with_density(
+        mut self,
+        unknowns: &Unknowns,
+        a: &DMatrix<f64>,
+        b: &DVector<f64>,
+    ) -> Self {
+        let (mut known, mut uniform) = (DVector::zeros(a.ncols()), DVector::zeros(a.ncols()));
+        for group in &unknowns.groups {
+            match &group.kind {
+                Kind::Body { prior } => {
+                    let suffix = unknowns.names[group.first].trim_start_matches("xx");
+                    let to = match self.given.contains_key(suffix) {
+                        true => &mut known,
+                        false => &mut uniform,
+                    };
+                    to.rows_mut(group.first, 10).copy_from(prior);
+                }
+                Kind::Positive { prior } => known[group.first] = *prior,
+                Kind::Free { .. } => {}
+            }
+        }
+        let (rest, column) = (b - a * known, a * uniform);
+        let density = column.dot(&rest) / column.norm_squared();
+        if density.is_finite() && density > 0.0 {
+            self.density = density;
+        }
+        self
+    }
+
+    /// The ten parameters of a body.
+    pub(super) fn body(&self, suffix: &str) -> Inertia {
+        let uniform = || {
+            self.uniform
+                .get(suffix)
+                .map_or_else(ball, |own| own * self.density)
+        };
+        self.given.get(suffix).copied().unwrap_or_else(uniform)
+    }
+
+    /// The magnitude of a coefficient.
+    pub(super) fn scalar(&self, column: &Column) -> f64 {
+        let own = self.scalars.get(&column.name).copied();
+        own.map(f64::abs)
+            .filter(|value| *value > 0.0)
+            .unwrap_or(SMALL)
+    }
+}
+
+/// A ball of 1 kg at the origin.
+fn ball() -> Inertia {
+    let moment = SQUARE_RADIUS;
+    Inertia::from([moment, 0.0, 0.0, moment, 0.0, moment, 0.0, 0.0, 0.0, 1.0])
+}
+
+/// A body of which some parameters are given: first moments that are missing are zero, second moments, if
+/// none is given, those of the uniform body of the same mass about its own centre.
+fn completed(given: [Option<f64>; 10], uniform: &Inertia) -> Inertia {
+    let mut own = Inertia::from(given.map(Option::unwrap_or_default));
+    if given[..6].iter().all(Option::is_none) {
+        let mass = own[9];
+        let scaled = uniform * (mass / uniform[9]);
+        let steiner = |body: &Inertia| {
+            let [x, y, z] = [6, 7, 8].map(|k| body[k] / mass);
+            let square = [
+                y * y + z * z,
+                -x * y,
+                -x * z,
+                x * x + z * z,
+                -y * z,
+                x * x + y * y,
+            ];
+            square.map(|value| mass * value)
+        };
+        let (from, to) = (steiner(&scaled), steiner(&own));
+        for k in 0..6 {
+            own[k] = scaled[k] - from[k] + to[k];
+        }
+    }
+    own
+}
