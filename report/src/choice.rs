@@ -62,6 +62,7 @@ pub(crate) const fn stage_name(stage: Stage) -> &'static str {
         Stage::Base => "all base parameters",
         Stage::Recommended => "recommended parameters",
         Stage::Essential => "parameters by the r_σ rule",
+        Stage::Consistent => "physically consistent parameters",
     }
 }
 

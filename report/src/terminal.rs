@@ -7,8 +7,8 @@ use crate::{
     layout::{left_table, line, table},
 };
 use overact_identification::{
-    BaseParameter, CrossValidation, Estimate, Estimator, Identification, LineError, ModelKind,
-    ParameterEstimate, Regrouping, significant,
+    BaseParameter, Consistent, CrossValidation, Estimate, Estimator, Identification, LineError,
+    ModelKind, ParameterEstimate, Regrouping, significant,
 };
 
 /// Largest denominator of a fraction that a coefficient is printed as.
@@ -35,11 +35,42 @@ pub fn tables(identification: &Identification) -> String {
         text.push('\n');
         text.push_str(&estimate(one));
     }
+    for one in &identification.consistent {
+        text.push('\n');
+        text.push_str(&consistent(one));
+    }
     if !identification.cross_validation.is_empty() {
         text.push('\n');
         text.push_str(&cross_validation(&identification.cross_validation));
     }
     text
+}
+
+/// The standard parameters that a robot can have.
+fn consistent(one: &Consistent) -> String {
+    let rows = one.parameters.iter().map(|own| {
+        vec![
+            own.name.clone(),
+            significant(own.value, 5),
+            own.unit.clone(),
+            significant(own.prior, 4),
+            format!("{:.0}", 100.0 * own.determined),
+        ]
+    });
+    let header = [
+        "parameter",
+        "value",
+        "unit",
+        "before the data",
+        "told by them %",
+    ];
+    format!(
+        "Physically consistent parameters, {}: error {:.4} % (base parameters {:.4} %)\n{}",
+        one.model.case(),
+        one.relative_error_percent,
+        one.base_relative_error_percent,
+        table(&header, rows.collect())
+    )
 }
 
 /// The runs identified from.

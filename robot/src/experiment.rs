@@ -87,6 +87,16 @@ impl VirtualExperiment<'_> {
         self.robot
     }
 
+    /// Gives the virtual robot other standard parameters than the description's, by name; the payload keeps its
+    /// own where there are none for it.
+    pub fn set_parameters(&mut self, values: &BTreeMap<String, f64>) {
+        let info = self.robot.model().info();
+        let all = info.parameters.iter().chain(info.payload_parameters);
+        for (parameter, own) in all.zip(&mut self.plan.parameters) {
+            *own = values.get(parameter.name).copied().unwrap_or(*own);
+        }
+    }
+
     /// Names of true parameters that have no effect on the model.
     #[must_use]
     pub fn without_effect(&self) -> &[String] {

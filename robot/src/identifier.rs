@@ -221,7 +221,7 @@ fn without_elimination(settings: &Settings, essential: bool) -> Settings {
 
 /// Leaves the base parameters only.
 fn without_essential(result: &mut Identification) {
-    let is_kept = |stage: Stage| stage == Stage::Base;
+    let is_kept = |stage: Stage| matches!(stage, Stage::Base | Stage::Consistent);
     result.estimates.retain(|one| is_kept(one.stage));
     result.cross_validation.retain(|one| is_kept(one.stage));
     for verdict in &mut result.verdicts {

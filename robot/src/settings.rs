@@ -1,6 +1,6 @@
 //! A description's tables `[data]` and `[identification]` as settings of the identification.
 
-use crate::robot::Robot;
+use crate::{prior::prior, robot::Robot};
 use overact::{Info, Model};
 use overact_codegen::description::{
     self, Clock, Description, Factor, Friction, Normalisation, Reversals,
@@ -67,6 +67,7 @@ pub(crate) fn settings(description: &Description, info: &Info<'_>, frequency: f6
             description::Instruments::None => Instruments::None,
         },
         period_s: table.period,
+        prior: prior(description, info),
         ..usual
     };
     if table.skip_start.is_none() && table.skip_end.is_none() {

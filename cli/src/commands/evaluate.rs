@@ -9,6 +9,7 @@ use crate::{
     states::States,
 };
 use clap::ValueEnum;
+use overact::Model;
 use overact::{Columns, Function};
 use overact_codegen::{
     Effort, Request, RobotModel,
@@ -18,7 +19,7 @@ use overact_codegen::{
     mechanism::Mechanism,
     model_with,
 };
-use overact_robot::{CompiledFile, InterpretedRobot};
+use overact_robot::{CompiledFile, InterpretedRobot, read_parameters};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
@@ -43,6 +44,9 @@ pub(crate) struct Arguments {
     /// Kept actuators of case 2 [default: those of the description]
     #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
     kept: Option<Vec<String>>,
+    /// Standard parameters, for functions that take `parameters` [default: those of each state]
+    #[arg(long, value_name = "TOML")]
+    parameters: Option<PathBuf>,
     /// Write to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -102,7 +106,8 @@ struct Document {
 /// A function that the robot does not have, states that do not hold what it needs, or a state at
 /// which it has no value.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let inputs = [arguments.file.as_path(), arguments.states.as_path()];
+    let mut inputs = vec![arguments.file.as_path(), arguments.states.as_path()];
+    inputs.extend(arguments.parameters.as_deref());
     output::check(&inputs, arguments.output.as_deref().as_slice())?;
     let name = arguments.function.as_str();
     let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
@@ -115,7 +120,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         wanted: &wanted,
         ..Request::with_effort(Effort::None)
     };
-    let CompiledFile { mut model, .. } = CompiledFile::read(&arguments.file, &request)?;
+    let CompiledFile {
+        mut model,
+        description,
+        ..
+    } = CompiledFile::read(&arguments.file, &request)?;
     let states = States::read(&arguments.states)?;
     if let Some(names) = &arguments.kept {
         model = with_kept(model, names, &request)?;
@@ -124,7 +133,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let program = function.program.clone();
     let (function, from, name) = (function.computes, function.from, function.name.clone());
     let robot = InterpretedRobot::new(model);
-    let values = evaluate(&robot, &program, from, &states)?;
+    let given = match &arguments.parameters {
+        Some(path) => in_order(&read_parameters(path, &description, &robot.info())?, &robot),
+        None => None,
+    };
+    let values = evaluate(&robot, &program, (from, given), &states)?;
     let width = program.entries.len();
     let rows = (0..states.len()).map(|at| &values[at * width..(at + 1) * width]);
     let shape = program.output.shape.clone();
@@ -175,14 +188,20 @@ fn parameters(model: &RobotModel, function: Function) -> Vec<String> {
     }
 }
 
+/// The robot's standard parameters in the order of its columns.
+fn in_order(values: &BTreeMap<String, f64>, robot: &InterpretedRobot) -> Option<Vec<f64>> {
+    let all = robot.info().parameters.iter();
+    all.map(|one| values.get(one.name).copied()).collect()
+}
+
 /// Values at all states, row after row.
 fn evaluate(
     robot: &InterpretedRobot,
     program: &Program,
-    from: MotionInput,
+    (from, parameters): (MotionInput, Option<Vec<f64>>),
     states: &States,
 ) -> Result<Vec<f64>, Failure> {
-    let inputs = gather::inputs(robot, program, from, states)?;
+    let inputs = gather::inputs(robot, program, (from, parameters), states)?;
     let rows: Vec<Rows<'_>> = inputs
         .iter()
         .map(|values| Rows {

@@ -4,7 +4,12 @@
 //! values of a virtual experiment stand beside the estimates and nowhere in them.
 
 use super::runs;
-use crate::{failure::Failure, output, progress::Progress, report as files};
+use crate::{
+    failure::{Failure, Problem},
+    output,
+    progress::Progress,
+    report as files,
+};
 use clap::ValueEnum;
 use overact::Model;
 use overact_identification::{
@@ -51,6 +56,9 @@ pub(crate) struct Arguments {
     /// Write the description with the calibrated offsets and lengths
     #[arg(long, value_name = "TOML", requires = "calibrate")]
     calibrated_robot: Option<PathBuf>,
+    /// Write the physically consistent standard parameters, which `simulate` and `evaluate` read
+    #[arg(long, value_name = "TOML")]
+    parameters: Option<PathBuf>,
     #[command(flatten)]
     reports: files::Arguments,
 }
@@ -87,7 +95,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let output = arguments.output.as_deref();
     let outputs = output
         .into_iter()
-        .chain(arguments.calibrated_robot.as_deref());
+        .chain(arguments.calibrated_robot.as_deref())
+        .chain(arguments.parameters.as_deref());
     output::check(&inputs, &[reports.outputs(), outputs.collect()].concat())?;
     let robot = Robot::from_toml(&arguments.file)?;
     let reports = reports.read()?;
@@ -121,11 +130,24 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let text = robot.calibrated_text(calibration)?;
         written.push((path.clone(), text.into_bytes()));
     }
+    if let Some(path) = &arguments.parameters {
+        let text = overact_report::parameters_file(&result).ok_or_else(no_parameters)?;
+        written.push((path.clone(), text.into_bytes()));
+    }
     output::emit_with(&text, output, written)?;
     match result.grade() {
         Grade::DoNotUse if arguments.strict => Err(refused(&result)),
         _ => Ok(()),
     }
+}
+
+fn no_parameters() -> Failure {
+    let problem = Problem::new(
+        "there are no physically consistent parameters: the search for them did not end",
+    );
+    problem
+        .help("narrower bounds in the table `prior`, or none, may help")
+        .into()
 }
 
 /// Why the result is not to be used.

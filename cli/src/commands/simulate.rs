@@ -8,7 +8,7 @@ use crate::{
 };
 use overact::Model;
 use overact_identification::significant;
-use overact_robot::{Robot, VirtualExperiment};
+use overact_robot::{Robot, VirtualExperiment, read_parameters};
 use overact_simulation::{Experiment, Record, write_csv};
 use serde::Serialize;
 use std::{
@@ -30,6 +30,9 @@ pub(crate) struct Arguments {
     /// Make only this run (again for others)
     #[arg(long = "run", value_name = "RUN")]
     runs: Vec<String>,
+    /// Standard parameters of the virtual robot [default: the description's]
+    #[arg(long, value_name = "TOML")]
+    parameters: Option<PathBuf>,
     /// Seed of all noise [default: the description's]
     #[arg(long)]
     seed: Option<u64>,
@@ -55,12 +58,18 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let robot = Robot::from_toml(&arguments.file)?;
     let mut experiment = robot.experiment()?;
     keep_runs(&mut experiment, &arguments.runs)?;
+    if let Some(path) = &arguments.parameters {
+        let info = robot.model().info();
+        experiment.set_parameters(&read_parameters(path, robot.description(), &info)?);
+    }
     if let Some(seed) = arguments.seed {
         experiment.plan_mut().seed = seed;
     }
     let files = files(experiment.plan(), arguments.output.as_deref())?;
     let outputs: Vec<&Path> = files.iter().flatten().map(PathBuf::as_path).collect();
-    output::check_distinct(&[&arguments.file], &outputs)?;
+    let mut inputs = vec![arguments.file.as_path()];
+    inputs.extend(arguments.parameters.as_deref());
+    output::check_distinct(&inputs, &outputs)?;
     warn(experiment.without_effect(), as_json);
     let bar = Progress::new("simulating", as_json);
     let records = experiment.records(&|fraction, run| bar.at(fraction, run))?;

@@ -3,6 +3,7 @@
 use super::controller::Controller;
 use super::experiment::Experiment;
 use super::model::{Leg, Platform, Spanned, actuators};
+use super::prior::Prior;
 use super::settings::{Data, Identification};
 use crate::cas::Number;
 use crate::effort::Effort;
@@ -34,6 +35,8 @@ pub struct Description {
     pub data: Option<Data>,
     /// The loops with which measured runs were made.
     pub controller: Option<Controller>,
+    /// What is believed of the parameters before data speak.
+    pub prior: Prior,
     /// Settings of the identification.
     pub identification: Identification,
 }

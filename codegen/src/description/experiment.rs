@@ -153,8 +153,9 @@ pub(super) fn position(kind: JointKind) -> Dimension {
     joint::dimension(kind).unwrap_or(Dimension::NONE)
 }
 
-fn parameters(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> {
-    let Some(table) = item.table("the table `[experiment.parameters]`") else {
+/// Reads a table of parameters by name.
+pub(super) fn parameters(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> {
+    let Some(table) = item.table("a table of parameters") else {
         return Vec::new();
     };
     let known = robot.parameters();

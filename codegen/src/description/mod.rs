@@ -27,6 +27,7 @@ mod parameters;
 mod per_actuator;
 mod place;
 mod platform;
+mod prior;
 mod reader;
 mod robot;
 mod scalar;
@@ -48,6 +49,7 @@ pub use inventory::Body;
 pub use model::{End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned};
 pub use overact_core::StandardParameter;
 pub use place::place;
+pub use prior::{Prior, parse_parameters};
 pub use settings::{
     Clock, Data, Factor, Friction, Identification, Instruments, Normalisation, Reversals,
 };

@@ -7,7 +7,7 @@ use super::model::{Leg, Platform, Spanned, actuators};
 use super::reader::{Context, Item, Table};
 use super::scope::Scope;
 use super::shape::Shape;
-use super::{controller, experiment, leg, platform, settings, shape};
+use super::{controller, experiment, leg, platform, prior, settings, shape};
 use crate::cas::{Number, Ratio};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::effort::Effort;
@@ -45,7 +45,7 @@ pub(super) fn read(source: &Source) -> Result<Description, Diagnostics> {
 }
 
 /// The parser's first message: what follows a broken line is mostly its consequence.
-fn syntax(errors: &[toml::de::Error]) -> Diagnostics {
+pub(super) fn syntax(errors: &[toml::de::Error]) -> Diagnostics {
     let place = |error: &&toml::de::Error| error.span().map_or(usize::MAX, |span| span.start);
     let first = errors.iter().min_by_key(place);
     let diagnostic = |error: &toml::de::Error| {
@@ -104,6 +104,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     check_parameter_names(table, &robot);
     let (experiment, data) = (table.get("experiment"), table.get("data"));
     let (settings, loops) = (table.get("identification"), table.get("controller"));
+    let prior = table.get("prior");
     table.finish();
     // Names and numbers in what follows depend on all legs: a leg that failed would make every one
     // of them wrong.
@@ -114,6 +115,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     let experiment = experiment.and_then(|item| experiment::read(&item, &robot));
     let data = data.and_then(|item| settings::data(&item, &robot));
     let controller = loops.and_then(|item| controller::read(&item, &robot));
+    let prior = prior.and_then(|item| prior::read(&item, &robot));
     let identification = settings::identification(settings.as_ref(), &robot);
     Some(Description {
         name: name?,
@@ -128,6 +130,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         experiment,
         data,
         controller,
+        prior: prior.unwrap_or_default(),
         identification,
     })
 }

@@ -40,7 +40,7 @@ use crate::{
     data::Dataset,
     error::Error,
     estimation::{
-        consistent::{Consistent, Prior, consistent},
+        consistent::{Consistent, Prior},
         instruments::regressor::ErrorsInRegressor,
     },
     regression::projection::{ModelKind, Projection},
@@ -149,9 +149,7 @@ fn consistent_all(
         .par_iter()
         .filter(|(_, one)| one.stage == Stage::Base);
     let of_projection = |(number, estimate): &(usize, Estimate)| {
-        let system = prepared.systems.get(*number)?.as_ref().ok()?;
-        let columns = (&prepared.columns, &prepared.base);
-        Some((*number, consistent(columns, system, estimate, prior)?))
+        Some((*number, prepared.consistent(*number, estimate, prior)?))
     };
     base.filter_map(of_projection).collect()
 }

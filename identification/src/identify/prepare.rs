@@ -8,7 +8,10 @@ use crate::{
     assessment,
     data::Log,
     error::{Error, Problem},
-    estimation::base::{BaseParameters, PayloadUse, base_parameters},
+    estimation::{
+        base::{BaseParameters, PayloadUse, base_parameters},
+        consistent::{Consistent, Prior, consistent},
+    },
     kinematics,
     regression::{
         columns::ColumnSet,
@@ -16,7 +19,7 @@ use crate::{
         projection::Projection,
         system::{Observed, System},
     },
-    result::RunSummary,
+    result::{Estimate, RunSummary},
     settings::{Settings, check_partition},
 };
 
@@ -58,6 +61,19 @@ impl Prepared {
             .iter()
             .filter_map(|&index| columns.get(index));
         named.map(|column| column.name.clone()).collect()
+    }
+
+    /// The standard parameters that a robot can have and that explain the inputs best, for one of the
+    /// projections; `base` is the estimate of its base parameters. None where the search does not end.
+    #[must_use]
+    pub fn consistent(
+        &self,
+        projection: usize,
+        base: &Estimate,
+        prior: &Prior,
+    ) -> Option<Consistent> {
+        let system = self.systems.get(projection)?.as_ref().ok()?;
+        consistent((&self.columns, &self.base), system, base, prior)
     }
 }
 

@@ -9,6 +9,7 @@
 mod calibration;
 mod checks;
 mod conditioning;
+mod consistent;
 mod data;
 mod elimination;
 mod estimators;
@@ -78,6 +79,7 @@ pub fn page(contents: &Contents<'_>) -> String {
         checks::section(contents),
         calibration::section(contents),
         parameters::section(contents),
+        consistent::section(contents),
         estimators::section(contents),
         limits::section(contents),
         validation::section(contents),

@@ -328,6 +328,7 @@ fn an_identification_without_anything_still_has_a_page() {
         base_parameters: Vec::new(),
         without_effect: Vec::new(),
         estimates: Vec::new(),
+        consistent: Vec::new(),
         cross_validation: Vec::new(),
         warnings: Vec::new(),
         checks: Vec::new(),

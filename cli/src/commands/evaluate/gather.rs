@@ -38,10 +38,11 @@ impl std::convert::From<Problem> for Lack {
 pub(super) fn inputs(
     robot: &InterpretedRobot,
     program: &Program,
-    from: MotionInput,
+    (from, parameters): (MotionInput, Option<Vec<f64>>),
     states: &States,
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut gatherer = Gatherer {
+        parameters,
         robot,
         states,
         from,
@@ -86,6 +87,8 @@ struct Gatherer<'a> {
     robot: &'a InterpretedRobot,
     states: &'a States,
     from: MotionInput,
+    /// Standard parameters that hold for all states.
+    parameters: Option<Vec<f64>>,
     /// The pose from which forward kinematics starts.
     previous: Vec<f64>,
 }
@@ -95,6 +98,14 @@ impl Gatherer<'_> {
         let is_tree = self.robot.model().is_tree();
         match array.name.as_str() {
             "pose" => self.pose(at),
+            "parameters"
+                if self
+                    .parameters
+                    .as_ref()
+                    .is_some_and(|own| own.len() == array.len()) =>
+            {
+                Ok(self.parameters.clone().unwrap_or_default())
+            }
             "joints" if !is_tree => self.joints(at, array.len()),
             name => {
                 // A tree's joints are its pose and its actuators, too.

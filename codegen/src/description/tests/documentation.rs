@@ -52,6 +52,8 @@ zzzz15 = 1
 reference = ["qd"]
 position_gain = 1
 velocity_gain = 1
+[prior]
+zzzz17 = 1
 [experiment]
 zzzz11 = 1
 [experiment.drives]
@@ -64,7 +66,7 @@ terms = [{ zzzz14 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
 "#;
 
 /// Headings, in the order of the unknown keys, and what stands before the keys there.
-const SECTIONS: [(&str, &str); 17] = [
+const SECTIONS: [(&str, &str); 18] = [
     ("## The robot", ""),
     ("### `[platform]`", ""),
     ("### `[platform]`", "axis."),
@@ -85,6 +87,7 @@ const SECTIONS: [(&str, &str); 17] = [
         "### `[[leg.NAME.motor]]`: motors that turn several joints",
         "",
     ),
+    ("## `[prior]`: what is believed before the data speak", ""),
 ];
 
 fn folder(path: &str) -> PathBuf {
@@ -171,8 +174,8 @@ fn every_key_is_documented_and_no_other() {
 #[test]
 fn no_table_is_forgotten() {
     let mut known: BTreeSet<String> = known().into_iter().flatten().collect();
-    // Coordinates of homes stand in the table of motions.
-    known.extend(["x", "y", "z", "phi", "rx", "ry", "rz"].map(str::to_owned));
+    // Coordinates of homes stand in the table of motions; a file of parameters is no description.
+    known.extend(["x", "y", "z", "phi", "rx", "ry", "rz", "parameters"].map(str::to_owned));
     let mut seen = 0;
     for entry in fs::read_dir(folder("src/description")).expect("the reader") {
         let path = entry.expect("a file").path();

@@ -1,7 +1,8 @@
 //! Errors in the tables about experiments, data and identification.
 
 use super::{good, listed, single};
-use crate::description::{Clock, Factor};
+use crate::description::{Clock, Factor, parse_parameters};
+use crate::diagnostic::Source;
 
 /// The errors of a robot of one joint with these tables, which start at line 2.
 fn errors(tables: &str) -> Vec<String> {
@@ -189,4 +190,53 @@ fn kept_actuators_of_the_dualv() {
             .concat()
             .ends_with("the robot has no parameter `zz_1_lag1`; did you mean `zz_1_leg1`?")
     );
+}
+
+#[test]
+fn prior() {
+    let tables = r#"[prior]
+value = 1
+[prior.values]
+zz_1 = "2 kg"
+zz_3 = 1
+[prior.bounds]
+zz_1 = [0, 1]
+fv_1 = [3, 1]
+fs_1 = [-2, -1]
+ia_1 = [1, 2, 3]
+ia_2 = [1, 2]
+"#;
+    let expected = [
+        "3:1 unknown key `value`; did you mean `values`?",
+        "5:8 `zz_1`: expected a moment of inertia (kg m^2), found a mass (2 kg)",
+        "6:1 the robot has no parameter `zz_3`; did you mean `zz_1`?",
+        "8:8 `zz_1` can't be bounded; masses, friction, rotor inertias and offsets can be",
+        "9:8 the smaller bound comes first; write [smallest, largest]",
+        "10:8 these bounds leave no positive value of `fs_1`; it can't be negative",
+        "11:8 3 numbers are no bounds; write [smallest, largest]",
+        "12:1 the robot has no parameter `ia_2`; did you mean `ia_1`?",
+    ];
+    assert_eq!(errors(tables), expected);
+}
+
+#[test]
+fn parameters_of_a_file() {
+    let description = good(&single("", ""));
+    let read = |text: &str| parse_parameters(&Source::new("parameters.toml", text), &description);
+    let all = read("[parameters]\nzz_1 = 0.5\nfv_1 = \"0.1 N m s\"\n").expect("good");
+    let values: Vec<f64> = all.iter().map(|one| one.value).collect();
+    assert_eq!(values, [0.5, 0.1]);
+    for (text, expected) in [
+        ("zz_1 = 0.5", "unknown key `zz_1`"),
+        (
+            "[parameters]\nzz_9 = 0.5",
+            "the robot has no parameter `zz_9`",
+        ),
+        ("[parameters]\nzz_1 = 1\nzz_1 = 2", "this is no TOML"),
+        ("parameters = 3", "parameters.toml:1:14"),
+    ] {
+        let errors = read(text).expect_err(text);
+        let errors = errors.render_plain(&Source::new("parameters.toml", text));
+        assert!(errors.contains(expected), "{text}: {errors}");
+    }
 }

@@ -44,7 +44,6 @@ const SMALLEST_NOISE: f64 = 1e-9;
 
 /// A set of standard parameters that a robot can have.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
 pub struct Consistent {
     /// Which inputs it explains.
     pub model: ModelKind,
@@ -130,20 +129,21 @@ fn observed(system: &System, estimate: &Estimate, count: usize) -> (DMatrix<f64>
         .residual_deviation
         .max(smallest)
         .max(f64::MIN_POSITIVE);
-    let parts = (reduced.triangle / noise).svd(true, true);
-    let largest = parts.singular_values.max();
-    let seen: Vec<usize> = (0..parts.singular_values.len())
-        .filter(|&k| parts.singular_values[k] > RANK_TOLERANCE * largest)
-        .collect();
-    let (Some(left), Some(right)) = (parts.u, parts.v_t) else {
-        return (DMatrix::zeros(0, count), DVector::zeros(0));
-    };
-    let mut rows = right.select_rows(&seen);
-    for (row, &k) in seen.iter().enumerate() {
-        rows.row_mut(row).scale_mut(parts.singular_values[k]);
-    }
-    let b = left.select_columns(&seen).tr_mul(&(reduced.rhs / noise));
-    (rows, b)
+    // Rows that say nothing are those behind the rank of a triangle of falling diagonal.
+    let mut b = reduced.rhs / noise;
+    let sorted = (reduced.triangle / noise).col_piv_qr();
+    let mut rows = sorted.r();
+    sorted.q_tr_mul(&mut b);
+    sorted.p().inv_permute_columns(&mut rows);
+    let diagonal = sorted.r().diagonal().map(f64::abs);
+    let seen = diagonal
+        .iter()
+        .take_while(|value| **value > RANK_TOLERANCE * diagonal[0])
+        .count();
+    (
+        rows.rows(0, seen).into_owned(),
+        b.rows(0, seen).into_owned(),
+    )
 }
 
 /// B: base parameters of unknowns.

@@ -76,11 +76,6 @@ pub(super) fn pseudo_inertia(inertia: &Inertia) -> Matrix4<f64> {
     terms.map(|(direction, value)| direction * *value).sum()
 }
 
-/// The ten parameters of a P.
-pub(super) fn parameters(pseudo: &Matrix4<f64>) -> Inertia {
-    Inertia::from(duals().map(|dual| (dual * pseudo).trace()))
-}
-
 /// The divergence of a body from its prior, none where no body has these parameters.
 pub(super) fn divergence(inertia: &Inertia, prior: &Inertia) -> Option<f64> {
     let lower = pseudo_inertia(prior).cholesky()?;
@@ -140,10 +135,14 @@ pub(super) fn definiteness(inertia: &Inertia) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{
-        Inertia, curvature, definiteness, directions, divergence, duals, parameters,
-        pseudo_inertia, reach,
+        Inertia, curvature, definiteness, directions, divergence, duals, pseudo_inertia, reach,
     };
     use nalgebra::Matrix4;
+
+    /// The ten parameters of a P.
+    fn parameters(pseudo: &Matrix4<f64>) -> Inertia {
+        Inertia::from(duals().map(|dual| (dual * pseudo).trace()))
+    }
 
     /// A box of 2 kg whose centre is off the origin.
     fn body() -> Inertia {

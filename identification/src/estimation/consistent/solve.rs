@@ -63,13 +63,30 @@ pub(super) fn solve(unknowns: &Unknowns, a: &DMatrix<f64>, b: &DVector<f64>) -> 
         }
         weight = (FALL * weight).max(LAST_WEIGHT);
     }
-    let (_, inverse) = barrier(unknowns, &values)?;
+    let determined = determined(unknowns, a, weight, &values)?;
+    Some(Solution { values, determined })
+}
+
+/// For each unknown 1 - σ²/σ_0²: σ² is its variance with the data, σ_0² that of the prior, both of the
+/// Gaussians that have the objective's curvature.
+fn determined(
+    unknowns: &Unknowns,
+    a: &DMatrix<f64>,
+    weight: f64,
+    values: &DVector<f64>,
+) -> Option<DVector<f64>> {
+    let (_, before) = barrier(unknowns, &start(unknowns))?;
+    let (_, inverse) = barrier(unknowns, values)?;
     let spread = inverse.times(a);
     let gram = a * &spread + DMatrix::identity(a.nrows(), a.nrows()) * weight;
     let solved = gram.cholesky()?.solve(&spread.transpose());
-    let part = |k: usize| spread.row(k).transpose().dot(&solved.column(k)) / inverse.diagonal(k);
-    let determined = DVector::from_fn(unknowns.len(), |k, _| part(k).clamp(0.0, 1.0));
-    Some(Solution { values, determined })
+    let part = |k: usize| {
+        let told = spread.row(k).transpose().dot(&solved.column(k));
+        1.0 - (inverse.diagonal(k) - told) / before.diagonal(k)
+    };
+    Some(DVector::from_fn(unknowns.len(), |k, _| {
+        part(k).clamp(0.0, 1.0)
+    }))
 }
 
 /// Steps until they are short enough, or as short as rounding lets them become.

@@ -52,6 +52,7 @@ const fn introduction(stage: Stage) -> &'static str {
             "All base parameters: those that a motion of the robot can tell apart. None was cancelled."
         }
         Stage::Essential => "The parameters that the rule of r_σ leaves.",
+        Stage::Consistent => "Standard parameters that a robot can have.",
     }
 }
 

@@ -6,12 +6,12 @@ use crate::{
 };
 use overact::{Info, Sizes};
 use overact_identification::{
-    About, Axis, BaseParameter, Check, CheckKind, ConditionSeries, CrossValidation, Curve, Drift,
-    Estimate, Estimator, Evidence, Figures, Grade, Identification, Instruments, LineError,
-    LineResidual, ModelKind, Normalisation, ParameterEstimate, PartitionCondition,
-    PredictionFigures, Regrouping, Removal, ResidualFigures, ResidualSeries, RunFigures,
-    RunSummary, Series, Settings, Stage, StageVerdict, Thresholds, TorqueComparison, TrackingError,
-    Verdict,
+    About, Axis, BaseParameter, Check, CheckKind, ConditionSeries, Consistent, ConsistentBody,
+    ConsistentParameter, CrossValidation, Curve, Drift, Estimate, Estimator, Evidence, Figures,
+    Grade, Identification, Instruments, LineError, LineResidual, ModelKind, Normalisation,
+    ParameterEstimate, PartitionCondition, PredictionFigures, Prior, Regrouping, Removal,
+    ResidualFigures, ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage, StageVerdict,
+    Thresholds, TorqueComparison, TrackingError, Verdict,
 };
 
 /// A name that breaks whatever does not escape it.
@@ -209,8 +209,33 @@ pub(super) fn settings() -> Settings {
         weighted: true,
         instruments: Instruments::None,
         period_s: None,
+        prior: Prior::default(),
         kept_actuators: vec![0],
         seed: 1,
+    }
+}
+
+fn consistent() -> Consistent {
+    let parameter = |name: &str, value, determined| ConsistentParameter {
+        name: name.to_owned(),
+        unit: String::from("kg"),
+        value,
+        prior: 1.0,
+        determined,
+    };
+    Consistent {
+        model: ModelKind::Platform,
+        parameters: vec![parameter(HOSTILE, 1.2, 0.99), parameter("m_2", 0.8, 0.1)],
+        bodies: vec![ConsistentBody {
+            mass: HOSTILE.to_owned(),
+            mass_kg: 1.2,
+            definiteness: 0.02,
+        }],
+        base_values: vec![1.2, 0.8],
+        residual_norm: 2.0,
+        relative_error_percent: 1.52,
+        base_relative_error_percent: 1.5,
+        lines: Vec::new(),
     }
 }
 
@@ -251,6 +276,7 @@ pub(super) fn identification() -> Identification {
             estimate(ModelKind::Actuators, Stage::Recommended),
             estimate(ModelKind::Actuators, Stage::Essential),
         ],
+        consistent: vec![consistent()],
         cross_validation: vec![
             cross_validation(ModelKind::Platform),
             cross_validation(ModelKind::Actuators),

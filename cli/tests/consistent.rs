@@ -1,0 +1,94 @@
+//! Standard parameters that a robot can have: written by `identify`, read by `simulate` and `evaluate`.
+
+mod common;
+
+use common::{Bench, number};
+use serde_json::{Value, json};
+
+/// A shortened five-bar, identified.
+fn bench() -> (Bench, Value) {
+    let bench = Bench::with("point-2rr", |text| {
+        let short = text.replacen("duration = \"10 s\"", "duration = \"2 s\"", 1);
+        assert_ne!(short, text);
+        short
+    });
+    let document = bench.json(&["identify", "my.toml", "--parameters", "parameters.toml"]);
+    (bench, document)
+}
+
+#[test]
+fn parameters_go_from_identification_to_control_and_simulation() {
+    let (bench, document) = bench();
+    let consistent = &document["consistent"][0];
+    let error = |key: &str| number(&consistent[key]);
+    let (own, base) = (
+        error("relative_error_percent"),
+        error("base_relative_error_percent"),
+    );
+    assert!(own >= base && own < 1.05 * base, "{own} {base}");
+    for body in consistent["bodies"].as_array().expect("bodies") {
+        assert!(number(&body["definiteness"]) > 0.0, "{body}");
+    }
+    let parameters = consistent["parameters"].as_array().expect("parameters");
+    for one in parameters {
+        let name = one["name"].as_str().expect("a name");
+        let is_positive = ["m_", "ia_", "fv_", "fs_"]
+            .iter()
+            .any(|symbol| name.starts_with(symbol));
+        assert!(!is_positive || number(&one["value"]) > 0.0, "{one}");
+    }
+    // The file gives the torques that its numbers give as an input.
+    let pose: Vec<f64> = vec![0.05, 0.3];
+    let state = json!({ "pose": pose, "twist": [0.1, 0.2], "acceleration": [1.0, -2.0] });
+    bench.write("states.json", &json!([state]).to_string());
+    let ask = |more: &[&str]| {
+        let start = ["evaluate", "my.toml", "inverse_dynamics", "--states"];
+        bench.json(&[&start[..], more].concat())["results"].clone()
+    };
+    let read = ask(&["states.json", "--parameters", "parameters.toml"]);
+    let values: Vec<f64> = parameters.iter().map(|one| number(&one["value"])).collect();
+    let mut explicit = state.clone();
+    explicit["parameters"] = json!(values);
+    bench.write("explicit.json", &json!([explicit]).to_string());
+    assert_eq!(read, ask(&["explicit.json"]));
+    // A robot with them moves.
+    let run = [
+        "simulate",
+        "my.toml",
+        "-o",
+        "logs/",
+        "--parameters",
+        "parameters.toml",
+    ];
+    bench.good(&run);
+}
+
+#[test]
+fn a_file_of_parameters_that_does_not_fit_is_refused() {
+    let (bench, _) = bench();
+    let text = bench.read("parameters.toml");
+    let told = |text: &str| {
+        bench.write("other.toml", text);
+        let run = bench.run(&[
+            "simulate",
+            "my.toml",
+            "-o",
+            "logs/",
+            "--parameters",
+            "other.toml",
+        ]);
+        assert_eq!(run.code, Some(1));
+        run.err
+    };
+    let shortened: Vec<&str> = text
+        .lines()
+        .filter(|line| !line.starts_with("fv_"))
+        .collect();
+    assert!(told(&shortened.join("\n")).contains("missing parameters: fv_"));
+    assert!(
+        told(&format!("{text}nonsense = 1\n")).contains("the robot has no parameter `nonsense`")
+    );
+    let outputs = bench.run(&["identify", "my.toml", "--parameters", "my.toml"]);
+    assert_eq!(outputs.code, Some(2), "{}", outputs.err);
+    assert!(outputs.err.contains("my.toml"));
+}

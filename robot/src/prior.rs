@@ -1,0 +1,106 @@
+//! What a description lets one believe of its bodies: values of its table `[prior]`, and bodies that are
+//! filled uniformly between their joints.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use overact::{Body, Info, StandardParameter};
+use overact_codegen::description::{Description, Joint, JointKind, Leg};
+use overact_identification::Prior;
+
+/// A body is at least this part as long as the robot's bodies are on average.
+const SHORTEST: f64 = 0.3;
+
+/// Mean square half width of a body by the square of the average length.
+const SQUARE_WIDTH: f64 = 0.01;
+
+/// The prior of a description.
+pub(crate) fn prior(description: &Description, info: &Info<'_>) -> Prior {
+    let mut prior = Prior {
+        values: description.prior.values.iter().cloned().collect(),
+        bounds: description.prior.bounds.iter().cloned().collect(),
+        ..Prior::default()
+    };
+    let links = links(description, info);
+    let lengths: Vec<f64> = links.values().map(|link| link.norm()).collect();
+    let moving: Vec<&f64> = lengths.iter().filter(|length| **length > 0.0).collect();
+    let mean = moving.iter().copied().sum::<f64>() / moving.len().max(1) as f64;
+    let mean = if mean > 0.0 { mean } else { 0.1 };
+    let all = info.parameters.iter().chain(info.payload_parameters);
+    for parameter in all.filter(|one| one.symbol.is_inertial()) {
+        let suffix = parameter.name.strip_prefix(parameter.symbol.name());
+        let name = |symbol: StandardParameter| format!("{}{}", symbol.name(), suffix.unwrap_or(""));
+        let link = links.get(&parameter.body).copied().unwrap_or_default();
+        let values = rod(link, mean);
+        let named = StandardParameter::INERTIA.map(name).into_iter().zip(values);
+        prior.uniform.extend(named);
+    }
+    prior
+}
+
+/// For each body of a leg the way from its joint to the next ones, on average, in its own frame, m.
+fn links(description: &Description, info: &Info<'_>) -> BTreeMap<Body, Vector3<f64>> {
+    let mut positions = info.home_joints.iter();
+    let mut links = BTreeMap::new();
+    for (number, leg) in description.legs.iter().enumerate() {
+        let mut ends: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); leg.joints.len()];
+        for (index, joint) in leg.joints.iter().enumerate() {
+            let position = match joint.is_independent(index) {
+                true => positions.next().copied().unwrap_or(0.0),
+                false => 0.0,
+            };
+            if let Some(end) = joint.antecedent.and_then(|from| ends.get_mut(from)) {
+                end.push(origin(joint, position));
+            }
+        }
+        for (index, ends) in ends.iter().enumerate() {
+            let count = ends.len().max(1) as f64;
+            let mean: Vector3<f64> = ends.iter().sum::<Vector3<f64>>() / count;
+            links.insert(body(leg, number, index), mean);
+        }
+    }
+    links
+}
+
+fn body(leg: &Leg, number: usize, index: usize) -> Body {
+    let short = |number: usize| u16::try_from(number).unwrap_or(u16::MAX);
+    Body::Leg {
+        leg: short(number),
+        index: short(index),
+        shape: short(leg.shape),
+    }
+}
+
+/// Where a joint's frame stands in that of its antecedent, for a position of the joint.
+fn origin(joint: &Joint, position: f64) -> Vector3<f64> {
+    let slide = match joint.kind.value {
+        JointKind::Prismatic => position,
+        JointKind::Revolute | JointKind::Fixed => 0.0,
+    };
+    let along = Vector3::z() * (joint.r.value.value() + slide);
+    let turned = Rotation3::from_axis_angle(&Vector3::x_axis(), joint.alpha.value.value()) * along;
+    let shifted = Vector3::new(joint.d.value.value(), 0.0, joint.b.value.value()) + turned;
+    Rotation3::from_axis_angle(&Vector3::z_axis(), joint.gamma.value.value()) * shifted
+}
+
+/// The ten parameters of a rod from the origin to `end`, of as much mass as it is long, or a shorter one's if
+/// it has no length; the robot's bodies have the length `mean` on average.
+fn rod(end: Vector3<f64>, mean: f64) -> [f64; 10] {
+    let mass = end.norm().max(SHORTEST * mean);
+    let width = Matrix3::identity() * (SQUARE_WIDTH * mean * mean);
+    let second = (end * end.transpose() / 3.0 + width) * mass;
+    let first = end * (0.5 * mass);
+    let trace = second.trace();
+    [
+        trace - second[(0, 0)],
+        -second[(0, 1)],
+        -second[(0, 2)],
+        trace - second[(1, 1)],
+        -second[(1, 2)],
+        trace - second[(2, 2)],
+        first[0],
+        first[1],
+        first[2],
+        mass,
+    ]
+}
