@@ -21,12 +21,14 @@
 //! | `calibration` | encoder offsets and lengths from the closure of redundant loops |
 //! | `validation` | prediction against measurement, on any run |
 //! | `result` | what is told of estimates and runs |
+//! | `consistent` | standard parameters that a robot can have, the nearest to a prior that the data allow |
 //! | `assessment` | checks of data, model, fit and extrapolation, and the verdict that follows from them alone |
 //! | `identify` | the procedure and its result |
 
 mod assessment;
 mod blocks;
 mod calibration;
+mod consistent;
 pub mod data;
 mod error;
 mod estimation;
@@ -34,6 +36,7 @@ pub mod filters;
 mod identify;
 mod kinematics;
 mod monitor;
+mod prior;
 mod regression;
 mod result;
 mod series;
@@ -51,11 +54,11 @@ pub use calibration::{
     CalibratedParameter, Calibration, CalibrationScope, ChangedGeometry, DescribedGeometry,
     Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
+pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
 pub use data::{Dataset, Gain, Log, Mapping, Periods, Time};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
-    consistent::{Consistent, ConsistentBody, ConsistentParameter, Prior},
     essential::{Drift, Essential, Removal, essential},
     estimate::{Estimation, LineError, estimate},
     instruments::regressor::{
@@ -70,6 +73,7 @@ pub use identify::{
     tracking::TrackingError,
 };
 pub use kinematics::{Motion, Motions, motion};
+pub use prior::Prior;
 pub use regression::{
     columns::{Column, ColumnSet, Direction},
     factor::Factor,

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Problem},
-    estimation::consistent::Prior,
     filters::{DECIMATION_PADDING, butterworth, settling},
+    prior::Prior,
 };
 
 /// Decimation keeps frequencies up to this many times f_dyn.

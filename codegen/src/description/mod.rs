@@ -24,6 +24,7 @@ mod model;
 mod motor;
 mod parameter;
 mod parameters;
+mod parameters_file;
 mod per_actuator;
 mod place;
 mod platform;
@@ -48,8 +49,9 @@ pub use experiment::{Experiment, Run, Term, TrueParameter};
 pub use inventory::Body;
 pub use model::{End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned};
 pub use overact_core::StandardParameter;
+pub use parameters_file::parse_parameters;
 pub use place::place;
-pub use prior::{Prior, parse_parameters};
+pub use prior::Prior;
 pub use settings::{
     Clock, Data, Factor, Friction, Identification, Instruments, Normalisation, Reversals,
 };

@@ -1,14 +1,10 @@
-//! The table `[prior]`: what is believed of the parameters before data speak, and the parameters of a file
-//! that an identification wrote.
+//! The table `[prior]`: what is believed of the parameters before data speak.
 
-use super::document::Description;
 use super::experiment::{TrueParameter, parameters};
 use super::inventory::Inventory;
-use super::reader::{Context, Item, Table};
-use super::scope::Scope;
-use crate::diagnostic::{Diagnostic, Diagnostics, Source, did_you_mean};
+use super::reader::Item;
+use crate::diagnostic::{Diagnostic, did_you_mean};
 use overact_core::StandardParameter;
-use toml::de::DeTable;
 
 /// What is believed of the parameters before data speak.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -84,33 +80,4 @@ fn bounds(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, [f64; 2])>
         }
     }
     all
-}
-
-/// Reads a file with a table `[parameters]` of a robot's standard parameters, as an identification writes it.
-///
-/// # Errors
-/// Everything that is wrong with it, and parameters of the robot (not those of its payload) that are missing.
-pub fn parse_parameters(
-    source: &Source,
-    description: &Description,
-) -> Result<Vec<TrueParameter>, Diagnostics> {
-    let (document, syntax_errors) = DeTable::parse_recoverable(&source.text);
-    if !syntax_errors.is_empty() {
-        return Err(super::robot::syntax(&syntax_errors));
-    }
-    let context = Context::new(source);
-    let table = Table::new(&context, document.get_ref(), 0..0, "the file");
-    let scope = Scope::default();
-    let robot = Inventory {
-        platform: description.platform.as_ref(),
-        legs: &description.legs,
-        scope: &scope,
-    };
-    let item = table.require(
-        "parameters",
-        "a table `[parameters]` with a value for each parameter",
-    );
-    let found = item.map(|item| parameters(&item, &robot));
-    table.finish();
-    context.into_errors().into_result(found.unwrap_or_default())
 }

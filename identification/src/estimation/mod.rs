@@ -6,11 +6,9 @@
 //! - `intervals`: 95 % intervals that admit all of that and what was cancelled;
 //! - `instruments`, `total_least_squares`: estimates that allow for errors of the columns;
 //! - `essential`: backward elimination of parameters that the data do not determine;
-//! - `consistent`: standard parameters that a robot can have, the nearest to a prior that the data allow;
 //! - `recommended`: the same as far as a test of the data goes.
 
 pub(crate) mod base;
-pub(crate) mod consistent;
 pub(crate) mod correlation;
 pub(crate) mod essential;
 pub(crate) mod estimate;

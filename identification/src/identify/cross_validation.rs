@@ -5,9 +5,9 @@ use overact::Model;
 use super::{prepare::Prepared, progress::Progress};
 use crate::{
     assessment::{self, Watched},
+    consistent::Consistent,
     data::Log,
     error::Error,
-    estimation::consistent::Consistent,
     regression::{observation::Observer, projection::ModelKind},
     result::{CrossValidation, Estimate, Stage},
     series::RunFigures,

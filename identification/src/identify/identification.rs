@@ -18,9 +18,8 @@ use crate::{
         verdict::Verdict,
     },
     calibration::Calibration,
-    estimation::{
-        base::BaseParameters, consistent::Consistent, instruments::regressor::ErrorsInRegressor,
-    },
+    consistent::Consistent,
+    estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
     regression::columns::ColumnSet,
     result::{CrossValidation, Estimate, Estimator, RunSummary},
     settings::Settings,

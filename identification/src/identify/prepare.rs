@@ -6,13 +6,12 @@ use overact::Model;
 use super::{instruments::Companions, progress::Progress};
 use crate::{
     assessment,
+    consistent::{Consistent, consistent, problems},
     data::Log,
     error::{Error, Problem},
-    estimation::{
-        base::{BaseParameters, PayloadUse, base_parameters},
-        consistent::{Consistent, Prior, consistent},
-    },
+    estimation::base::{BaseParameters, PayloadUse, base_parameters},
     kinematics,
+    prior::Prior,
     regression::{
         columns::ColumnSet,
         observation::{Observer, Seen},
@@ -102,7 +101,7 @@ pub fn prepare(
         settings.asymmetric_friction,
         settings.seed,
     )?;
-    Error::check(settings.prior.problems(&columns))?;
+    Error::check(problems(&settings.prior, &columns))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
     // Relations between columns are those of the model; reversals are those of the data.
     let columns = columns.with_reversals(model, settings)?;

@@ -157,7 +157,7 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
         .filter_map(|node| node.attribute("id"))
         .collect();
     assert_eq!(sections[..3], ["verdict", "checks", "parameters"]);
-    assert_eq!(sections.len(), 13, "{sections:?}");
+    assert_eq!(sections.len(), 14, "{sections:?}");
     let verdict = text(element(&document, "verdict"));
     for words in [
         "Case 1, recommended parameters: use it for what is listed. Case 2, recommended parameters: do not use it.",

@@ -3,7 +3,11 @@
 use clap::Parser;
 use overact_identification::{Prepared, Settings, estimate_projection, prepare};
 use overact_trust::{Failure, Subject, draw};
-use std::{path::PathBuf, process::ExitCode, time::Instant};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::Instant,
+};
 
 /// Estimates what a robot can have.
 #[derive(Debug, Parser)]
@@ -26,7 +30,7 @@ fn milliseconds(run: impl Fn()) -> f64 {
     (0..5).map(|_| once()).fold(f64::INFINITY, f64::min)
 }
 
-fn row(path: &PathBuf, noise: f64) -> Result<String, Failure> {
+fn row(path: &Path, noise: f64) -> Result<String, Failure> {
     let subject = Subject::load(path)?;
     let records = draw::records(&subject, &subject.experiment, 1.0)?;
     let logs = draw::logs(&subject, &records, noise, 1)?;

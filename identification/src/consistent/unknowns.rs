@@ -4,8 +4,14 @@ use std::collections::BTreeMap;
 
 use overact::{Body, StandardParameter};
 
-use super::{Prior, prior::Values, pseudo_inertia::Inertia};
-use crate::regression::columns::{Column, ColumnSet};
+use super::{
+    prior::{Values, suffix},
+    pseudo_inertia::Inertia,
+};
+use crate::{
+    prior::Prior,
+    regression::columns::{Column, ColumnSet},
+};
 
 /// Unknowns that are constrained together.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,10 +140,4 @@ fn scalar(column: &Column, values: &Values) -> Kind {
         P::Fs if column.direction.is_some() => Kind::Free { scale: value },
         _ => Kind::Positive { prior: value },
     }
-}
-
-/// What follows the symbol in the name of a column's parameter.
-pub(super) fn suffix(column: &Column) -> &str {
-    let symbol = column.symbol.name();
-    column.standard.strip_prefix(symbol).unwrap_or_default()
 }

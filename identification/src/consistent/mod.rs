@@ -10,6 +10,7 @@
 //! The data enter by the R factors of the observation system, so a million samples cost as much as a
 //! thousand.
 
+mod density;
 mod prior;
 mod pseudo_inertia;
 mod solve;
@@ -20,7 +21,7 @@ mod unknowns;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-pub use prior::Prior;
+pub(crate) use prior::problems;
 
 use self::{
     prior::Values,
@@ -28,10 +29,18 @@ use self::{
     solve::{Solution, solve},
     unknowns::{Kind, Unknowns},
 };
-use super::estimate::{LineError, line_errors, overall, percent};
 use crate::{
-    estimation::base::BaseParameters,
-    regression::{columns::ColumnSet, factor::Factor, projection::ModelKind, system::System},
+    estimation::{
+        base::BaseParameters,
+        estimate::{LineError, line_errors, overall, percent},
+    },
+    prior::Prior,
+    regression::{
+        columns::{Column, ColumnSet},
+        factor::Factor,
+        projection::ModelKind,
+        system::System,
+    },
     result::Estimate,
 };
 
@@ -169,7 +178,7 @@ fn told(
     let lines = line_errors(system, &all, &values);
     let (residual_norm, measured_norm) = overall(&lines);
     let priors = priors(unknowns);
-    let parameter = |(column, &unknown): (&crate::Column, &usize)| ConsistentParameter {
+    let parameter = |(column, &unknown): (&Column, &usize)| ConsistentParameter {
         name: column.name.clone(),
         unit: column.unit.to_owned(),
         value: solution.values[unknown],

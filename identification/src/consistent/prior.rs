@@ -1,18 +1,14 @@
-//! What is believed of the standard parameters before the data speak.
+//! The prior value of every standard parameter.
 
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, DVector};
 use overact::StandardParameter;
-use serde::{Deserialize, Serialize};
 
-use super::{
-    pseudo_inertia::{Inertia, divergence},
-    unknowns::{Kind, Unknowns, suffix},
-};
+use super::pseudo_inertia::{Inertia, divergence};
 use crate::{
     error::Problem,
     estimation::base::BaseParameters,
+    prior::Prior,
     regression::columns::{Column, ColumnSet},
     result::Estimate,
 };
@@ -23,63 +19,46 @@ const SQUARE_RADIUS: f64 = 0.01;
 /// Coefficients of friction and rotors of which nothing is known (SI units).
 const SMALL: f64 = 0.1;
 
-/// What is believed of the standard parameters before the data speak: it fills in what these leave open.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Prior {
-    /// Values by name (SI units), from CAD for instance. A body that is named needs its mass; second moments
-    /// that are missing are those of `uniform`, scaled to the mass.
-    pub values: BTreeMap<String, f64>,
-    /// Inertial parameters by name of bodies that are filled uniformly, all of one density, which is found
-    /// from the data; a body that is missing here is a small ball at the origin of its frame.
-    pub uniform: BTreeMap<String, f64>,
-    /// Smallest and largest value by name (SI units), of masses and of coefficients of friction and rotors.
-    pub bounds: BTreeMap<String, [f64; 2]>,
-}
-
-impl Prior {
-    /// What is wrong with it for a model's columns.
-    pub(crate) fn problems(&self, columns: &ColumnSet) -> Vec<Problem> {
-        let values = Values::new(self, columns);
-        let mut problems = Vec::new();
-        for (suffix, inertia) in &values.given {
-            if divergence(inertia, inertia).is_none() {
-                let message = format!(
-                    "no body has the prior parameters of `m{suffix}`: its pseudo-inertia is not positive definite"
-                );
-                let help = "give moments about the origin of the body's frame, products of inertia with the sign -∫xy dm, a positive mass";
-                problems.push(Problem::new(message).help(help));
-            }
+/// What is wrong with a prior for a model's columns.
+pub(crate) fn problems(prior: &Prior, columns: &ColumnSet) -> Vec<Problem> {
+    let values = Values::new(prior, columns);
+    let mut problems = Vec::new();
+    for (suffix, inertia) in &values.given {
+        if divergence(inertia, inertia).is_none() {
+            let message = format!(
+                "no body has the prior parameters of `m{suffix}`: its pseudo-inertia is not positive definite"
+            );
+            let help = "give moments about the origin of the body's frame, products of inertia with the sign -∫xy dm, a positive mass";
+            problems.push(Problem::new(message).help(help));
         }
-        for (name, [low, high]) in &self.bounds {
-            let bounded =
-                |symbol: StandardParameter| !symbol.is_inertial() || symbol == StandardParameter::M;
-            let known = columns.as_slice().iter().find(|one| one.name == *name);
-            if low.partial_cmp(high) != Some(std::cmp::Ordering::Less) {
-                let message = format!("the bounds of `{name}` are {low} and {high}");
-                problems.push(Problem::new(message).help("give the smaller one first"));
-            } else if known.is_some_and(|one| !bounded(one.symbol)) {
-                let message = format!("`{name}` can't be bounded");
-                let help = "masses, and coefficients of friction and rotors can";
-                problems.push(Problem::new(message).help(help));
-            } else if *high <= 0.0 && known.is_some_and(|one| one.symbol != StandardParameter::Off)
-            {
-                let message = format!("the bounds of `{name}` leave no positive value");
-                problems.push(Problem::new(message).help("it can't be negative"));
-            }
-        }
-        problems
     }
+    for (name, [low, high]) in &prior.bounds {
+        let bounded =
+            |symbol: StandardParameter| !symbol.is_inertial() || symbol == StandardParameter::M;
+        let known = columns.as_slice().iter().find(|one| one.name == *name);
+        if low.partial_cmp(high) != Some(std::cmp::Ordering::Less) {
+            let message = format!("the bounds of `{name}` are {low} and {high}");
+            problems.push(Problem::new(message).help("give the smaller one first"));
+        } else if known.is_some_and(|one| !bounded(one.symbol)) {
+            let message = format!("`{name}` can't be bounded");
+            let help = "masses, and coefficients of friction and rotors can";
+            problems.push(Problem::new(message).help(help));
+        } else if *high <= 0.0 && known.is_some_and(|one| one.symbol != StandardParameter::Off) {
+            let message = format!("the bounds of `{name}` leave no positive value");
+            problems.push(Problem::new(message).help("it can't be negative"));
+        }
+    }
+    problems
 }
 
 /// The prior value of every unknown.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Values {
     /// Bodies by the suffix of their names that are given.
-    given: BTreeMap<String, Inertia>,
+    pub(super) given: BTreeMap<String, Inertia>,
     /// Bodies by suffix of a common density.
     uniform: BTreeMap<String, Inertia>,
-    density: f64,
+    pub(super) density: f64,
     /// Coefficients by name.
     scalars: BTreeMap<String, f64>,
 }
@@ -138,36 +117,6 @@ impl Values {
         self
     }
 
-    /// With the density by which uniform bodies explain best what is measured.
-    pub(super) fn with_density(
-        mut self,
-        unknowns: &Unknowns,
-        a: &DMatrix<f64>,
-        b: &DVector<f64>,
-    ) -> Self {
-        let (mut known, mut uniform) = (DVector::zeros(a.ncols()), DVector::zeros(a.ncols()));
-        for group in &unknowns.groups {
-            match &group.kind {
-                Kind::Body { prior } => {
-                    let suffix = unknowns.names[group.first].trim_start_matches("xx");
-                    let to = match self.given.contains_key(suffix) {
-                        true => &mut known,
-                        false => &mut uniform,
-                    };
-                    to.rows_mut(group.first, 10).copy_from(prior);
-                }
-                Kind::Positive { prior } => known[group.first] = *prior,
-                Kind::Free { .. } => {}
-            }
-        }
-        let (rest, column) = (b - a * known, a * uniform);
-        let density = column.dot(&rest) / column.norm_squared();
-        if density.is_finite() && density > 0.0 {
-            self.density = density;
-        }
-        self
-    }
-
     /// The ten parameters of a body.
     pub(super) fn body(&self, suffix: &str) -> Inertia {
         let uniform = || {
@@ -218,4 +167,10 @@ fn completed(given: [Option<f64>; 10], uniform: &Inertia) -> Inertia {
         }
     }
     own
+}
+
+/// What follows the symbol in the name of a column's parameter.
+pub(super) fn suffix(column: &Column) -> &str {
+    let symbol = column.symbol.name();
+    column.standard.strip_prefix(symbol).unwrap_or_default()
 }

@@ -1,0 +1,40 @@
+//! The density of bodies of which only the shape is believed.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{
+    prior::Values,
+    unknowns::{Kind, Unknowns},
+};
+
+impl Values {
+    /// With the density by which uniform bodies explain best what is measured.
+    pub(super) fn with_density(
+        mut self,
+        unknowns: &Unknowns,
+        a: &DMatrix<f64>,
+        b: &DVector<f64>,
+    ) -> Self {
+        let (mut known, mut uniform) = (DVector::zeros(a.ncols()), DVector::zeros(a.ncols()));
+        for group in &unknowns.groups {
+            match &group.kind {
+                Kind::Body { prior } => {
+                    let suffix = unknowns.names[group.first].trim_start_matches("xx");
+                    let to = match self.given.contains_key(suffix) {
+                        true => &mut known,
+                        false => &mut uniform,
+                    };
+                    to.rows_mut(group.first, 10).copy_from(prior);
+                }
+                Kind::Positive { prior } => known[group.first] = *prior,
+                Kind::Free { .. } => {}
+            }
+        }
+        let (rest, column) = (b - a * known, a * uniform);
+        let density = column.dot(&rest) / column.norm_squared();
+        if density.is_finite() && density > 0.0 {
+            self.density = density;
+        }
+        self
+    }
+}
