@@ -109,6 +109,8 @@ impl Scores {
     /// it from them.
     pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<Accused> {
         let layout = &self.layout;
+        // Friction that is late stands behind the columns of the estimate.
+        let count = selected.len();
         let selected: Vec<usize> = selected.iter().chain(&self.late).copied().collect();
         let selected = selected.as_slice();
         let columns: Vec<usize> = layout.blocks[group.block].clone().collect();
@@ -124,6 +126,9 @@ impl Scores {
                 square += run.own(layout, group.block, 0);
             }
         }
+        // The estimate has no friction that is late: its parameters are off as if there were none.
+        let whole = Scaled::new(&gram.view((0, 0), (count, count)).clone_owned())?;
+        let off = whole.solve(&cross.rows(0, count).clone_owned());
         let gram = Scaled::new(&gram)?;
         let solved = gram.solve(&cross);
         let outside = &square - cross.tr_mul(&solved);
@@ -144,11 +149,11 @@ impl Scores {
         let shares: Vec<Share> = runs
             .map(|(number, run)| freed.share(run, inside(number)))
             .collect();
-        self.accused(&freed, &shares)
+        self.accused(&freed, &shares, &off.select_columns(&told))
     }
 
-    /// What the shares of all runs say.
-    fn accused(&self, freed: &Freed<'_>, shares: &[Share]) -> Option<Accused> {
+    /// What the shares of all runs say; `off` is B of the estimate's own columns.
+    fn accused(&self, freed: &Freed<'_>, shares: &[Share], off: &DMatrix<f64>) -> Option<Accused> {
         let width = freed.told.len();
         let score = score(shares, width);
         let Spread {
@@ -168,7 +173,7 @@ impl Scores {
         let first = freed.white.column(0);
         let variance = (first.transpose() * &covariance * first)[(0, 0)];
         let total: f64 = self.runs.iter().map(|run| run.square).sum();
-        let moves = freed.solved * &sizes;
+        let moves = off * &sizes;
         let selected = freed.selected.iter().copied();
         Some(Accused {
             deviation: variance.max(0.0).sqrt(),
