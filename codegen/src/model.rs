@@ -2,7 +2,7 @@
 
 use crate::derivation::{BodyParameter, JointsBy, MotionInput, Selection, function_name};
 use crate::lowering::Program;
-use crate::mechanism::{JointKind, Mechanism};
+use crate::mechanism::{JointKind, Mechanism, StandardParameter};
 use crate::selection::BaseParameter;
 use overact_core::{Columns, Function};
 
@@ -134,11 +134,18 @@ impl RobotModel {
 
     /// SI unit of a parameter.
     #[must_use]
-    pub fn parameter_unit(&self, parameter: BodyParameter) -> &'static str {
+    pub fn parameter_unit(&self, parameter: BodyParameter) -> &str {
         match parameter {
             BodyParameter::Leg { leg, joint, symbol } => {
-                let kind = self.mechanism.legs[leg].joints[joint].kind;
-                symbol.unit(kind == JointKind::Prismatic)
+                let joint = &self.mechanism.legs[leg].joints[joint];
+                match joint
+                    .spring
+                    .as_ref()
+                    .filter(|_| symbol == StandardParameter::K)
+                {
+                    Some(spring) => &spring.unit,
+                    None => symbol.unit(joint.kind == JointKind::Prismatic),
+                }
             }
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => symbol.unit(false),
         }

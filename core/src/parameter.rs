@@ -1,6 +1,6 @@
-//! The fourteen standard parameters of a body and its joint.
+//! The fourteen standard parameters of a body and its joint, and the stiffness of a joint's spring.
 
-/// A standard parameter, eq. (2); the order is that of the paper's χ.
+/// A standard parameter, eq. (2); the order is that of the paper's χ, which knows no springs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum StandardParameter {
     /// Moment of inertia about x through the body frame's origin, kg m².
@@ -31,10 +31,12 @@ pub enum StandardParameter {
     Fs,
     /// Constant offset of friction and drive, N m or N.
     Off,
+    /// Coefficient of a joint's spring, N m/rad or N/m of a linear one.
+    K,
 }
 
 impl StandardParameter {
-    /// All fourteen, in order.
+    /// The fourteen of every joint and its body, in order.
     pub const ALL: [Self; 14] = [
         Self::Xx,
         Self::Xy,
@@ -90,6 +92,7 @@ impl StandardParameter {
             Self::Fv => "fv",
             Self::Fs => "fs",
             Self::Off => "off",
+            Self::K => "k",
         }
     }
 
@@ -102,7 +105,7 @@ impl StandardParameter {
     /// Whether it belongs to the rigid body and not to the joint.
     #[must_use]
     pub const fn is_inertial(self) -> bool {
-        !matches!(self, Self::Ia | Self::Fv | Self::Fs | Self::Off)
+        !matches!(self, Self::Ia | Self::Fv | Self::Fs | Self::Off | Self::K)
     }
 
     /// SI unit; `slides` says whether the joint is prismatic.
@@ -118,6 +121,8 @@ impl StandardParameter {
             Self::Fv => "N m s/rad",
             Self::Fs | Self::Off if slides => "N",
             Self::Fs | Self::Off => "N m",
+            Self::K if slides => "N/m",
+            Self::K => "N m/rad",
         }
     }
 }

@@ -83,6 +83,14 @@ pub struct Settings {
     /// robots without redundancy, whose equations are those of their joints.
     #[serde(default)]
     pub standstill_velocity: Vec<f64>,
+    /// Whether the torques pass the low-pass of the positions, too. The columns do not: where torques are not
+    /// decimated, published work does this.
+    #[serde(default)]
+    pub filter_torques: bool,
+    /// Of a held-out run so many of the decimated samples, from the first on, count in the errors; all of
+    /// them if absent.
+    #[serde(default)]
+    pub validation_samples: Option<usize>,
     /// Whether Coulomb columns take the mean sign of the joint's velocity over a sampling interval, not
     /// the sign at the sample: then the time of a reversal counts to a fraction of the interval.
     pub averaged_reversals: bool,
@@ -134,6 +142,8 @@ impl Settings {
             skip_end: 0,
             velocity_dead_band: 0.0,
             standstill_velocity: Vec::new(),
+            filter_torques: false,
+            validation_samples: None,
             averaged_reversals: false,
             r_sigma: 10.0,
             keep_significant: false,

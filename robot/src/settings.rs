@@ -53,6 +53,8 @@ pub(crate) fn settings(description: &Description, info: &Info<'_>, frequency: f6
         skip_end: table.skip_end.unwrap_or(0),
         velocity_dead_band: table.velocity_dead_band,
         standstill_velocity: table.standstill_velocity.clone(),
+        filter_torques: table.filter_torques,
+        validation_samples: table.validation_samples,
         averaged_reversals: table.reversals == Reversals::Averaged,
         r_sigma: table.r_sigma,
         normalisation: match table.normalisation {

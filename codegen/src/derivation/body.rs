@@ -97,7 +97,7 @@ impl<'a> BodyMotion<'a> {
             P::Mx => first(0),
             P::My => first(1),
             P::Mz => first(2),
-            P::Ia | P::Fv | P::Fs | P::Off => [zero; 2],
+            P::Ia | P::Fv | P::Fs | P::Off | P::K => [zero; 2],
             _ => [
                 zero,
                 second_moment(arena, parameter, self.omega, self.alpha),

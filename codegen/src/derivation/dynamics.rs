@@ -46,6 +46,7 @@ impl<'a> Sheet<'a, '_> {
         let Some(motion) = self.robot.motion(&twist, &acceleration) else {
             return Vec::new();
         };
+        self.guards.extend(self.robot.spring_guards());
         let selection = self.selection;
         let combination = |p: BodyParameter| {
             let found = selection.combined.iter().find(|c| c.parameter == p)?;
@@ -130,6 +131,7 @@ impl<'a> Sheet<'a, '_> {
         acceleration: &[Expr<'a>],
     ) -> Vec<Expr<'a>> {
         let values = self.parameter_values();
+        self.guards.extend(self.robot.spring_guards());
         let projection = self.robot.project_on_platform();
         match self.robot.motion(twist, acceleration) {
             Some(motion) => self.robot.generalised_forces(&motion, &projection, &values),

@@ -47,6 +47,7 @@ mod regressor;
 mod robot;
 mod selection;
 mod sheet;
+mod spring;
 mod underivable;
 
 pub(crate) use derivable::derivable;

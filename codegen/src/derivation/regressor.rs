@@ -171,6 +171,7 @@ impl<'a> Robot<'a> {
             StandardParameter::Ia => form.value(self.arena, &motion.u_dot[leg]),
             StandardParameter::Fv => rate(),
             StandardParameter::Fs => rate().sign(),
+            StandardParameter::K => self.spring_force(leg, joint),
             _ => self.arena.one(),
         }
     }

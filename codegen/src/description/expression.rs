@@ -19,6 +19,7 @@ use super::token::{Kind, Token, tokens};
 use super::value::{Fault, Value};
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::{Span, did_you_mean};
+use std::marker::PhantomData;
 
 /// How deep parentheses and signs may nest.
 const DEPTH: usize = 64;
@@ -50,10 +51,58 @@ pub(super) enum Failure {
     Consequence,
 }
 
-type Outcome = Result<Value, Failure>;
+/// What expressions are evaluated to.
+pub(super) trait Quantity: Sized + Clone {
+    /// A constant or a name's value.
+    fn from_value(value: Value) -> Self;
+    /// Sum.
+    fn plus(self, other: Self) -> Result<Self, Fault>;
+    /// Opposite.
+    fn negative(self) -> Self;
+    /// Product.
+    fn times(self, other: Self) -> Result<Self, Fault>;
+    /// One divided by it.
+    fn reciprocal(self) -> Result<Self, Fault>;
+    /// A power with an integer exponent.
+    fn power(self, exponent: &Self) -> Result<Self, Fault>;
+    /// The value of a function; the number of arguments is right.
+    fn apply(name: &str, arguments: Vec<Self>) -> Result<Self, Fault>;
+}
+
+impl Quantity for Value {
+    fn from_value(value: Value) -> Self {
+        value
+    }
+
+    fn plus(self, other: Self) -> Result<Self, Fault> {
+        self.plus(other)
+    }
+
+    fn negative(self) -> Self {
+        self.negative()
+    }
+
+    fn times(self, other: Self) -> Result<Self, Fault> {
+        self.times(other)
+    }
+
+    fn reciprocal(self) -> Result<Self, Fault> {
+        self.reciprocal()
+    }
+
+    fn power(self, exponent: &Self) -> Result<Self, Fault> {
+        self.power(exponent)
+    }
+
+    fn apply(name: &str, arguments: Vec<Self>) -> Result<Self, Fault> {
+        apply(name, arguments)
+    }
+}
+
+type Outcome<Q> = Result<Q, Failure>;
 
 /// Evaluates an expression.
-pub(super) fn evaluate(text: &str, names: &dyn Names) -> Outcome {
+pub(super) fn evaluate<Q: Quantity>(text: &str, names: &dyn Names) -> Outcome<Q> {
     let tokens = tokens(text).map_err(|(fault, span)| Failure::Fault(fault, span))?;
     let end = text.trim_end().len();
     let mut reader = Reader {
@@ -62,6 +111,7 @@ pub(super) fn evaluate(text: &str, names: &dyn Names) -> Outcome {
         depth: 0,
         end,
         names,
+        of: PhantomData,
     };
     if tokens.is_empty() {
         let fault = Fault::new("expected an expression, found an empty string");
@@ -104,15 +154,16 @@ fn unit_hint(token: &Token<'_>) -> Option<String> {
     name.then(|| did_you_mean(token.text, UNITS)).flatten()
 }
 
-struct Reader<'r, 't> {
+struct Reader<'r, 't, Q> {
     tokens: &'r [Token<'t>],
     at: usize,
     depth: usize,
     end: usize,
     names: &'r dyn Names,
+    of: PhantomData<Q>,
 }
 
-impl<'r, 't> Reader<'r, 't> {
+impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
     fn peek(&self) -> Option<&'r Token<'t>> {
         self.tokens.get(self.at)
     }
@@ -141,11 +192,11 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     /// Turns a fault into one of everything read since `start`.
-    fn located(&self, start: usize, result: Result<Value, Fault>) -> Outcome {
+    fn located(&self, start: usize, result: Result<Q, Fault>) -> Outcome<Q> {
         result.map_err(|fault| Failure::Fault(fault, self.since(start)))
     }
 
-    fn sum(&mut self) -> Outcome {
+    fn sum(&mut self) -> Outcome<Q> {
         let start = self.start();
         let mut value = self.product()?;
         loop {
@@ -160,7 +211,7 @@ impl<'r, 't> Reader<'r, 't> {
         }
     }
 
-    fn product(&mut self) -> Outcome {
+    fn product(&mut self) -> Outcome<Q> {
         let start = self.start();
         let mut value = self.unary()?;
         loop {
@@ -177,7 +228,7 @@ impl<'r, 't> Reader<'r, 't> {
         }
     }
 
-    fn unary(&mut self) -> Outcome {
+    fn unary(&mut self) -> Outcome<Q> {
         let mut negative = false;
         while let Some(sign) = self.peek().filter(|t| t.is('-') || t.is('+')) {
             negative ^= sign.is('-');
@@ -187,7 +238,7 @@ impl<'r, 't> Reader<'r, 't> {
         Ok(if negative { value.negative() } else { value })
     }
 
-    fn power(&mut self) -> Outcome {
+    fn power(&mut self) -> Outcome<Q> {
         let start = self.start();
         let base = self.atom()?;
         if self.take('^').is_none() {
@@ -198,7 +249,7 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     /// Reads one level deeper, unless that is too deep.
-    fn nested(&mut self, read: fn(&mut Self) -> Outcome) -> Outcome {
+    fn nested(&mut self, read: fn(&mut Self) -> Outcome<Q>) -> Outcome<Q> {
         if self.depth >= DEPTH {
             let start = self.start();
             return Err(fault_at(
@@ -212,7 +263,7 @@ impl<'r, 't> Reader<'r, 't> {
         value
     }
 
-    fn atom(&mut self) -> Outcome {
+    fn atom(&mut self) -> Outcome<Q> {
         let Some(token) = self.next() else {
             return Err(fault_at(
                 "the expression ends where a value is expected",
@@ -255,12 +306,12 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     /// A number and the units that follow it.
-    fn quantity(&mut self, token: &Token<'_>) -> Outcome {
+    fn quantity(&mut self, token: &Token<'_>) -> Outcome<Q> {
         let start = token.span.start;
         let number = number(token.text);
         let number =
             number.ok_or_else(|| fault_at("this is no number in range", token.span.clone()))?;
-        let mut value = Value::plain(number);
+        let mut value = Q::from_value(Value::plain(number));
         let mut first = true;
         while let Some(factor) = self.unit_factor(first)? {
             value = self.located(start, value.times(factor))?;
@@ -270,7 +321,7 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     /// The next unit of a product of units, if the next tokens are one.
-    fn unit_factor(&mut self, first: bool) -> Result<Option<Value>, Failure> {
+    fn unit_factor(&mut self, first: bool) -> Result<Option<Q>, Failure> {
         let before = self.at;
         let mut divide = false;
         if !first && let Some(sign) = self.peek().filter(|t| t.is('/') || t.is('*')) {
@@ -287,7 +338,7 @@ impl<'r, 't> Reader<'r, 't> {
             return Ok(None);
         };
         self.at += 1;
-        let mut value = Value::constant(scalar, dimension);
+        let mut value = Q::from_value(Value::constant(scalar, dimension));
         if self.take('^').is_some() {
             let exponent = self.unary()?;
             value = self.located(start, value.power(&exponent))?;
@@ -298,18 +349,18 @@ impl<'r, 't> Reader<'r, 't> {
         Ok(Some(value))
     }
 
-    fn name(&self, token: &Token<'_>) -> Outcome {
+    fn name(&self, token: &Token<'_>) -> Outcome<Q> {
         match self.names.meaning(token.text) {
-            Meaning::Value(value) => return Ok(value),
+            Meaning::Value(value) => return Ok(Q::from_value(value)),
             Meaning::Poisoned => return Err(Failure::Consequence),
             Meaning::Unknown => {}
         }
         if token.text == "pi" {
             let pi = Scalar::angle(Angle::half_turns(Ratio::ONE));
-            return Ok(Value::constant(pi, Dimension::NONE));
+            return Ok(Q::from_value(Value::constant(pi, Dimension::NONE)));
         }
         if let Some((scalar, dimension)) = unit(token.text) {
-            return Ok(Value::constant(scalar, dimension));
+            return Ok(Q::from_value(Value::constant(scalar, dimension)));
         }
         let all = self.names.all();
         let help = did_you_mean(token.text, all.iter().map(String::as_str));
@@ -319,7 +370,7 @@ impl<'r, 't> Reader<'r, 't> {
         Err(Failure::Fault(fault, token.span.clone()))
     }
 
-    fn function(&mut self, token: &Token<'_>) -> Outcome {
+    fn function(&mut self, token: &Token<'_>) -> Outcome<Q> {
         let name = token.text;
         let Some(arity) = arity(name) else {
             let help = did_you_mean(name, FUNCTIONS);
@@ -344,6 +395,6 @@ impl<'r, 't> Reader<'r, 't> {
             );
             return Err(fault_at(message, self.since(token.span.start)));
         }
-        self.located(token.span.start, apply(token.text, arguments))
+        self.located(token.span.start, Q::apply(token.text, arguments))
     }
 }

@@ -14,6 +14,11 @@ pub(super) fn arity(name: &str) -> Option<usize> {
     FUNCTIONS.contains(&name).then_some(arguments)
 }
 
+/// Whether a function takes an angle.
+pub(super) fn is_trigonometric(name: &str) -> bool {
+    ["sin", "cos", "tan"].contains(&name)
+}
+
 /// The value of a function; the number of arguments is right.
 pub(super) fn apply(name: &str, arguments: Vec<Value>) -> Result<Value, Fault> {
     let mut arguments = arguments.into_iter();

@@ -73,7 +73,15 @@ impl Inventory<'_> {
                             format!("{}_{}_{}", symbol.name(), joint.name.value, leg.name.value)
                         }
                     };
-                    all.push((name, body, *symbol, dimension(*symbol, joint.kind.value)));
+                    let own = joint
+                        .spring
+                        .as_ref()
+                        .filter(|_| *symbol == StandardParameter::K);
+                    let dimension = own.map_or_else(
+                        || dimension(*symbol, joint.kind.value),
+                        |spring| spring.dimension,
+                    );
+                    all.push((name, body, *symbol, dimension));
                 }
             }
         }

@@ -6,6 +6,7 @@ use super::reader::{Item, Table};
 use super::scalar::Scalar;
 use super::scope::Scope;
 use super::shape::{JointShape, Shape};
+use super::spring::{self, Spring};
 use super::value::Value;
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::Diagnostic;
@@ -104,8 +105,21 @@ impl Reader<'_, '_, '_> {
             parameters: joint.parameters.clone(),
             home: Number::ZERO,
             motor: None,
+            spring: joint
+                .spring
+                .as_ref()
+                .and_then(|item| self.spring(item, &scope)),
             span: joint.span.clone(),
         }
+    }
+
+    /// The spring of the joint, in whose expression `q` is the joint's variable even where it follows others.
+    fn spring(&self, item: &Item<'_, '_>, scope: &Scope) -> Option<Spring> {
+        let kind = self.joint.kind.value;
+        let mut scope = scope.without_variables();
+        let own = dimension(kind).unwrap_or(Dimension::ANGLE);
+        scope.add("q".to_owned(), Some(Value::variable(self.index, own)));
+        spring::read(item, kind, &scope)
     }
 
     /// A value with the place of its key, or of the joint if there is none.

@@ -35,6 +35,7 @@ mod scalar;
 mod scope;
 mod settings;
 mod shape;
+mod spring;
 #[cfg(test)]
 mod tests;
 mod token;
@@ -55,6 +56,7 @@ pub use prior::Prior;
 pub use settings::{
     Clock, Data, Factor, Friction, Identification, Instruments, Normalisation, Reversals,
 };
+pub use spring::{Formula, Spring};
 
 use crate::diagnostic::{Diagnostics, Source};
 

@@ -1,5 +1,6 @@
 //! The robot that a description gives, evaluated: one value per placement, lengths in m, masses in kg.
 
+use super::spring::Spring;
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::Span;
 use overact_core::StandardParameter;
@@ -235,6 +236,8 @@ pub struct Joint {
     /// Of a motor that turns other joints, and carries no body, its gear ratio: turns of the rotor for one of
     /// the variable.
     pub motor: Option<Number>,
+    /// What the position adds to its torque, with an unknown coefficient.
+    pub spring: Option<Spring>,
     /// Place of its table.
     pub span: Span,
 }

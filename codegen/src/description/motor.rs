@@ -109,6 +109,7 @@ impl MotorShape<'_, '_> {
             parameters: self.parameters.clone().unwrap_or_else(|| own(coupled)),
             home: Number::ZERO,
             motor: Some(ratio?),
+            spring: None,
             span: self.span.clone(),
         })
     }

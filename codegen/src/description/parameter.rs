@@ -14,6 +14,8 @@ pub(super) fn dimension(parameter: StandardParameter, kind: JointKind) -> Dimens
         }
         StandardParameter::M => Dimension::MASS,
         StandardParameter::Ia if slides => Dimension::MASS,
+        StandardParameter::K if slides => Dimension::LINEAR_STIFFNESS,
+        StandardParameter::K => Dimension::ANGULAR_STIFFNESS,
         StandardParameter::Fv if slides => Dimension::LINEAR_VISCOSITY,
         StandardParameter::Fv => Dimension::ANGULAR_VISCOSITY,
         StandardParameter::Fs | StandardParameter::Off if slides => Dimension::FORCE,

@@ -96,6 +96,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     check_ends(table, &shapes, platform_item.is_some(), &legs);
     check_actuators(table, platform.as_ref(), &legs);
     check_motors(table, platform.as_ref(), &legs);
+    check_springs(table, platform.as_ref(), &legs);
     let robot = Inventory {
         platform: platform.as_ref(),
         legs: &legs,
@@ -235,6 +236,17 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
         table
             .context
             .report(Diagnostic::new(message, second.span.clone()).help(help));
+    }
+}
+
+/// Springs are known of robots without platform, whose joints are measured.
+fn check_springs(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
+    let mut joints = legs.iter().flat_map(|leg| &leg.joints);
+    if let (Some(_), Some(joint)) = (platform, joints.find(|joint| joint.spring.is_some())) {
+        let message = "springs are described of robots without platform only";
+        let help = "leave `spring` out, and subtract a known torque in `torques` of [data]";
+        let error = Diagnostic::new(message, joint.span.clone());
+        table.context.report_once(error.help(help));
     }
 }
 

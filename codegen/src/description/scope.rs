@@ -1,7 +1,7 @@
 //! The names that expressions may use, and typed values of expressions.
 
 use super::dimension::{Dimension, UNITS, unit};
-use super::expression::{Failure, Meaning, Names, evaluate, number};
+use super::expression::{Failure, Meaning, Names, Quantity, evaluate, number};
 use super::function::FUNCTIONS;
 use super::model::Spanned;
 use super::reader::{Item, Table};
@@ -53,6 +53,15 @@ impl Scope {
         self.entries.iter().filter_map(number).collect()
     }
 
+    /// The names that stand for no joint.
+    pub(super) fn without_variables(&self) -> Self {
+        let holds = |value: &Option<Value>| value.as_ref().is_some_and(|v| !v.terms.is_empty());
+        let entries = self.entries.iter().filter(|(_, value)| !holds(value));
+        Self {
+            entries: entries.cloned().collect(),
+        }
+    }
+
     pub(super) fn contains(&self, name: &str) -> bool {
         self.entries.iter().any(|(n, _)| n == name)
     }
@@ -97,6 +106,13 @@ fn check_name(item: &Item<'_, '_>) {
 impl Item<'_, '_> {
     /// The value of a number or an expression.
     pub(super) fn evaluate(&self, scope: &Scope) -> Option<Value> {
+        let value: Value = self.evaluate_as(scope)?;
+        self.kept(value.of_a_robot().map_err(whole))
+    }
+
+    /// The value of a number or an expression as a quantity of some kind.
+    pub(super) fn evaluate_as<Q: Quantity>(&self, scope: &Scope) -> Option<Q> {
+        let plain = |number| Q::from_value(Value::plain(number));
         let outcome = match self.value {
             DeValue::String(text) => evaluate(text, scope),
             DeValue::Integer(text) => {
@@ -108,18 +124,17 @@ impl Item<'_, '_> {
                         .ok()
                         .map(Number::integer)
                 };
-                decimal.map(Value::plain).ok_or_else(out_of_range)
+                decimal.map(plain).ok_or_else(out_of_range)
             }
-            DeValue::Float(text) => number(text.as_str())
-                .map(Value::plain)
-                .ok_or_else(out_of_range),
+            DeValue::Float(text) => number(text.as_str()).map(plain).ok_or_else(out_of_range),
             _ => return self.mismatch("a number or an expression"),
         };
-        match outcome.and_then(|value| {
-            value
-                .of_a_robot()
-                .map_err(|f| Failure::Fault(f, 0..usize::MAX))
-        }) {
+        self.kept(outcome)
+    }
+
+    /// What was evaluated, or nothing after its fault is reported.
+    fn kept<Q>(&self, outcome: Result<Q, Failure>) -> Option<Q> {
+        match outcome {
             Ok(value) => Some(value),
             Err(Failure::Fault(fault, span)) => {
                 let span = self.inner_span(&span);
@@ -235,6 +250,11 @@ impl Item<'_, '_> {
         }
         Some(Spanned::new(angle?, self.span.clone()))
     }
+}
+
+/// A fault of all of an expression.
+fn whole(fault: Fault) -> Failure {
+    Failure::Fault(fault, 0..usize::MAX)
 }
 
 fn out_of_range() -> Failure {

@@ -112,6 +112,10 @@ pub struct Identification {
     /// Velocities of the actuators' joints (rad/s or m/s) below which their equations are left out; none
     /// where it is empty.
     pub standstill_velocity: Vec<f64>,
+    /// Whether the torques pass the low-pass of the positions, too.
+    pub filter_torques: bool,
+    /// So many decimated samples of a held-out run, from the first on, count in its errors; all if absent.
+    pub validation_samples: Option<usize>,
     /// The sign of velocities around reversals.
     pub reversals: Reversals,
     /// Ratio of relative standard deviations at which the elimination of parameters ends.
@@ -279,6 +283,8 @@ pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>)
         skip_end: None,
         velocity_dead_band: 0.0,
         standstill_velocity: Vec::new(),
+        filter_torques: false,
+        validation_samples: None,
         reversals: Reversals::default(),
         r_sigma: 10.0,
         kept_actuators: None,
@@ -315,6 +321,9 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
     if let Some(item) = table.get("standstill_velocity") {
         settings.standstill_velocity = standstill(&item, robot).unwrap_or_default();
     }
+    let torques = table.get("filter_torques").and_then(|i| i.boolean());
+    settings.filter_torques = torques.unwrap_or(settings.filter_torques);
+    settings.validation_samples = size("validation_samples", 1);
     if let Some(item) = table.get("r_sigma") {
         let ratio = item.positive(Dimension::NONE, scope);
         if ratio.is_some_and(|ratio| ratio <= 1.0) {

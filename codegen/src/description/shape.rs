@@ -30,6 +30,7 @@ pub(super) struct JointShape<'c, 't> {
     pub(super) steps: [Option<Item<'c, 't>>; 6],
     pub(super) actuated: bool,
     pub(super) parameters: Vec<StandardParameter>,
+    pub(super) spring: Option<Item<'c, 't>>,
     pub(super) span: Span,
 }
 
@@ -266,7 +267,9 @@ fn joint<'c, 't>(
     let parameters = table
         .get("parameters")
         .and_then(|item| item.parameters(owner));
-    let parameters = parameters.unwrap_or_else(|| owner.default(actuated));
+    let mut parameters = parameters.unwrap_or_else(|| owner.default(actuated));
+    let spring = table.get("spring");
+    parameters.extend(spring.as_ref().map(|_| StandardParameter::K));
     table.finish();
     JointShape {
         name,
@@ -275,6 +278,7 @@ fn joint<'c, 't>(
         steps,
         actuated,
         parameters,
+        spring,
         span: table.span.clone(),
     }
 }

@@ -182,15 +182,7 @@ impl Value {
 
     /// A power with an integer exponent.
     pub(super) fn power(self, exponent: &Self) -> Result<Self, Fault> {
-        exponent.no_variables("an exponent")?;
-        let integer = exponent.scalar.as_ratio().filter(|r| r.denominator() == 1);
-        let small = integer
-            .and_then(|r| i8::try_from(r.numerator()).ok())
-            .filter(|e| e.abs() <= 64);
-        let (Some(small), true) = (small, exponent.dimension == Dimension::NONE) else {
-            let fault = Fault::new("the exponent must be an integer between -64 and 64");
-            return Err(fault.help("write sqrt(x) for a root"));
-        };
+        let small = exponent.small_integer()?;
         if small == 0 {
             self.no_variables("a power")?;
             return Ok(Self::plain(Number::ONE));
@@ -201,6 +193,22 @@ impl Value {
             product = product.times(base.clone())?;
         }
         Ok(product)
+    }
+
+    /// Itself as an exponent.
+    pub(super) fn small_integer(&self) -> Result<i8, Fault> {
+        self.no_variables("an exponent")?;
+        let integer = self.scalar.as_ratio().filter(|r| r.denominator() == 1);
+        let small = integer
+            .and_then(|r| i8::try_from(r.numerator()).ok())
+            .filter(|e| e.abs() <= 64);
+        match small.filter(|_| self.dimension == Dimension::NONE) {
+            Some(small) => Ok(small),
+            None => {
+                let fault = Fault::new("the exponent must be an integer between -64 and 64");
+                Err(fault.help("write sqrt(x) for a root"))
+            }
+        }
     }
 
     pub(super) fn square_root(self) -> Result<Self, Fault> {

@@ -84,6 +84,7 @@ fn plain(description: &Description) -> Mechanism {
         actuated: j.actuated,
         parameters: j.parameters.clone(),
         motor: j.motor.map(crate::cas::Number::value),
+        spring: j.spring.clone(),
     };
     let leg = |l: &crate::description::Leg| Leg {
         name: l.name.value.clone(),

@@ -26,7 +26,8 @@ pub use motion::TwistCoordinate;
 
 pub use crate::cas::{Angle, Number, Ratio};
 pub use crate::description::{
-    ActuatorNames, BaseColumns, End, JointKind, Motion, Placement, StandardParameter,
+    ActuatorNames, BaseColumns, End, Formula, JointKind, Motion, Placement, Spring,
+    StandardParameter,
 };
 
 /// A joint and the body behind it.
@@ -60,6 +61,8 @@ pub struct Joint {
     /// Of a motor that turns other joints, and carries no body, its gear ratio: turns of the rotor for one of
     /// the variable.
     pub motor: Option<f64>,
+    /// What the position adds to its torque, with an unknown coefficient.
+    pub spring: Option<Spring>,
 }
 
 impl Joint {

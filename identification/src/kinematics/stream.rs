@@ -30,6 +30,8 @@ pub(super) struct Stream<'a> {
     filter: ZeroPhase,
     /// Filter of the velocities, where they were measured.
     velocity_filter: Option<ZeroPhase>,
+    /// Filter of the torques, where they are to be filtered.
+    torque_filter: Option<ZeroPhase>,
     frequency: f64,
     samples: usize,
     width: usize,
@@ -52,9 +54,11 @@ impl<'a> Stream<'a> {
         let filter = butterworth(settings.filter_order, cutoff)?;
         let zero_phase = || ZeroPhase::new(&filter, log.actuators(), log.samples());
         let velocity_filter = log.has_velocities().then(zero_phase);
+        let torque_filter = settings.filter_torques.then(zero_phase);
         Ok(Self {
             filter: zero_phase()?,
             velocity_filter: velocity_filter.transpose()?,
+            torque_filter: torque_filter.transpose()?,
             reader: log.reader()?,
             monitor: Monitor::new(log.actuators(), frequency),
             frequency,
@@ -100,7 +104,10 @@ impl<'a> Stream<'a> {
             if let Some(filter) = &mut self.velocity_filter {
                 filter.push(&block.velocities, &mut self.velocities);
             }
-            self.torques.extend(block.torques);
+            match &mut self.torque_filter {
+                Some(filter) => filter.push(&block.torques, &mut self.torques),
+                None => self.torques.extend(block.torques),
+            }
         }
     }
 

@@ -139,6 +139,7 @@ pub(crate) fn validate(
     let mut points = Points::new(seen, log, &decimator, samples, &plan);
     let mut sums = Sums::new(&layout, stride);
     let mut closure_residual = 0.0_f64;
+    let mut counted = observer.settings.validation_samples;
     while let Some(motion) = motions.next()? {
         closure_residual = closure_residual.max(motion.closure_residual);
         let chunks = observer.chunks(&motion, &mut failed)?;
@@ -150,6 +151,10 @@ pub(crate) fn validate(
         let rows = rows.collect::<Result<Vec<Vec<f64>>, Error>>()?;
         let mut kept = Vec::new();
         rows.iter().for_each(|rows| stream.push(rows, &mut kept));
+        if let Some(left) = &mut counted {
+            kept.truncate(*left * layout.width());
+            *left -= kept.len() / layout.width();
+        }
         sums.take(&kept);
         points.take(&motion, &chunks);
         progress(motions.done(), log.samples());

@@ -98,7 +98,7 @@ fn parameters(model: &RobotModel, all: &[BodyParameter]) -> Vec<Parameter> {
         Parameter {
             name: leaked(model.parameter_name(parameter)),
             symbol,
-            unit: model.parameter_unit(parameter),
+            unit: leaked(model.parameter_unit(parameter).to_owned()),
             body,
         }
     };

@@ -16,6 +16,7 @@ pub use overact_robots::{DualV, Emps, FiveBar, Rx90, ThreeLegPoint};
 
 robot!(delta: Delta);
 robot!(delta_4: Delta4);
+robot!(dvrk_mtm: DvrkMtm);
 robot!(hexapod: Hexapod);
 robot!(kuka_lwr: KukaLwr);
 robot!(octopod: Octopod);
@@ -42,6 +43,7 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
         "delta" => &Delta,
         "delta_4" => &Delta4,
         "dualv" => &DualV,
+        "dvrk_mtm" => &DvrkMtm,
         "emps" => &Emps,
         "five_bar" => &FiveBar,
         "hexapod" => &Hexapod,

@@ -12,6 +12,8 @@
 use super::frame::Frame;
 use super::motion::Motion;
 use nalgebra::Vector3;
+use std::fmt::{Debug, Formatter};
+use std::sync::Arc;
 
 /// What a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +49,40 @@ pub struct Joint {
     pub terms: Vec<(usize, f64)>,
     /// Whether a motor drives the joint.
     pub actuated: bool,
+    /// What its position adds to its torque.
+    pub spring: Option<Spring>,
+}
+
+/// The torque of a spring per unit of its coefficient, as a function of the sum Σ c_i q_i of its joint.
+#[derive(Clone)]
+pub struct Spring(Arc<dyn Fn(f64) -> f64 + Send + Sync>);
+
+impl Spring {
+    /// A spring of this torque.
+    #[must_use]
+    pub fn new(torque: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Arc::new(torque))
+    }
+
+    /// The torque at a position.
+    #[must_use]
+    pub fn torque(&self, position: f64) -> f64 {
+        (self.0)(position)
+    }
+}
+
+impl Debug for Spring {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Spring({}, {})", self.torque(0.0), self.torque(1.0))
+    }
+}
+
+/// Springs are told apart at a few positions.
+impl PartialEq for Spring {
+    fn eq(&self, other: &Self) -> bool {
+        [-0.7, 0.0, 0.3, 1.1].map(|q| self.torque(q))
+            == [-0.7, 0.0, 0.3, 1.1].map(|q| other.torque(q))
+    }
 }
 
 impl Joint {
@@ -69,6 +105,7 @@ impl Joint {
             r: 0.0,
             terms,
             actuated: false,
+            spring: None,
         }
     }
 

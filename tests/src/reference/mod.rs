@@ -39,7 +39,7 @@ pub use closure::State;
 pub use dynamics::Dynamics;
 pub use frame::Frame;
 pub use jacobians::Jacobians;
-pub use mechanism::{End, Joint, JointKind, Leg, Mechanism};
+pub use mechanism::{End, Joint, JointKind, Leg, Mechanism, Spring};
 pub use motion::Motion;
 
 /// Why a quantity can't be computed. Legs are counted from 0.

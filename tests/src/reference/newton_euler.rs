@@ -65,17 +65,17 @@ pub fn sign(velocity: f64) -> f64 {
     }
 }
 
-/// Torques of a leg's variables; `parameters` holds 14 per joint.
+/// Torques of a leg's variables; `parameters` holds [`BODY`] per joint.
 #[must_use]
 pub fn leg_torques(
     leg: &Leg,
     bodies: &[BodyMotion],
-    qd: &[f64],
-    qdd: &[f64],
+    [q, qd, qdd]: [&[f64]; 3],
     parameters: &[f64],
     gravity: &Vector3<f64>,
 ) -> DVector<f64> {
     let (rates, growth) = (leg.joint_values(qd), leg.joint_values(qdd));
+    let positions = leg.joint_values(q);
     let owners = leg.variables();
     let own = |j: usize| &parameters[BODY * j..BODY * (j + 1)];
     let mut wrenches: Vec<Wrench> = bodies
@@ -96,8 +96,17 @@ pub fn leg_torques(
             JointKind::Prismatic => place.z().dot(&wrench.force),
             JointKind::Fixed => continue,
         };
-        let [rotor, viscous, dry, offset] = std::array::from_fn(|at| own(j)[INERTIAL + at]);
-        let drive = rotor * growth[j] + viscous * rates[j] + dry * sign(rates[j]) + offset;
+        let [rotor, viscous, dry, offset, stiffness] =
+            std::array::from_fn(|at| own(j)[INERTIAL + at]);
+        let spring = joint
+            .spring
+            .as_ref()
+            .map_or(0.0, |spring| spring.torque(positions[j]));
+        let drive = rotor * growth[j]
+            + viscous * rates[j]
+            + dry * sign(rates[j])
+            + offset
+            + stiffness * spring;
         for &(owner, coefficient) in &joint.terms {
             let at = owners.iter().position(|&index| index == owner);
             torques[at.unwrap_or_default()] += coefficient * (along + drive);
@@ -122,11 +131,8 @@ pub fn tree_torques(
         .enumerate()
     {
         let own = &parameters.as_slice()[leg_start(mechanism, k)..leg_start(mechanism, k + 1)];
-        let (qd, qdd) = (
-            &state.qd.as_slice()[range.clone()],
-            &state.qdd.as_slice()[range.clone()],
-        );
-        let torques = leg_torques(leg, &motions[k], qd, qdd, own, &mechanism.gravity);
+        let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[range.clone()]);
+        let torques = leg_torques(leg, &motions[k], motion, own, &mechanism.gravity);
         all.rows_mut(range.start, range.len()).copy_from(&torques);
     }
     all
@@ -182,14 +188,11 @@ pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
         .zip(mechanism.leg_ranges())
         .enumerate()
     {
-        let (qd, qdd) = (
-            &state.qd.as_slice()[range.clone()],
-            &state.qdd.as_slice()[range.clone()],
-        );
+        let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[range.clone()]);
         for at in 0..BODY * leg.joints.len() {
             let mut unit = vec![0.0; BODY * leg.joints.len()];
             unit[at] = 1.0;
-            let torques = leg_torques(leg, &motions[k], qd, qdd, &unit, &mechanism.gravity);
+            let torques = leg_torques(leg, &motions[k], motion, &unit, &mechanism.gravity);
             let place = (range.start, leg_start(mechanism, k) + at);
             columns
                 .view_mut(place, (range.len(), 1))

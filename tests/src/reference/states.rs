@@ -68,7 +68,7 @@ pub fn is_regular(mechanism: &Mechanism, state: &State) -> bool {
 pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
     let mut generator = Pcg64::seed_from_u64(seed);
     let mut all = Vec::with_capacity(count(mechanism));
-    for _ in 0..platform_start(mechanism) / BODY {
+    for joint in mechanism.legs.iter().flat_map(|leg| &leg.joints) {
         all.extend(random_body(&mut generator));
         let mut within = |low: f64, high: f64| generator.random_range(low..high);
         all.extend([
@@ -77,6 +77,7 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
             within(0.1, 1.0),
             within(-0.3, 0.3),
         ]);
+        all.push(joint.spring.as_ref().map_or(0.0, |_| within(1.0, 10.0)));
     }
     if mechanism.motion != Motion::None {
         all.extend(random_body(&mut generator));

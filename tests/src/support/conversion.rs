@@ -1,6 +1,6 @@
 //! A checked mechanism as the numeric reference's plain data, with nothing derived.
 
-use crate::reference::{End, Frame, Joint, JointKind, Leg, Mechanism, Motion};
+use crate::reference::{End, Frame, Joint, JointKind, Leg, Mechanism, Motion, Spring};
 use nalgebra::{Rotation3, Vector3};
 use overact_codegen::mechanism;
 use overact_codegen::mechanism::{Angle, Number};
@@ -92,6 +92,10 @@ fn joint(joint: &mechanism::Joint) -> Joint {
             .map(|(of, factor)| (*of, factor.value()))
             .collect(),
         actuated: joint.actuated,
+        spring: joint.spring.clone().map(|spring| {
+            let formula = spring.formula;
+            Spring::new(move |q| formula.value(q))
+        }),
     }
 }
 

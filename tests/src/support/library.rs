@@ -17,6 +17,7 @@ macro_rules! library {
             delta: Delta,
             delta_4: Delta4,
             dualv: DualV,
+            dvrk_mtm: DvrkMtm,
             emps: Emps,
             five_bar: FiveBar,
             hexapod: Hexapod,

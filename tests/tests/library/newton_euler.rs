@@ -37,6 +37,12 @@ fn tx40() -> Result<(), Failure> {
 }
 
 #[test]
+fn dvrk_mtm() -> Result<(), Failure> {
+    let (model, expected) = described("dvrk_mtm")?;
+    agree(model, expected, &overact_compiled::DvrkMtm)
+}
+
+#[test]
 fn kuka_lwr() -> Result<(), Failure> {
     let (model, expected) = described("kuka_lwr")?;
     agree(model, expected, &overact_compiled::KukaLwr)

@@ -5,6 +5,7 @@ mod errors;
 mod experiments;
 mod motors;
 mod robots;
+mod springs;
 mod structure;
 mod values;
 

@@ -70,6 +70,8 @@ pub(crate) fn settings() -> Settings {
         skip_end: 0,
         velocity_dead_band: 0.0,
         standstill_velocity: Vec::new(),
+        filter_torques: false,
+        validation_samples: None,
         averaged_reversals: false,
         r_sigma: 10.0,
         keep_significant: false,

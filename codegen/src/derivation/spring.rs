@@ -1,0 +1,96 @@
+//! Springs: what a joint's position adds to its torque, for each unit of the unknown coefficient.
+
+use super::guard::{Guard, GuardKind};
+use super::joint::{joint_slide, joint_turn};
+use super::robot::Robot;
+use crate::cas::{Angle, Arena, Direction, Expr, Number, Ratio};
+use crate::mechanism::{Formula, JointKind};
+
+/// The position of a joint: as a number, and as an angle where it turns.
+struct Position<'a> {
+    number: Expr<'a>,
+    turn: Direction,
+}
+
+impl<'a> Robot<'a> {
+    /// The torque of a joint's spring per unit of its coefficient; zero without a spring.
+    pub(super) fn spring_force(&self, leg: usize, joint: usize) -> Expr<'a> {
+        self.spring(leg, joint, &mut Vec::new())
+    }
+
+    /// Conditions for the springs of all legs to have a value: roots of what is not negative.
+    pub(super) fn spring_guards(&self) -> Vec<Guard<'a>> {
+        let mut guards = Vec::new();
+        for (index, leg) in self.mechanism.legs.iter().enumerate() {
+            let mut radicands = Vec::new();
+            for joint in 0..leg.joints.len() {
+                let _ = self.spring(index, joint, &mut radicands);
+            }
+            guards.extend(radicands.into_iter().map(|value| Guard {
+                value,
+                kind: GuardKind::Reach,
+                leg: leg.name.clone(),
+            }));
+        }
+        guards
+    }
+
+    fn spring(&self, leg: usize, joint: usize, radicands: &mut Vec<Expr<'a>>) -> Expr<'a> {
+        let spring = &self.mechanism.legs[leg].joints[joint].spring;
+        let position = spring.as_ref().and_then(|_| self.position(leg, joint));
+        let value = spring
+            .as_ref()
+            .zip(position)
+            .and_then(|(spring, position)| {
+                expression(self.arena, &spring.formula, &position, radicands)
+            });
+        value.unwrap_or_else(|| self.arena.zero())
+    }
+
+    /// The position of a joint without its constant.
+    fn position(&self, leg: usize, index: usize) -> Option<Position<'a>> {
+        let (of, first) = (&self.mechanism.legs[leg], self.legs[leg].first_joint);
+        let joint = &of.joints[index];
+        let turn = joint_turn(of, index, first, &self.configuration)?.without_offset();
+        if joint.kind == JointKind::Prismatic {
+            let slide = joint_slide(self.arena, of, index, first, &self.configuration)?;
+            let number = slide - self.arena.number(joint.r);
+            return Some(Position { number, turn });
+        }
+        let mut number = self.arena.zero();
+        for (other, factor) in &joint.variable {
+            let at = first + of.independent().position(|i| i == *other)?;
+            number = number + self.arena.input("joints", at) * Number::ratio(*factor);
+        }
+        Some(Position { number, turn })
+    }
+}
+
+/// A formula at a position; `None` where an angle is beyond the range of numbers.
+fn expression<'a>(
+    arena: &'a Arena,
+    formula: &Formula,
+    position: &Position<'a>,
+    radicands: &mut Vec<Expr<'a>>,
+) -> Option<Expr<'a>> {
+    let mut of = |part: &Formula| expression(arena, part, position, radicands);
+    let unit = |offset: &Angle, factor: &Ratio| {
+        let turn = position.turn.times(*factor)?;
+        Some(arena.cosine_and_sine(&turn.plus(&Direction::constant(*offset))?))
+    };
+    Some(match formula {
+        Formula::Linear { offset, factor } => {
+            position.number * Number::ratio(*factor) + arena.number(*offset)
+        }
+        Formula::Cosine { offset, factor } => unit(offset, factor)?.0,
+        Formula::Sine { offset, factor } => unit(offset, factor)?.1,
+        Formula::Sum(a, b) => of(a)? + of(b)?,
+        Formula::Product(a, b) => of(a)? * of(b)?,
+        Formula::Quotient(a, b) => of(a)? * of(b)?.reciprocal(),
+        Formula::SquareRoot(a) => {
+            let radicand = of(a)?;
+            radicands.push(radicand);
+            radicand.sqrt()
+        }
+    })
+}

@@ -1,0 +1,298 @@
+//! Springs: torques that a joint's position makes, linear in one unknown coefficient.
+//!
+//! The key `spring` of a joint is an expression of its variable `q`: what a unit of the coefficient adds to
+//! the joint's torque. Of a linear spring that is `q` less its rest position; any lever, cable or spring of
+//! another kind has its own. Expressions of `q` are kept as formulas, constants in them are exact.
+
+use super::dimension::Dimension;
+use super::expression::Quantity;
+use super::function::{self, is_trigonometric};
+use super::model::JointKind;
+use super::reader::Item;
+use super::scope::Scope;
+use super::value::{Fault, Value};
+use crate::cas::{Angle, Number, Ratio};
+
+/// A formula of a joint's variable q, rad or m.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Formula {
+    /// offset + factor q.
+    Linear {
+        /// The value at q = 0.
+        offset: Number,
+        /// The slope.
+        factor: Ratio,
+    },
+    /// cos(offset + factor q).
+    Cosine {
+        /// The angle at q = 0.
+        offset: Angle,
+        /// Turns for each turn of q.
+        factor: Ratio,
+    },
+    /// sin(offset + factor q).
+    Sine {
+        /// The angle at q = 0.
+        offset: Angle,
+        /// Turns for each turn of q.
+        factor: Ratio,
+    },
+    /// A sum.
+    Sum(Box<Self>, Box<Self>),
+    /// A product.
+    Product(Box<Self>, Box<Self>),
+    /// A quotient.
+    Quotient(Box<Self>, Box<Self>),
+    /// A square root.
+    SquareRoot(Box<Self>),
+}
+
+impl Formula {
+    /// A constant.
+    #[must_use]
+    pub const fn constant(offset: Number) -> Self {
+        Self::Linear {
+            offset,
+            factor: Ratio::ZERO,
+        }
+    }
+
+    /// The value at a position q, rad or m.
+    #[must_use]
+    pub fn value(&self, q: f64) -> f64 {
+        match self {
+            Self::Linear { offset, factor } => offset.value() + factor.value() * q,
+            Self::Cosine { offset, factor } => (offset.value() + factor.value() * q).cos(),
+            Self::Sine { offset, factor } => (offset.value() + factor.value() * q).sin(),
+            Self::Sum(a, b) => a.value(q) + b.value(q),
+            Self::Product(a, b) => a.value(q) * b.value(q),
+            Self::Quotient(a, b) => a.value(q) / b.value(q),
+            Self::SquareRoot(a) => a.value(q).sqrt(),
+        }
+    }
+}
+
+/// The spring of a joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spring {
+    /// What a unit of its coefficient adds to the joint's torque.
+    pub formula: Formula,
+    /// SI unit of the coefficient.
+    pub unit: String,
+    /// Its dimension.
+    pub(super) dimension: Dimension,
+}
+
+/// Reads the key `spring` of a joint whose scope knows `q` as the joint's variable.
+pub(super) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
+    let effort = match kind {
+        JointKind::Revolute => Dimension::TORQUE,
+        JointKind::Prismatic => Dimension::FORCE,
+        JointKind::Fixed => {
+            let error = item.error("a fixed joint has no spring");
+            let help = "give it to a joint that moves";
+            item.context.report_once(error.help(help));
+            return None;
+        }
+    };
+    let found: Positional = item.evaluate_as(scope)?;
+    if matches!(&found, Positional::Exact(value) if value.terms.is_empty()) {
+        let error = item.error("a torque that does not depend on the position is no spring");
+        let help = "write it with the joint variable, for instance spring = \"q - 20 deg\"; a constant \
+                    torque is the parameter `off`";
+        item.context.report_once(error.help(help));
+        return None;
+    }
+    let inverse = found.dimension().power(-1)?;
+    let dimension = effort.times(inverse)?;
+    Some(Spring {
+        unit: match dimension.unit() {
+            none if none.is_empty() => "1".to_owned(),
+            unit => unit,
+        },
+        formula: found.formula(),
+        dimension,
+    })
+}
+
+/// A value that may depend on a joint's position in any way.
+#[derive(Debug, Clone)]
+pub(super) enum Positional {
+    /// Linear in the position.
+    Exact(Value),
+    /// Not linear.
+    Formula(Formula, Dimension),
+}
+
+const TOO_LARGE: &str = "the value is too large";
+
+impl Positional {
+    fn dimension(&self) -> Dimension {
+        match self {
+            Self::Exact(value) => value.dimension,
+            Self::Formula(_, dimension) => *dimension,
+        }
+    }
+
+    fn is_constant(&self) -> bool {
+        matches!(self, Self::Exact(value) if value.terms.is_empty())
+    }
+
+    fn formula(self) -> Formula {
+        match self {
+            Self::Exact(value) => Formula::Linear {
+                offset: value.scalar.to_number(),
+                factor: value
+                    .terms
+                    .first()
+                    .map_or(Ratio::ZERO, |(_, factor)| *factor),
+            },
+            Self::Formula(formula, _) => formula,
+        }
+    }
+
+    fn quotient(self, divisor: Self) -> Result<Self, Fault> {
+        let inverse = divisor.dimension().power(-1);
+        let dimension = inverse.and_then(|inverse| self.dimension().times(inverse));
+        let dimension = dimension.ok_or_else(|| Fault::new(TOO_LARGE))?;
+        let parts = [self, divisor].map(|part| Box::new(part.formula()));
+        let [above, below] = parts;
+        Ok(Self::Formula(Formula::Quotient(above, below), dimension))
+    }
+}
+
+impl Quantity for Positional {
+    fn from_value(value: Value) -> Self {
+        Self::Exact(value)
+    }
+
+    fn plus(self, other: Self) -> Result<Self, Fault> {
+        let (one, two) = match (self, other) {
+            (Self::Exact(a), Self::Exact(b)) => return Ok(Self::Exact(a.plus(b)?)),
+            both => both,
+        };
+        let [a, b] = [one.dimension(), two.dimension()];
+        let dimension = if b.fits(a) {
+            a
+        } else if a.fits(b) {
+            b
+        } else {
+            let message = format!("{} and {} cannot be added", a.name(), b.name());
+            return Err(Fault::new(message));
+        };
+        let [one, two] = [one, two].map(|part| Box::new(part.formula()));
+        Ok(Self::Formula(Formula::Sum(one, two), dimension))
+    }
+
+    fn negative(self) -> Self {
+        match self {
+            Self::Exact(value) => Self::Exact(value.negative()),
+            Self::Formula(formula, dimension) => {
+                let minus = Formula::constant(-Number::ONE);
+                let product = Formula::Product(Box::new(minus), Box::new(formula));
+                Self::Formula(product, dimension)
+            }
+        }
+    }
+
+    fn times(self, other: Self) -> Result<Self, Fault> {
+        if let (Self::Exact(a), Self::Exact(b)) = (&self, &other)
+            && (a.terms.is_empty() || b.terms.is_empty())
+        {
+            // A factor that is no fraction, a root for instance, makes a formula of a position.
+            if let Ok(product) = a.clone().times(b.clone()) {
+                return Ok(Self::Exact(product));
+            }
+        }
+        let dimension = self.dimension().times(other.dimension());
+        let dimension = dimension.ok_or_else(|| Fault::new(TOO_LARGE))?;
+        let [one, two] = [self, other].map(|part| Box::new(part.formula()));
+        Ok(Self::Formula(Formula::Product(one, two), dimension))
+    }
+
+    fn reciprocal(self) -> Result<Self, Fault> {
+        match self {
+            Self::Exact(value) if value.terms.is_empty() => Ok(Self::Exact(value.reciprocal()?)),
+            other => Self::Exact(Value::plain(Number::ONE)).quotient(other),
+        }
+    }
+
+    fn power(self, exponent: &Self) -> Result<Self, Fault> {
+        let exponent = match exponent {
+            Self::Exact(value) if value.terms.is_empty() => value,
+            _ => {
+                let fault = Fault::new("an exponent cannot hold a joint variable");
+                return Err(fault.help("powers have integer exponents, for instance q^2"));
+            }
+        };
+        if let (Self::Exact(value), true) = (&self, self.is_constant()) {
+            return Ok(Self::Exact(value.clone().power(exponent)?));
+        }
+        let count = exponent.small_integer()?;
+        let base = if count < 0 { self.reciprocal()? } else { self };
+        let one = Self::Exact(Value::plain(Number::ONE));
+        let mut product = if count == 0 { one } else { base.clone() };
+        for _ in 1..count.unsigned_abs() {
+            product = product.times(base.clone())?;
+        }
+        Ok(product)
+    }
+
+    fn apply(name: &str, mut arguments: Vec<Self>) -> Result<Self, Fault> {
+        if arguments.iter().all(Self::is_constant) {
+            let exact = |argument| match argument {
+                Self::Exact(value) => Some(value),
+                Self::Formula(..) => None,
+            };
+            let values = arguments.into_iter().filter_map(exact).collect();
+            return Ok(Self::Exact(function::apply(name, values)?));
+        }
+        let argument = arguments.swap_remove(0);
+        match (name, argument) {
+            ("sqrt", argument) => {
+                let dimension = argument.dimension();
+                let root = dimension.root().ok_or_else(|| {
+                    Fault::new(format!("{} has no square root", dimension.describe()))
+                })?;
+                let formula = Formula::SquareRoot(Box::new(argument.formula()));
+                Ok(Self::Formula(formula, root))
+            }
+            (name, Self::Exact(angle)) if is_trigonometric(name) => turned(name, &angle),
+            (name, _) if is_trigonometric(name) => {
+                let message =
+                    format!("`{name}` takes an angle that is linear in the joint variable");
+                let help = "for instance cos(q - 20 deg)";
+                Err(Fault::new(message).help(help))
+            }
+            (name, _) => Err(Fault::new(format!(
+                "the argument of `{name}` cannot hold a joint variable"
+            ))),
+        }
+    }
+}
+
+/// A sine, cosine or tangent of an angle that is linear in the joint's position.
+fn turned(name: &str, angle: &Value) -> Result<Positional, Fault> {
+    if !angle.dimension.fits(Dimension::ANGLE) {
+        let found = angle.dimension.name();
+        return Err(Fault::new(format!(
+            "`{name}` takes an angle (rad), found {found}"
+        )));
+    }
+    let offset = angle.scalar.to_angle();
+    let offset = offset.ok_or_else(|| Fault::new("the angle is too large"))?;
+    let factor = angle
+        .terms
+        .first()
+        .map_or(Ratio::ZERO, |(_, factor)| *factor);
+    let (sine, cosine) = (
+        Formula::Sine { offset, factor },
+        Formula::Cosine { offset, factor },
+    );
+    let formula = match name {
+        "sin" => sine,
+        "cos" => cosine,
+        _ => Formula::Quotient(Box::new(sine), Box::new(cosine)),
+    };
+    Ok(Positional::Formula(formula, Dimension::NONE))
+}

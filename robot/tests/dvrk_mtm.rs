@@ -1,0 +1,63 @@
+//! The measured master arm of the dVRK: a parallelogram, a tendon, a spring in the model and a cable known
+//! beforehand, with the processing and the error of the published identification.
+
+use overact_identification::Stage;
+use overact_robot::{Identifier, Robot};
+use std::path::{Path, PathBuf};
+
+/// Published errors of the test run by weighted least squares, percent, joint by joint.
+const PUBLISHED: [f64; 7] = [8.2, 16.3, 19.1, 20.9, 26.3, 23.5, 34.0];
+/// Their published mean.
+const MEAN: f64 = 21.2;
+/// Base parameters, with the spring and the rotor of motor 4.
+const BASE: usize = 73;
+
+/// Training and test run in the folder of reference data: `OVERACT_SHARED`, or `shared` beside the repository.
+fn files() -> Option<[PathBuf; 2]> {
+    let folder = std::env::var_os("OVERACT_SHARED").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
+        PathBuf::from,
+    );
+    let files = ["one", "two"].map(|run| folder.join(format!("data/dvrk_mtm/{run}_results.csv")));
+    if files.iter().all(|file| file.exists()) {
+        return Some(files);
+    }
+    eprintln!("skipped: the dVRK MTM data are not here; set OVERACT_SHARED to their folder");
+    None
+}
+
+#[test]
+fn the_test_run_is_predicted_as_published() {
+    let Some([training, test]) = files() else {
+        return;
+    };
+    let toml = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots/dvrk_mtm.toml");
+    let robot = Robot::from_toml(toml).expect("a robot");
+    let logs = robot
+        .read_logs(&[(&training, false), (&test, false)], &|_| {})
+        .expect("two logs");
+    let (runs, held_out) = logs.split_at(1);
+    let identifier = Identifier::new(&robot).runs(runs).validation(held_out);
+    let result = identifier.run().expect("a result");
+    let base = &result.estimates[0];
+    assert_eq!((base.stage, base.parameters.len()), (Stage::Base, BASE));
+    let mut parameters = base.parameters.iter();
+    let stiffness = parameters.find(|one| one.name == "k_5").expect("a spring");
+    assert_eq!(stiffness.unit, "N/m");
+    // The bounds that were put on it there.
+    assert!((250.0..300.0).contains(&stiffness.value), "{stiffness:?}");
+    let mut held_out = result.cross_validation.iter();
+    let told = held_out.find(|one| one.stage == Stage::Base);
+    let torques = &told.expect("a cross-validation").validation.torques;
+    let errors: Vec<f64> = torques
+        .iter()
+        .map(|one| one.relative_error_percent)
+        .collect();
+    for (error, published) in errors.iter().zip(PUBLISHED) {
+        assert!(*error < 1.15 * published, "{errors:?}");
+    }
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    assert!(mean <= MEAN, "{mean}");
+    let counted = torques.iter().map(|one| one.equations);
+    assert_eq!(counted.collect::<Vec<_>>(), [2000; 7]);
+}
