@@ -48,7 +48,7 @@ fn the_test_run_is_predicted_as_published() {
     assert!((250.0..300.0).contains(&stiffness.value), "{stiffness:?}");
     let mut held_out = result.cross_validation.iter();
     let told = held_out.find(|one| one.stage == Stage::Base);
-    let torques = &told.expect("a cross-validation").validation.torques;
+    let torques = &told.expect("a cross-validation").torques;
     let errors: Vec<f64> = torques
         .iter()
         .map(|one| one.relative_error_percent)

@@ -1,12 +1,13 @@
 //! The joints of a placed leg: geometry, and which joint follows which.
 
 use super::dimension::Dimension;
+use super::formula::Spring;
 use super::model::{Joint, JointKind, Spanned};
 use super::reader::{Item, Table};
 use super::scalar::Scalar;
 use super::scope::Scope;
 use super::shape::{JointShape, Shape};
-use super::spring::{self, Spring};
+use super::spring;
 use super::value::Value;
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::Diagnostic;

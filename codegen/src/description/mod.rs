@@ -15,6 +15,7 @@ mod document;
 mod drives;
 mod experiment;
 mod expression;
+mod formula;
 mod function;
 mod geometry;
 mod inventory;
@@ -47,6 +48,7 @@ pub use controller::Controller;
 pub use document::{BaseColumns, Description};
 pub use drives::Drives;
 pub use experiment::{Experiment, Run, Term, TrueParameter};
+pub use formula::{Formula, Spring};
 pub use inventory::Body;
 pub use model::{End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned};
 pub use overact_core::StandardParameter;
@@ -56,7 +58,6 @@ pub use prior::Prior;
 pub use settings::{
     Clock, Data, Factor, Friction, Identification, Instruments, Normalisation, Reversals,
 };
-pub use spring::{Formula, Spring};
 
 use crate::diagnostic::{Diagnostics, Source};
 

@@ -1,6 +1,6 @@
 //! The robot that a description gives, evaluated: one value per placement, lengths in m, masses in kg.
 
-use super::spring::Spring;
+use super::formula::Spring;
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::Span;
 use overact_core::StandardParameter;

@@ -6,82 +6,13 @@
 
 use super::dimension::Dimension;
 use super::expression::Quantity;
+use super::formula::{Formula, Spring};
 use super::function::{self, is_trigonometric};
 use super::model::JointKind;
 use super::reader::Item;
 use super::scope::Scope;
 use super::value::{Fault, Value};
-use crate::cas::{Angle, Number, Ratio};
-
-/// A formula of a joint's variable q, rad or m.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Formula {
-    /// offset + factor q.
-    Linear {
-        /// The value at q = 0.
-        offset: Number,
-        /// The slope.
-        factor: Ratio,
-    },
-    /// cos(offset + factor q).
-    Cosine {
-        /// The angle at q = 0.
-        offset: Angle,
-        /// Turns for each turn of q.
-        factor: Ratio,
-    },
-    /// sin(offset + factor q).
-    Sine {
-        /// The angle at q = 0.
-        offset: Angle,
-        /// Turns for each turn of q.
-        factor: Ratio,
-    },
-    /// A sum.
-    Sum(Box<Self>, Box<Self>),
-    /// A product.
-    Product(Box<Self>, Box<Self>),
-    /// A quotient.
-    Quotient(Box<Self>, Box<Self>),
-    /// A square root.
-    SquareRoot(Box<Self>),
-}
-
-impl Formula {
-    /// A constant.
-    #[must_use]
-    pub const fn constant(offset: Number) -> Self {
-        Self::Linear {
-            offset,
-            factor: Ratio::ZERO,
-        }
-    }
-
-    /// The value at a position q, rad or m.
-    #[must_use]
-    pub fn value(&self, q: f64) -> f64 {
-        match self {
-            Self::Linear { offset, factor } => offset.value() + factor.value() * q,
-            Self::Cosine { offset, factor } => (offset.value() + factor.value() * q).cos(),
-            Self::Sine { offset, factor } => (offset.value() + factor.value() * q).sin(),
-            Self::Sum(a, b) => a.value(q) + b.value(q),
-            Self::Product(a, b) => a.value(q) * b.value(q),
-            Self::Quotient(a, b) => a.value(q) / b.value(q),
-            Self::SquareRoot(a) => a.value(q).sqrt(),
-        }
-    }
-}
-
-/// The spring of a joint.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Spring {
-    /// What a unit of its coefficient adds to the joint's torque.
-    pub formula: Formula,
-    /// SI unit of the coefficient.
-    pub unit: String,
-    /// Its dimension.
-    pub(super) dimension: Dimension,
-}
+use crate::cas::{Number, Ratio};
 
 /// Reads the key `spring` of a joint whose scope knows `q` as the joint's variable.
 pub(super) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
@@ -103,8 +34,11 @@ pub(super) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Optio
         item.context.report_once(error.help(help));
         return None;
     }
-    let inverse = found.dimension().power(-1)?;
-    let dimension = effort.times(inverse)?;
+    let inverse = found.dimension().power(-1);
+    let Some(dimension) = inverse.and_then(|inverse| effort.times(inverse)) else {
+        item.context.report_once(item.error(TOO_LARGE));
+        return None;
+    };
     Some(Spring {
         unit: match dimension.unit() {
             none if none.is_empty() => "1".to_owned(),
@@ -125,6 +59,9 @@ pub(super) enum Positional {
 }
 
 const TOO_LARGE: &str = "the value is too large";
+
+/// Operations of a formula, at most.
+const LONGEST: usize = 1000;
 
 impl Positional {
     fn dimension(&self) -> Dimension {
@@ -155,10 +92,19 @@ impl Positional {
         let inverse = divisor.dimension().power(-1);
         let dimension = inverse.and_then(|inverse| self.dimension().times(inverse));
         let dimension = dimension.ok_or_else(|| Fault::new(TOO_LARGE))?;
-        let parts = [self, divisor].map(|part| Box::new(part.formula()));
-        let [above, below] = parts;
+        let [above, below] = parts(self, divisor)?;
         Ok(Self::Formula(Formula::Quotient(above, below), dimension))
     }
+}
+
+/// Two parts of a formula, if they are not too long together.
+fn parts(one: Positional, two: Positional) -> Result<[Box<Formula>; 2], Fault> {
+    let parts = [one, two].map(Positional::formula);
+    if parts.iter().map(Formula::size).sum::<usize>() < LONGEST {
+        return Ok(parts.map(Box::new));
+    }
+    let fault = Fault::new(format!("the formula has more than {LONGEST} operations"));
+    Err(fault.help("write powers and sums in a shorter form"))
 }
 
 impl Quantity for Positional {
@@ -180,7 +126,7 @@ impl Quantity for Positional {
             let message = format!("{} and {} cannot be added", a.name(), b.name());
             return Err(Fault::new(message));
         };
-        let [one, two] = [one, two].map(|part| Box::new(part.formula()));
+        let [one, two] = parts(one, two)?;
         Ok(Self::Formula(Formula::Sum(one, two), dimension))
     }
 
@@ -206,7 +152,7 @@ impl Quantity for Positional {
         }
         let dimension = self.dimension().times(other.dimension());
         let dimension = dimension.ok_or_else(|| Fault::new(TOO_LARGE))?;
-        let [one, two] = [self, other].map(|part| Box::new(part.formula()));
+        let [one, two] = parts(self, other)?;
         Ok(Self::Formula(Formula::Product(one, two), dimension))
     }
 
