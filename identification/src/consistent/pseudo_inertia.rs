@@ -30,7 +30,7 @@ fn places(parameter: StandardParameter) -> &'static [(usize, usize, f64)] {
         P::My => &[(1, 3, 1.0), (3, 1, 1.0)],
         P::Mz => &[(2, 3, 1.0), (3, 2, 1.0)],
         P::M => &[(3, 3, 1.0)],
-        P::Ia | P::Fv | P::Fs | P::Off => &[],
+        P::Ia | P::Fv | P::Fs | P::Off | P::K => &[],
     }
 }
 

@@ -136,7 +136,8 @@ fn scalar(column: &Column, values: &Values) -> Kind {
     let value = values.scalar(column);
     match column.symbol {
         // Friction split by direction contains the offset, which has either sign.
-        P::Off => Kind::Free { scale: value },
+        // So may the coefficient of a spring have, as its expression is written.
+        P::Off | P::K => Kind::Free { scale: value },
         P::Fs if column.direction.is_some() => Kind::Free { scale: value },
         _ => Kind::Positive { prior: value },
     }
