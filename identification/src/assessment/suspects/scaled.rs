@@ -1,6 +1,10 @@
-//! The Cholesky factor of a positive definite matrix, scaled so that units do not matter.
+//! The Cholesky factor of a positive definite matrix, scaled so that units do not matter, and the columns of
+//! which such a matrix can be made.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// A column whose part outside the others is below this part of its square can't be told from them.
+const LEAST_OUTSIDE: f64 = 1e-8;
 
 /// D A D = L Lᵀ with the diagonal matrix D that makes the diagonal 1.
 pub(super) struct Scaled {
@@ -38,4 +42,19 @@ impl Scaled {
         }
         matrix
     }
+}
+
+/// Columns that the data can tell from the model's, and from those before them.
+pub(super) fn told(outside: &DMatrix<f64>, square: &DMatrix<f64>) -> Vec<usize> {
+    let mut rest = outside.clone();
+    let mut told = Vec::new();
+    for i in 0..rest.nrows() {
+        let left = rest[(i, i)];
+        if left > LEAST_OUTSIDE * square[(i, i)] {
+            told.push(i);
+            let column = rest.column(i).clone_owned();
+            rest.ger(-1.0 / left, &column, &column, 1.0);
+        }
+    }
+    told
 }

@@ -8,10 +8,9 @@ use super::{
     columns::{Layout, Sample, Suspect, moments, rates, suspects},
     nearby::Nearby,
     pairs::{Correlation, correlations},
-    scaled::Scaled,
+    scaled::{Scaled, told},
     sections::{Frame, RunScores, Sink},
     shapes::{Reach, Shape},
-    test::told,
 };
 use crate::{
     blocks::{BLOCK, evaluate, slice},

@@ -3,14 +3,11 @@
 use nalgebra::DMatrix;
 
 use super::{
-    scaled::Scaled,
+    scaled::{Scaled, told},
     scores::Scores,
     spread::{Freed, Share, Spread, score},
 };
 use crate::estimation::intervals::distributions::{fisher_tail, student_quantile};
-
-/// A column whose part outside the others is below this part of its square can't be told from them.
-const LEAST_OUTSIDE: f64 = 1e-8;
 
 /// How often a fault that is just large enough to be seen is missed.
 const MISSED: f64 = 0.1;
@@ -194,19 +191,4 @@ impl Scores {
     pub(crate) fn selected(&self) -> &[usize] {
         &self.selected
     }
-}
-
-/// Columns that the data can tell from the model's, and from those before them.
-pub(super) fn told(outside: &DMatrix<f64>, square: &DMatrix<f64>) -> Vec<usize> {
-    let mut rest = outside.clone();
-    let mut told = Vec::new();
-    for i in 0..rest.nrows() {
-        let left = rest[(i, i)];
-        if left > LEAST_OUTSIDE * square[(i, i)] {
-            told.push(i);
-            let column = rest.column(i).clone_owned();
-            rest.ger(-1.0 / left, &column, &column, 1.0);
-        }
-    }
-    told
 }
