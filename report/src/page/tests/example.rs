@@ -210,6 +210,8 @@ pub(super) fn settings() -> Settings {
         instruments: Instruments::None,
         period_s: None,
         prior: Prior::default(),
+        filter_torques: false,
+        validation_samples: None,
         kept_actuators: vec![0],
         seed: 1,
     }
