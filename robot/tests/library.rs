@@ -46,7 +46,7 @@ fn a_description_that_asks_for_base_parameters_gets_no_others() {
         result
             .cross_validation
             .iter()
-            .all(|one| one.stage == Stage::Base)
+            .all(|one| matches!(one.stage, Stage::Base | Stage::Consistent))
     );
     // The settings are those that were asked for, not those that kept the elimination away.
     assert_eq!(result.settings, robot.settings(runs.sampling_frequency()));
