@@ -88,8 +88,6 @@ const HOUSES: [House; 6] = [
             "choice",
             "intervals",
             "published",
-            "intervals",
-            "choice",
             "judgement",
             "layout",
             "terminal",
