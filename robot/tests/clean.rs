@@ -10,9 +10,11 @@ use std::{fs, path::Path};
 /// gravity and without.
 const CHEAP: [&str; 4] = ["emps", "five_bar", "scotch_yoke", "two_motor_axis"];
 
-/// Robots of the full tier that are accused still: errors of the model at reversals return with every period,
-/// which the deviations of the checks do not know.
-const ACCUSED: [&str; 2] = ["orthoglide", "spherical_4rrr"];
+/// Robots of the full tier that are accused still. Of the first two errors of the model at reversals return with
+/// every period, which the deviations of the checks do not know; the settings of the last are those of a slow
+/// measured run, with torques under the low-pass of the positions and no decimation, and do not suit its virtual
+/// one.
+const ACCUSED: [&str; 3] = ["orthoglide", "spherical_4rrr", "dvrk_mtm"];
 
 /// What the verdict says against a robot's faultless experiment.
 fn accusations(path: &Path) -> Vec<String> {
