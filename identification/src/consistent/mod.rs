@@ -10,10 +10,15 @@
 //! The data enter by the R factors of the observation system, so a million samples cost as much as a
 //! thousand.
 
+mod cones;
 mod density;
+mod equations;
+mod point;
 mod prior;
 mod pseudo_inertia;
+mod side;
 mod solve;
+mod start;
 #[cfg(test)]
 mod tests;
 mod unknowns;

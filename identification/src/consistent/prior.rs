@@ -174,3 +174,29 @@ pub(super) fn suffix(column: &Column) -> &str {
     let symbol = column.symbol.name();
     column.standard.strip_prefix(symbol).unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Inertia, ball, completed};
+
+    #[test]
+    fn a_mass_and_a_centre_get_the_uniform_body_s_moments_about_them() {
+        // A ball of 1 kg, moments 0.01, whose mass becomes 4 kg and whose centre goes to (0.5, 0, 0).
+        let mut given = [None; 10];
+        (given[6], given[9]) = (Some(2.0), Some(4.0));
+        let expected = Inertia::from([0.04, 0.0, 0.0, 1.04, 0.0, 1.04, 2.0, 0.0, 0.0, 4.0]);
+        assert!((completed(given, &ball()) - expected).norm() < 1e-15);
+        // Back again: a body that is not uniform about its own origin.
+        let mut back = [None; 10];
+        back[9] = Some(1.0);
+        assert!((completed(back, &expected) - ball()).norm() < 1e-15);
+    }
+
+    #[test]
+    fn moments_that_are_given_stay() {
+        let mut given = [None; 10];
+        (given[0], given[9]) = (Some(0.3), Some(1.0));
+        let own = completed(given, &ball());
+        assert_eq!((own[0], own[3], own[9]), (0.3, 0.0, 1.0));
+    }
+}

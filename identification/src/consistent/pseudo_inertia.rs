@@ -89,30 +89,9 @@ pub(super) fn divergence(inertia: &Inertia, prior: &Inertia) -> Option<f64> {
     Some(lower.solve(&pseudo).trace() - log - 4.0)
 }
 
-/// The gradient of the divergence and the inverse of its Hessian, by the ten parameters.
-pub(super) fn curvature(inertia: &Inertia, prior: &Inertia) -> Option<(Inertia, Metric)> {
-    let pseudo = pseudo_inertia(inertia);
-    let own = pseudo.cholesky()?.inverse();
-    let difference = pseudo_inertia(prior).cholesky()?.inverse() - own;
-    let gradient = Inertia::from(directions().map(|one| (one * difference).trace()));
-    // The Hessian is tr(P^-1 E_k P^-1 E_l), so its inverse is that of the dual matrices with P.
-    let products = duals().map(|dual| dual * pseudo);
-    let inverse = Metric::from_fn(|k, l| (products[k] * products[l]).trace());
-    Some((gradient, inverse))
-}
-
-/// How many times a step can be made before there is no such body any more; infinite where it leads nowhere
-/// of that kind, none where there is no body at the start.
-pub(super) fn reach(inertia: &Inertia, step: &Inertia) -> Option<f64> {
-    let lower = pseudo_inertia(inertia).cholesky()?.l();
-    let half = lower.solve_lower_triangular(&pseudo_inertia(step))?;
-    let scaled = lower.solve_lower_triangular(&half.transpose())?;
-    let smallest = scaled.symmetric_eigenvalues().min();
-    Some(if smallest < 0.0 {
-        -1.0 / smallest
-    } else {
-        f64::INFINITY
-    })
+/// The ten parameters of a P.
+pub(super) fn inertia(pseudo: &Matrix4<f64>) -> Inertia {
+    Inertia::from(duals().map(|dual| (dual * pseudo).trace()))
 }
 
 /// The smallest eigenvalue of P by its trace, after scaling lengths so that the body's mean square radius
@@ -134,15 +113,8 @@ pub(super) fn definiteness(inertia: &Inertia) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{
-        Inertia, curvature, definiteness, directions, divergence, duals, pseudo_inertia, reach,
-    };
+    use super::{Inertia, definiteness, directions, divergence, duals, inertia, pseudo_inertia};
     use nalgebra::Matrix4;
-
-    /// The ten parameters of a P.
-    fn parameters(pseudo: &Matrix4<f64>) -> Inertia {
-        Inertia::from(duals().map(|dual| (dual * pseudo).trace()))
-    }
 
     /// A box of 2 kg whose centre is off the origin.
     fn body() -> Inertia {
@@ -157,7 +129,7 @@ mod tests {
             pseudo[(3, i)] = mass * centre[i];
         }
         pseudo[(3, 3)] = mass;
-        parameters(&pseudo)
+        inertia(&pseudo)
     }
 
     #[test]
@@ -169,46 +141,12 @@ mod tests {
             }
         }
         let own = body();
-        assert!((parameters(&pseudo_inertia(&own)) - own).norm() < 1e-15);
+        assert!((inertia(&pseudo_inertia(&own)) - own).norm() < 1e-15);
         // Steiner: xx of the box about the origin.
         assert!(
             (own[0] - 2.0 * (0.2_f64.powi(2) + 0.3_f64.powi(2) + (0.0025 + 0.04) / 3.0)).abs()
                 < 1e-15
         );
-    }
-
-    #[test]
-    fn the_gradient_is_that_of_the_divergence() -> Result<(), &'static str> {
-        let (prior, mut own) = (body(), body() * 1.3);
-        own[7] += 0.05;
-        own[2] -= 0.01;
-        let (gradient, inverse) = curvature(&own, &prior).ok_or("no body")?;
-        let hessian = inverse.try_inverse().ok_or("singular")?;
-        let step = 1e-5;
-        for k in 0..10 {
-            let at = |factor: f64| {
-                let mut moved = own;
-                moved[k] += factor * step;
-                divergence(&moved, &prior).ok_or("no body")
-            };
-            let (up, here, down) = (at(1.0)?, at(0.0)?, at(-1.0)?);
-            let slope = (up - down) / (2.0 * step);
-            let bend = (up - 2.0 * here + down) / (step * step);
-            assert!((slope - gradient[k]).abs() < 1e-4 * gradient.norm(), "{k}");
-            assert!((bend / hessian[(k, k)] - 1.0).abs() < 1e-2, "{k}");
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn a_step_reaches_to_where_a_body_degenerates() -> Result<(), &'static str> {
-        let mut step = Inertia::zeros();
-        step[5] = 1.0;
-        let far = reach(&body(), &step).ok_or("no body")?;
-        let definite = |factor: f64| definiteness(&(body() + step * far * factor));
-        assert!(definite(0.999) > 0.0 && definite(1.001) < 0.0);
-        assert_eq!(reach(&body(), &body()), Some(f64::INFINITY));
-        Ok(())
     }
 
     #[test]

@@ -132,3 +132,10 @@ fn bounds_are_kept() -> Result<(), &'static str> {
     );
     Ok(())
 }
+
+#[test]
+fn numbers_that_are_none_end_the_search() {
+    let all = unknowns(body(), Vec::new());
+    let a = rows(12, 1e-3);
+    assert_eq!(solve(&all, &a, &DVector::repeat(12, f64::NAN)), None);
+}

@@ -5,6 +5,7 @@
 //! choices of kept actuators. [`prepare`] and [`estimate_projection`] are what both are made of: one
 //! pass over the data for all projections, then the estimates.
 
+mod consistency;
 mod cross_validation;
 mod estimates;
 pub(crate) mod figures;
@@ -17,7 +18,6 @@ mod study;
 pub(crate) mod tracking;
 
 use overact::Model;
-use rayon::prelude::*;
 
 pub use estimates::{Outcome, estimate_projection};
 pub use identification::{BaseParameter, Identification, Regrouping};
@@ -25,6 +25,7 @@ pub use prepare::{Prepared, prepare};
 pub use progress::Progress;
 pub use study::{RankedProjection, Study, study};
 
+use consistency::consistent_all;
 use cross_validation::{Predictor, cross_validate};
 use estimates::estimate_all;
 use prepare::{check_runs, prepared_warnings};
@@ -37,11 +38,9 @@ use crate::{
         suspects::{Reach, scores},
         verdict::verdicts,
     },
-    consistent::Consistent,
     data::Dataset,
     error::Error,
     estimation::instruments::regressor::ErrorsInRegressor,
-    prior::Prior,
     regression::projection::{ModelKind, Projection},
     result::{Estimate, Stage},
     settings::Settings,
@@ -67,7 +66,7 @@ pub fn identify(
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
     let (errors_in_regressor, instrumental) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
-    let consistent = consistent_all(&prepared, &estimates, &settings.prior);
+    let consistent = consistent_all(&prepared, &estimates, &settings.prior, &mut warnings);
     let least_squares = estimates.iter().map(Predictor::of_estimate);
     let others = consistent.iter().map(Predictor::of_consistent);
     let held_out = cross_validate(
@@ -136,21 +135,6 @@ pub fn identify(
         cross_validation,
         errors_in_regressor,
     })
-}
-
-/// The consistent estimate of each projection, with its number.
-fn consistent_all(
-    prepared: &Prepared,
-    estimates: &[(usize, Estimate)],
-    prior: &Prior,
-) -> Vec<(usize, Consistent)> {
-    let base = estimates
-        .par_iter()
-        .filter(|(_, one)| one.stage == Stage::Base);
-    let of_projection = |(number, estimate): &(usize, Estimate)| {
-        Some((*number, prepared.consistent(*number, estimate, prior)?))
-    };
-    base.filter_map(of_projection).collect()
 }
 
 /// Where the actuators moved in all runs.

@@ -1,0 +1,336 @@
+//! What holds the unknowns inside: cones with their multipliers.
+//!
+//! On the path of weight μ the multiplier of a body's pseudo-inertia P is Z = μ P^-1, that of a distance s
+//! from a bound z = μ/s. A step dP = G U Gᵀ is found in coordinates in which P and Z are the same diagonal
+//! matrix, G^-1 P G^-T = Gᵀ Z G = Λ (Nesterov, Todd 1997): its curvature is ½ |U|² then, and the multiplier
+//! changes by μ Λ^-1 - Λ - U. Unlike the curvature of the barrier alone this one knows which border holds
+//! the point back, so that a fall of μ by a factor of ten costs a step or two; and no matrix that is about
+//! to degenerate is ever inverted.
+
+use nalgebra::{Matrix4, Vector4};
+
+use super::{
+    pseudo_inertia::{Inertia, Metric, inertia, pseudo_inertia},
+    side::{Side, until},
+};
+
+/// What the coefficients of a step are multiplied with, and what they may become.
+pub(super) trait Cone {
+    /// The values (of fewer than ten unknowns the first ones).
+    fn values(&self) -> Inertia;
+
+    /// The matrix that makes changes of the values of the coordinates of a step towards a weight.
+    fn scaling(&self, weight: f64) -> Metric;
+
+    /// The slope of the divergence times its weight in the coordinates of a step.
+    fn slope(&self, weight: f64) -> Inertia;
+
+    /// Number of products of a distance and its multiplier, and their sum.
+    fn products(&self) -> (usize, f64);
+
+    /// Takes a step towards a weight as the next one: how many times it can be made.
+    fn propose(&mut self, step: &Inertia, weight: f64) -> f64;
+
+    /// Makes a part of the step that was proposed; none where rounding leaves the cone.
+    fn advance(&mut self, part: f64) -> Option<()>;
+}
+
+/// The pseudo-inertia of a body.
+pub(super) struct BodyCone {
+    /// Inverse of the prior's pseudo-inertia.
+    cost: Matrix4<f64>,
+    /// G.
+    scaling: Matrix4<f64>,
+    /// The diagonal of Λ.
+    lambda: Vector4<f64>,
+    /// U and the change of the multiplier.
+    proposed: [Matrix4<f64>; 2],
+}
+
+impl BodyCone {
+    /// A body on the path of a weight; none where it or its prior is none.
+    pub(super) fn new(prior: &Inertia, own: &Inertia, weight: f64) -> Option<Self> {
+        let lower = pseudo_inertia(own).cholesky()?.l();
+        Some(Self {
+            cost: pseudo_inertia(prior).cholesky()?.inverse(),
+            scaling: lower / weight.powf(0.25),
+            lambda: Vector4::repeat(weight.sqrt()),
+            proposed: [Matrix4::zeros(); 2],
+        })
+    }
+}
+
+/// Rows and columns of a symmetric matrix in the order of a step's coordinates, in which off-diagonal entries
+/// are multiplied by √2 so that lengths stay what they are.
+const ENTRIES: [(usize, usize); 10] = [
+    (0, 0),
+    (1, 1),
+    (2, 2),
+    (3, 3),
+    (0, 1),
+    (0, 2),
+    (0, 3),
+    (1, 2),
+    (1, 3),
+    (2, 3),
+];
+
+fn coordinates(matrix: &Matrix4<f64>) -> Inertia {
+    Inertia::from(ENTRIES.map(|(i, j)| match i == j {
+        true => matrix[(i, i)],
+        false => (matrix[(i, j)] + matrix[(j, i)]) * std::f64::consts::FRAC_1_SQRT_2,
+    }))
+}
+
+fn matrix(coordinates: &Inertia) -> Matrix4<f64> {
+    let mut matrix = Matrix4::zeros();
+    for (k, (i, j)) in ENTRIES.into_iter().enumerate() {
+        let factor = if i == j {
+            1.0
+        } else {
+            std::f64::consts::FRAC_1_SQRT_2
+        };
+        matrix[(i, j)] = factor * coordinates[k];
+        matrix[(j, i)] = matrix[(i, j)];
+    }
+    matrix
+}
+
+impl Cone for BodyCone {
+    fn values(&self) -> Inertia {
+        inertia(&(self.scaling * Matrix4::from_diagonal(&self.lambda) * self.scaling.transpose()))
+    }
+
+    fn scaling(&self, _: f64) -> Metric {
+        let mut all = Metric::zeros();
+        for k in 0..10 {
+            let mut unit = Inertia::zeros();
+            unit[k] = 1.0;
+            let moved = self.scaling * matrix(&unit) * self.scaling.transpose();
+            all.set_column(k, &inertia(&moved));
+        }
+        all
+    }
+
+    fn slope(&self, weight: f64) -> Inertia {
+        let smooth = self.scaling.transpose() * self.cost * self.scaling * weight;
+        let barrier = Matrix4::from_diagonal(&self.lambda.map(|value| weight / value));
+        coordinates(&(smooth - barrier))
+    }
+
+    fn products(&self) -> (usize, f64) {
+        (4, self.lambda.norm_squared())
+    }
+
+    fn propose(&mut self, step: &Inertia, weight: f64) -> f64 {
+        let step = matrix(step);
+        let wanted = self.lambda.map(|value| weight / value - value);
+        self.proposed = [step, Matrix4::from_diagonal(&wanted) - step];
+        let root = Matrix4::from_diagonal(&self.lambda.map(|value| value.sqrt().recip()));
+        let reach = |change: &Matrix4<f64>| {
+            until(1.0, (root * change * root).symmetric_eigenvalues().min())
+        };
+        reach(&self.proposed[0]).min(reach(&self.proposed[1]))
+    }
+
+    fn advance(&mut self, part: f64) -> Option<()> {
+        let moved = self
+            .proposed
+            .map(|change| Matrix4::from_diagonal(&self.lambda) + change * part);
+        let lower = moved[0].cholesky()?.l();
+        let squares = (lower.transpose() * moved[1] * lower).symmetric_eigen();
+        if !squares.eigenvalues.iter().all(|square| *square > 0.0) {
+            return None;
+        }
+        let root = squares.eigenvalues.map(|square| square.powf(-0.25));
+        self.scaling *= lower * squares.eigenvectors * Matrix4::from_diagonal(&root);
+        self.lambda = squares.eigenvalues.map(f64::sqrt);
+        Some(())
+    }
+}
+
+/// A coefficient above zero.
+pub(super) struct PositiveCone {
+    prior: f64,
+    side: Side,
+}
+
+impl PositiveCone {
+    /// A coefficient on the path of a weight; none where it is not positive.
+    pub(super) fn new(prior: f64, own: f64, weight: f64) -> Option<Self> {
+        let side = Side::new((0, 0.0, 1.0), own, weight)?;
+        Some(Self { prior, side })
+    }
+}
+
+impl Cone for PositiveCone {
+    fn values(&self) -> Inertia {
+        first(self.side.distance)
+    }
+
+    fn scaling(&self, _: f64) -> Metric {
+        corner(self.side.stiffness().sqrt().recip())
+    }
+
+    fn slope(&self, weight: f64) -> Inertia {
+        let slope = weight / self.prior + self.side.slope(weight);
+        first(slope / self.side.stiffness().sqrt())
+    }
+
+    fn products(&self) -> (usize, f64) {
+        (1, self.side.product())
+    }
+
+    fn propose(&mut self, step: &Inertia, weight: f64) -> f64 {
+        self.side
+            .propose(step[0] / self.side.stiffness().sqrt(), weight)
+    }
+
+    fn advance(&mut self, part: f64) -> Option<()> {
+        self.side.advance(part);
+        Some(())
+    }
+}
+
+/// A coefficient of either sign, which nothing but its magnitude holds back.
+pub(super) struct FreeCone {
+    magnitude: f64,
+    value: f64,
+    /// What the next step adds.
+    proposed: f64,
+}
+
+impl FreeCone {
+    /// A coefficient whose half square by that of its magnitude is its divergence.
+    pub(super) fn new(magnitude: f64, value: f64) -> Self {
+        Self {
+            magnitude,
+            value,
+            proposed: 0.0,
+        }
+    }
+
+    /// By how much it changes at the cost of ½.
+    fn scale(&self, weight: f64) -> f64 {
+        self.magnitude / weight.sqrt()
+    }
+}
+
+impl Cone for FreeCone {
+    fn values(&self) -> Inertia {
+        first(self.value)
+    }
+
+    fn scaling(&self, weight: f64) -> Metric {
+        corner(self.scale(weight))
+    }
+
+    fn slope(&self, weight: f64) -> Inertia {
+        first(self.value / self.scale(weight))
+    }
+
+    fn products(&self) -> (usize, f64) {
+        (0, 0.0)
+    }
+
+    fn propose(&mut self, step: &Inertia, weight: f64) -> f64 {
+        self.proposed = self.scale(weight) * step[0];
+        f64::INFINITY
+    }
+
+    fn advance(&mut self, part: f64) -> Option<()> {
+        self.value += self.proposed * part;
+        Some(())
+    }
+}
+
+fn first(value: f64) -> Inertia {
+    let mut all = Inertia::zeros();
+    all[0] = value;
+    all
+}
+
+fn corner(value: f64) -> Metric {
+    let mut all = Metric::zeros();
+    all[(0, 0)] = value;
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{BodyCone, Cone, PositiveCone};
+    use crate::consistent::pseudo_inertia::{Inertia, divergence};
+
+    /// Two bodies.
+    fn bodies() -> [Inertia; 2] {
+        let moments = [0.05, 0.01, -0.02, 0.06, 0.005, 0.04];
+        let body = |mass: f64, centre: [f64; 3]| {
+            let [x, y, z] = centre.map(|value| value * mass);
+            let [xx, xy, xz, yy, yz, zz] = moments;
+            Inertia::from([xx, xy, xz, yy, yz, zz, x, y, z, mass])
+        };
+        [
+            body(1.5, [0.05, -0.02, 0.03]),
+            body(2.5, [0.01, 0.04, -0.03]),
+        ]
+    }
+
+    #[test]
+    fn the_slope_is_that_of_the_divergence() -> Result<(), &'static str> {
+        let [prior, own] = bodies();
+        let cone = BodyCone::new(&prior, &own, 1.0).ok_or("no body")?;
+        let (slope, scaling) = (cone.slope(1.0), cone.scaling(1.0));
+        for k in 0..10 {
+            let at = |factor: f64| {
+                let moved = own + scaling.column(k) * factor * 1e-5;
+                divergence(&moved, &prior).ok_or("no body")
+            };
+            let (up, here, down) = (at(1.0)?, at(0.0)?, at(-1.0)?);
+            assert!(((up - down) / 2e-5 - slope[k]).abs() < 1e-6, "{k}");
+            // On the path of weight 1 a step's coordinates see the curvature 1.
+            assert!(((up - 2.0 * here + down) / 1e-10 - 1.0).abs() < 1e-3, "{k}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_step_moves_a_body_by_what_was_proposed() -> Result<(), &'static str> {
+        let [prior, own] = bodies();
+        let mut cone = BodyCone::new(&prior, &own, 0.3).ok_or("no body")?;
+        for (weight, part) in [(0.1, 0.5), (0.02, 0.9), (0.01, 1.0)] {
+            let step = Inertia::from_fn(|k, _| 0.01 * (k as f64 + weight).sin());
+            let before = cone.values();
+            let change = cone.scaling(1.0) * step;
+            let reach = cone.propose(&step, weight);
+            assert!(reach > 1.0, "{reach}");
+            cone.advance(part).ok_or("outside")?;
+            assert!((cone.values() - before - change * part).norm() < 1e-12);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn full_steps_of_no_slope_lead_to_the_prior() -> Result<(), &'static str> {
+        let [prior, own] = bodies();
+        let mut cone = BodyCone::new(&prior, &own, 1.0).ok_or("no body")?;
+        for _ in 0..12 {
+            let step = -cone.slope(1.0);
+            let reach = cone.propose(&step, 1.0);
+            cone.advance((0.9 * reach).min(1.0)).ok_or("outside")?;
+        }
+        assert!((cone.values() - prior).norm() < 1e-10);
+        let (count, sum) = cone.products();
+        assert!((sum - count as f64).abs() < 1e-10);
+        Ok(())
+    }
+
+    #[test]
+    fn a_coefficient_reaches_as_far_as_zero() -> Result<(), &'static str> {
+        let mut cone = PositiveCone::new(2.0, 2.0, 1.0).ok_or("not positive")?;
+        // The scaling of a coefficient on the path of weight 1 is its value.
+        let step = Inertia::from_fn(|k, _| if k == 0 { -4.0 } else { 0.0 });
+        assert!((cone.propose(&step, 1.0) - 0.25).abs() < 1e-12);
+        assert!(PositiveCone::new(2.0, 0.0, 1.0).is_none());
+        Ok(())
+    }
+}

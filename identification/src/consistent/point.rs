@@ -1,0 +1,176 @@
+//! A point on the way to a consistent estimate, and its steps.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{
+    cones::{BodyCone, Cone, FreeCone, PositiveCone},
+    equations::Equations,
+    pseudo_inertia::{Inertia, Metric},
+    side::Side,
+    unknowns::{Group, Kind, Unknowns},
+};
+
+/// A step goes no farther than this part of the way to where a body or a multiplier degenerates.
+const CLEAR: f64 = 0.9;
+
+/// Unknowns that are constrained together, on their way.
+struct Block {
+    first: usize,
+    len: usize,
+    cone: Box<dyn Cone>,
+    sides: Vec<Side>,
+}
+
+impl Block {
+    fn new(group: &Group, values: &DVector<f64>, weight: f64) -> Option<Self> {
+        let own = values.rows(group.first, group.len());
+        let cone: Box<dyn Cone> = match &group.kind {
+            Kind::Body { prior } => {
+                let own = own.fixed_rows::<10>(0).into_owned();
+                Box::new(BodyCone::new(prior, &own, weight)?)
+            }
+            Kind::Positive { prior } => Box::new(PositiveCone::new(*prior, own[0], weight)?),
+            Kind::Free { scale } => Box::new(FreeCone::new(*scale, own[0])),
+        };
+        let bounds = group.bounds.iter();
+        let sides = bounds.flat_map(|(k, [low, high])| [(*k, *low, 1.0), (*k, *high, -1.0)]);
+        let sides = sides.filter(|(_, limit, _)| limit.is_finite());
+        Some(Self {
+            first: group.first,
+            len: group.len(),
+            cone,
+            sides: sides
+                .map(|side| Side::new(side, own[side.0], weight))
+                .collect::<Option<_>>()?,
+        })
+    }
+}
+
+/// A point on its way, with its multipliers.
+pub(super) struct Point {
+    blocks: Vec<Block>,
+    /// Number of unknowns.
+    len: usize,
+}
+
+/// A step that was made.
+pub(super) struct Step {
+    /// Its length in the metric of D.
+    pub(super) length: f64,
+    /// The part of it that was made.
+    pub(super) part: f64,
+}
+
+impl Point {
+    /// On the path of a weight; none outside the cones and bounds.
+    pub(super) fn new(unknowns: &Unknowns, values: &DVector<f64>, weight: f64) -> Option<Self> {
+        let groups = unknowns.groups.iter();
+        let blocks = groups.map(|group| Block::new(group, values, weight));
+        Some(Self {
+            blocks: blocks.collect::<Option<_>>()?,
+            len: unknowns.len(),
+        })
+    }
+
+    /// The unknowns.
+    pub(super) fn values(&self) -> DVector<f64> {
+        self.gathered(|block| block.cone.values())
+    }
+
+    /// A vector over all unknowns of what each cone has.
+    fn gathered(&self, own: impl Fn(&Block) -> Inertia) -> DVector<f64> {
+        let mut all = DVector::zeros(self.len);
+        for block in &self.blocks {
+            let own = own(block);
+            all.rows_mut(block.first, block.len)
+                .copy_from(&own.rows(0, block.len));
+        }
+        all
+    }
+
+    /// The weight of the path that is nearest.
+    pub(super) fn weight(&self) -> f64 {
+        let (mut count, mut sum) = (0, 0.0);
+        for block in &self.blocks {
+            let (own, product) = block.cone.products();
+            let sides: f64 = block.sides.iter().map(Side::product).sum();
+            count += own + block.sides.len();
+            sum += product + sides;
+        }
+        sum / count.max(1) as f64
+    }
+
+    /// One step towards the point of a weight.
+    pub(super) fn advance(
+        &mut self,
+        (a, b): (&DMatrix<f64>, &DVector<f64>),
+        weight: f64,
+    ) -> Option<Step> {
+        let equations = self.equations(a, weight)?;
+        let slope = self.slope(weight);
+        let step = equations.solved(&(b - a * self.values()), &slope);
+        let square = step.norm_squared() + (&equations.matrix * &step).norm_squared();
+        let mut reach = f64::INFINITY;
+        for block in &mut self.blocks {
+            let mut own = Inertia::zeros();
+            own.rows_mut(0, block.len)
+                .copy_from(&step.rows(block.first, block.len));
+            let change = block.cone.scaling(weight) * own;
+            reach = reach.min(block.cone.propose(&own, weight));
+            for side in &mut block.sides {
+                reach = reach.min(side.propose(change[side.place], weight));
+            }
+        }
+        let part = (CLEAR * reach).min(1.0);
+        for block in &mut self.blocks {
+            block.cone.advance(part)?;
+            block.sides.iter_mut().for_each(|side| side.advance(part));
+        }
+        let length = (square / weight).sqrt();
+        (length.is_finite() && part > 0.0).then_some(Step { length, part })
+    }
+
+    /// The equations of a step towards a weight: M, with a row more for each bound.
+    pub(super) fn equations(&self, a: &DMatrix<f64>, weight: f64) -> Option<Equations> {
+        let sides: usize = self.blocks.iter().map(|block| block.sides.len()).sum();
+        let mut all = DMatrix::zeros(a.nrows() + sides, self.len);
+        all.rows_mut(0, a.nrows()).copy_from(a);
+        let mut row = a.nrows();
+        for block in &self.blocks {
+            for side in &block.sides {
+                all[(row, block.first + side.place)] = side.stiffness().sqrt();
+                row += 1;
+            }
+        }
+        let scalings: Vec<Metric> = self
+            .blocks
+            .iter()
+            .map(|one| one.cone.scaling(weight))
+            .collect();
+        for (block, scaling) in self.blocks.iter().zip(&scalings) {
+            let own = scaling.view((0, 0), (block.len, block.len));
+            let scaled = all.columns(block.first, block.len) * own;
+            all.columns_mut(block.first, block.len).copy_from(&scaled);
+        }
+        Equations::new(
+            all,
+            scalings
+                .iter()
+                .zip(&self.blocks)
+                .map(|(scaling, block)| (block.first, block.len, *scaling))
+                .collect(),
+        )
+    }
+
+    /// The slope in the coordinates of a step.
+    fn slope(&self, weight: f64) -> DVector<f64> {
+        self.gathered(|block| {
+            let mut slope = block.cone.slope(weight);
+            let scaling = block.cone.scaling(weight);
+            for side in &block.sides {
+                slope += scaling.row(side.place).transpose() * side.slope(weight);
+            }
+            slope
+        })
+    }
+}

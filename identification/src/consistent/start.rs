@@ -1,0 +1,45 @@
+//! Where the search for a consistent estimate starts.
+
+use nalgebra::DVector;
+
+use super::unknowns::{Kind, Unknowns};
+
+/// Bounded unknowns start at least this part of the bounds' distance from either.
+const INSIDE: f64 = 0.1;
+
+/// The priors, those that have bounds moved inside.
+pub(super) fn start(unknowns: &Unknowns) -> DVector<f64> {
+    let mut values = DVector::zeros(unknowns.len());
+    for group in &unknowns.groups {
+        let mut own = values.rows_mut(group.first, group.len());
+        match &group.kind {
+            Kind::Body { prior } => own.copy_from(prior),
+            Kind::Positive { prior } => own[0] = *prior,
+            Kind::Free { .. } => {}
+        }
+        for (k, [low, high]) in &group.bounds {
+            let is_free = matches!(group.kind, Kind::Free { .. });
+            let low = if is_free { *low } else { low.max(0.0) };
+            let inside = moved_inside(own[*k], low, *high);
+            match &group.kind {
+                // A heavier or lighter body of the same shape.
+                Kind::Body { .. } => own *= inside / own[*k],
+                _ => own[*k] = inside,
+            }
+        }
+    }
+    values
+}
+
+/// The value, or the nearest one that is clear of the bounds.
+fn moved_inside(value: f64, low: f64, high: f64) -> f64 {
+    match (low.is_finite(), high.is_finite()) {
+        (true, true) => {
+            let margin = INSIDE * (high - low);
+            value.max(low + margin).min(high - margin)
+        }
+        (true, false) => value.max(low + INSIDE * low.abs()),
+        (false, true) => value.min(high - INSIDE * high.abs()),
+        (false, false) => value,
+    }
+}
