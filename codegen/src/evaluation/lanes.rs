@@ -134,11 +134,25 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
     /// One result of N operands.
     #[inline(always)]
     fn each<const N: usize>(&self, at: &Pass, f: impl Fn([f64; N]) -> f64) {
-        let operands: [_; N] = std::array::from_fn(|i| self.block(at.operands[i]));
+        // Loops, as closures for arrays would double the work of the compiler.
+        let mut operands = [self.block(at.operands[0]); N];
+        for (operand, slot) in operands.iter_mut().zip(at.operands) {
+            *operand = self.block(slot);
+        }
         let results = self.block(at.results[0]);
         for part in 0..BLOCK / WIDTH {
-            let values: [[f64; WIDTH]; N] = std::array::from_fn(|i| load(&operands[i][part]));
-            let found = std::array::from_fn(|k| f(std::array::from_fn(|i| values[i][k])));
+            let mut values = [[0.0; WIDTH]; N];
+            for i in 0..N {
+                values[i] = load(&operands[i][part]);
+            }
+            let mut found = [0.0; WIDTH];
+            for k in 0..WIDTH {
+                let mut own = [0.0; N];
+                for i in 0..N {
+                    own[i] = values[i][k];
+                }
+                found[k] = f(own);
+            }
             store(&results[part], found);
         }
     }
@@ -219,15 +233,15 @@ fn both(a: [f64; WIDTH], b: [f64; WIDTH], f: impl Fn(f64, f64) -> f64) -> [f64; 
 #[inline(always)]
 fn load<const N: usize>(from: &[Cell<f64>; N]) -> [f64; N] {
     let mut values = [0.0; N];
-    for (value, cell) in values.iter_mut().zip(from) {
-        *value = cell.get();
+    for k in 0..N {
+        values[k] = from[k].get();
     }
     values
 }
 
 #[inline(always)]
 pub(super) fn store<const N: usize>(to: &[Cell<f64>; N], values: [f64; N]) {
-    for (cell, value) in to.iter().zip(values) {
-        cell.set(value);
+    for k in 0..N {
+        to[k].set(values[k]);
     }
 }
