@@ -94,35 +94,58 @@ fn derived<'a>(
 #[test]
 fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
     for (name, mechanism) in library() {
-        let Some(platform) = &mechanism.platform else {
-            continue;
-        };
-        let arena = Arena::new();
-        let derived = derived(&arena, &mechanism, Function::Joints, MotionInput::Pose)
-            .unwrap_or_else(|e| panic!("{name}: {e:?}"));
-        let joints = Values {
-            arena: &arena,
-            derived: &derived,
-        };
-        let at_home = joints.of_pose(&mechanism.home.pose);
-        for (found, home) in at_home.iter().zip(&mechanism.home.joints) {
-            assert!(
-                (found - home).abs() < AT_HOME,
-                "{name}: {found} at home, not {home}"
-            );
-        }
-        for number in 0..POSES {
-            let pose = displaced(&mechanism, number);
-            let found = joints.of_pose(&pose);
-            let frame = platform_frame(platform.motion, &pose);
-            for (index, leg) in mechanism.legs.iter().enumerate() {
-                let end = target(leg.end.as_ref().expect("an end"), &frame);
-                let q = &found[mechanism.leg_range(index)];
-                let gap = leg.closure_error(q, &end).amax();
-                assert!(gap < CLOSED, "{name}, {}: open by {gap:e}", leg.name);
-            }
+        legs_close(&name, &mechanism);
+    }
+}
+
+/// The joints that a rule gives are those of home there, and close the legs at poses around it.
+fn legs_close(name: &str, mechanism: &Mechanism) {
+    let Some(platform) = &mechanism.platform else {
+        return;
+    };
+    let arena = Arena::new();
+    let derived = derived(&arena, mechanism, Function::Joints, MotionInput::Pose)
+        .unwrap_or_else(|e| panic!("{name}: {e:?}"));
+    let joints = Values {
+        arena: &arena,
+        derived: &derived,
+    };
+    let at_home = joints.of_pose(&mechanism.home.pose);
+    for (found, home) in at_home.iter().zip(&mechanism.home.joints) {
+        assert!(
+            (found - home).abs() < AT_HOME,
+            "{name}: {found} at home, not {home}"
+        );
+    }
+    for number in 0..POSES {
+        let pose = displaced(mechanism, number);
+        let found = joints.of_pose(&pose);
+        let frame = platform_frame(platform.motion, &pose);
+        for (index, leg) in mechanism.legs.iter().enumerate() {
+            let end = target(leg.end.as_ref().expect("an end"), &frame);
+            let q = &found[mechanism.leg_range(index)];
+            let gap = leg.closure_error(q, &end).amax();
+            assert!(gap < CLOSED, "{name}, {}: open by {gap:e}", leg.name);
         }
     }
+}
+
+/// A plane whose normal the first joint lays across the leg's base: a turn γ about z, then a right angle
+/// about x, which the base takes back.
+#[test]
+fn the_first_joint_of_a_planar_leg_may_tilt_its_plane_and_turn_it() {
+    let first = "[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n";
+    let tilted = format!("{first}gamma = \"25 deg\"\nalpha = \"90 deg\"\n");
+    let given = include_str!("../../../robots/planar_3rrr.toml");
+    let text = given
+        .replace(
+            "rotation = [0, 0, \"psi\"]",
+            "rotation = [\"-90 deg\", \"-25 deg\", \"psi\"]",
+        )
+        .replace(first, &tilted);
+    assert!(text.len() > given.len() + 40);
+    let mechanism = mechanism("tilted", text);
+    legs_close("tilted", &mechanism);
 }
 
 /// Whether a robot's pose has a closed form, which then gives the poses that the actuators came from.

@@ -19,10 +19,7 @@ use crate::{
     data::Dataset,
     error::Error,
     estimation::essential::HeldOut,
-    regression::{
-        projection::{ModelKind, Projection},
-        system::PartitionCondition,
-    },
+    regression::{projection::Projection, system::PartitionCondition},
     result::{CrossValidation, Estimate, ParameterEstimate, Stage},
     settings::{Instruments, Settings},
     significant,
@@ -222,16 +219,11 @@ fn deviation_ratio(own: &Estimate, reference: &Estimate) -> Option<f64> {
 /// not estimated, percent.
 fn held_out(prepared: &Prepared, number: usize, base: &Estimate) -> Option<f64> {
     let selected = base.columns();
-    let folds = |number: usize| {
-        let system = prepared.systems.get(number)?.as_ref().ok()?;
-        let weights = if number == 0 && base.model != ModelKind::Platform {
-            vec![1.0; system.lines.len()]
-        } else {
-            base.weights.clone()
-        };
-        HeldOut::new(system, &selected, &weights)
-    };
-    let (own, platform) = (folds(number)?, folds(0)?);
+    let system = |number: usize| prepared.systems.get(number)?.as_ref().ok();
+    let (system, platform) = (system(number)?, system(0)?);
+    let own = HeldOut::new(system, &selected, &base.weights)?;
+    // The equations that judge are not weighted.
+    let platform = HeldOut::new(platform, &selected, &vec![1.0; platform.lines.len()])?;
     own.error_percent_in(&platform, &selected)
 }
 

@@ -12,6 +12,8 @@ mod equations;
 mod peeling;
 mod planar;
 mod polynomial;
+#[cfg(test)]
+mod tests;
 
 use super::configuration::Configuration;
 use super::platform::PlatformPose;

@@ -26,7 +26,7 @@ const VANISHES: f64 = 1e-6;
 const ROUNDING: f64 = 1e-11;
 
 /// How an unknown follows from the closure.
-enum Step<'a> {
+pub(super) enum Step<'a> {
     Pair(Linear<'a>, Linear<'a>),
     Slide(Quadratic<'a>),
     Root(Linear<'a>),
@@ -126,7 +126,8 @@ fn step<'a>(task: Task<'a, '_>, equations: &[Expr<'a>], unknown: &Unknown) -> Op
     steps.into_iter().min_by_key(Step::cost)
 }
 
-fn slide<'a>(task: Task<'a, '_>, equation: Quadratic<'a>) -> Option<Step<'a>> {
+/// How a slide follows from an equation, if it determines it at home.
+pub(super) fn slide<'a>(task: Task<'a, '_>, equation: Quadratic<'a>) -> Option<Step<'a>> {
     let home = |e: Expr<'a>| task.at_home(e);
     if equation.a.is_zero() {
         return (home(equation.b).abs() > VANISHES * task.size()).then_some(Step::Slide(equation));
@@ -144,7 +145,11 @@ fn completed<'a>(Quadratic { a, b, e }: Quadratic<'a>) -> (Expr<'a>, Expr<'a>) {
 }
 
 /// w at home, if it determines the turn.
-fn root_at_home<'a>(task: Task<'a, '_>, l: &Linear<'a>, unknown: &Unknown) -> Option<f64> {
+pub(super) fn root_at_home<'a>(
+    task: Task<'a, '_>,
+    l: &Linear<'a>,
+    unknown: &Unknown,
+) -> Option<f64> {
     let Unknown::Turn(turn) = unknown else {
         return None;
     };
