@@ -2,9 +2,14 @@
 //! `pose[0]` for each number).
 
 use crate::failure::{Failure, Problem};
-use serde_json::{Map, Value};
+use serde::{
+    Deserialize, Deserializer,
+    de::{Error as _, MapAccess, Visitor},
+};
+use serde_json::{Value, error::Category};
 use std::{
     collections::BTreeMap,
+    fmt::{self, Formatter},
     fs,
     io::{self, Read},
     path::Path,
@@ -120,27 +125,52 @@ impl States {
 }
 
 fn from_json(text: &str) -> Result<Vec<State>, Problem> {
-    let document: Value = serde_json::from_str(text).map_err(|error| {
+    // One object is one state.
+    let states = if text.trim_start().starts_with('[') {
+        serde_json::from_str::<Vec<State>>(text)
+    } else {
+        serde_json::from_str(text).map(|state| vec![state])
+    };
+    states.map_err(|error| {
         let line = Some(error.line()).filter(|line| *line > 0);
-        Problem::new(format!("the states are not JSON: {error}")).line(line)
-    })?;
-    let all = match document {
-        Value::Array(all) => all,
-        one => vec![one],
-    };
-    let state = |(at, value): (usize, Value)| match value {
-        Value::Object(object) => Ok(from_object(object)),
-        _ => Err(Problem::new(format!("state {} is not an object", at + 1))
-            .help("write { \"pose\": [0.1, 0.2, 0.3], ... }")),
-    };
-    all.into_iter().enumerate().map(state).collect()
+        let what = match error.classify() {
+            Category::Data => "the states can't be taken",
+            _ => "the states are not JSON",
+        };
+        Problem::new(format!("{what}: {error}"))
+            .line(line)
+            .help("write [{ \"pose\": [0.1, 0.2, 0.3], ... }, ...], each name once in a state")
+    })
 }
 
-fn from_object(object: Map<String, Value>) -> State {
-    let quantity = |(name, value): (String, Value)| (name, numbers(&value));
-    State {
-        line: None,
-        quantities: object.into_iter().map(quantity).collect(),
+/// Of two values under one name none is taken: whoever wrote them meant one of them.
+impl<'de> Deserialize<'de> for State {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Quantities)
+    }
+}
+
+struct Quantities;
+
+impl<'de> Visitor<'de> for Quantities {
+    type Value = State;
+
+    fn expecting(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a state, an object of quantities")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<State, A::Error> {
+        let mut state = State::default();
+        while let Some(name) = object.next_key::<String>()? {
+            if state.quantities.contains_key(&name) {
+                return Err(A::Error::custom(format!(
+                    "`{name}` stands twice in a state"
+                )));
+            }
+            let value: Value = object.next_value()?;
+            state.quantities.insert(name, numbers(&value));
+        }
+        Ok(state)
     }
 }
 
@@ -262,6 +292,17 @@ mod tests {
             csv.get(0, "pose", 2).unwrap()
         );
         assert_eq!(json.get(0, "twist", 1).unwrap(), Some(&[3.0][..]));
+    }
+
+    #[test]
+    fn a_name_that_stands_twice_is_located() {
+        let text = "[\n{\"pose\": [1, 2]},\n{\"pose\": [3, 4],\n\"pose\": [5, 6]}]";
+        let problems = States::parse("s.json".into(), text).unwrap_err().problems();
+        assert_eq!((problems.len(), problems[0].line), (1, Some(4)));
+        let said = &problems[0].message;
+        assert!(said.contains("`pose` stands twice in a state"), "{said}");
+        let mended = text.replace(",\n\"pose\"", ",\n\"twist\"");
+        assert_eq!(States::parse("s.json".into(), &mended).unwrap().len(), 2);
     }
 
     #[test]
