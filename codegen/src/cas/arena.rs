@@ -10,8 +10,8 @@ use symbols::Symbol;
 
 use super::direction::{Direction, SymbolId};
 use super::expr::Expr;
-use super::field::{Element, canonical};
-use super::hasher::{ByValue, QuickMap};
+use super::field::{ByValue, Element, canonical};
+use super::hasher::QuickMap;
 use super::number::Number;
 use super::ratio::Ratio;
 use super::sample::Sample;
@@ -100,6 +100,8 @@ struct Node {
 struct Tables {
     nodes: Vec<Node>,
     constants: Vec<Number>,
+    /// Where constants of a value in the field stand; they differ in their floats.
+    constant_ids: ByValue<Vec<u32>>,
     symbols: Vec<Symbol>,
     symbol_ids: HashMap<String, SymbolId>,
     directions: Vec<Direction>,
@@ -261,13 +263,21 @@ impl Arena {
         let number = if negative { -number } else { number };
         let id = {
             let mut tables = self.tables.borrow_mut();
-            let found = tables.constants.iter().position(|c| *c == number);
-            found.unwrap_or_else(|| {
-                tables.constants.push(number);
-                tables.constants.len() - 1
+            let Tables {
+                constants,
+                constant_ids,
+                ..
+            } = &mut *tables;
+            let alike = constant_ids.entry(number.image()).or_default();
+            let found = alike.iter().find(|id| constants[**id as usize] == number);
+            found.copied().unwrap_or_else(|| {
+                let id = constants.len() as u32;
+                constants.push(number);
+                alike.push(id);
+                id
             })
         };
-        self.intern(Op::Constant(id as u32)).with_sign_of(negative)
+        self.intern(Op::Constant(id)).with_sign_of(negative)
     }
 
     pub(crate) fn as_constant(&self, handle: Handle) -> Option<Number> {

@@ -3,15 +3,16 @@
 use super::arena::{Arena, Handle, Op};
 use super::direction::{Direction, SymbolId};
 use super::expr::Expr;
+use super::hasher::{QuickMap, QuickSet};
 use super::number::Number;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 impl<'a> Expr<'a> {
     /// The derivative with respect to a symbol, be it a number or an angle. Sign functions count as
     /// constants.
     #[must_use]
     pub fn derivative(self, symbol: SymbolId) -> Expr<'a> {
-        let mut known = HashMap::new();
+        let mut known = QuickMap::default();
         let derivative = differentiate(self.arena(), self.handle().index(), symbol, &mut known);
         if self.handle().is_negative() {
             -derivative
@@ -40,9 +41,9 @@ impl<'a> Expr<'a> {
         self.nodes().into_iter().filter(is_work).count()
     }
 
-    /// Indices of all nodes that the expression is made of, in ascending order.
-    fn nodes(self) -> BTreeSet<usize> {
-        let mut seen = BTreeSet::new();
+    /// Indices of all nodes that the expression is made of.
+    fn nodes(self) -> QuickSet<usize> {
+        let mut seen = QuickSet::default();
         let mut open = vec![self.handle().index()];
         while let Some(index) = open.pop() {
             if !seen.insert(index) {
@@ -56,7 +57,7 @@ impl<'a> Expr<'a> {
     /// The value for given values of the symbols (angles in radians).
     #[must_use]
     pub fn evaluate(self, values: &dyn Fn(SymbolId) -> f64) -> f64 {
-        let mut known = HashMap::new();
+        let mut known = QuickMap::default();
         number_of(self.arena(), self.handle(), values, &mut known)
     }
 }
@@ -65,7 +66,7 @@ fn differentiate<'a>(
     arena: &'a Arena,
     index: usize,
     symbol: SymbolId,
-    known: &mut HashMap<usize, Expr<'a>>,
+    known: &mut QuickMap<usize, Expr<'a>>,
 ) -> Expr<'a> {
     if let Some(&derivative) = known.get(&index) {
         return derivative;
@@ -108,7 +109,7 @@ fn number_of(
     arena: &Arena,
     handle: Handle,
     values: &dyn Fn(SymbolId) -> f64,
-    known: &mut HashMap<usize, f64>,
+    known: &mut QuickMap<usize, f64>,
 ) -> f64 {
     let sign = if handle.is_negative() { -1.0 } else { 1.0 };
     if let Some(&value) = known.get(&handle.index()) {
@@ -153,7 +154,7 @@ pub(crate) fn angle_of(direction: &Direction, values: &dyn Fn(SymbolId) -> f64) 
 #[derive(Debug)]
 pub struct Substitution<'b> {
     arena: &'b Arena,
-    values: HashMap<SymbolId, Expr<'b>>,
+    values: QuickMap<SymbolId, Expr<'b>>,
 }
 
 impl<'b> Substitution<'b> {
@@ -162,7 +163,7 @@ impl<'b> Substitution<'b> {
     pub fn new(arena: &'b Arena) -> Self {
         Self {
             arena,
-            values: HashMap::new(),
+            values: QuickMap::default(),
         }
     }
 
@@ -176,14 +177,14 @@ impl<'b> Substitution<'b> {
     /// The expression with all replacements made.
     #[must_use]
     pub fn apply(&self, expr: Expr<'_>) -> Expr<'b> {
-        self.replace(expr.arena(), expr.handle(), &mut HashMap::new())
+        self.replace(expr.arena(), expr.handle(), &mut QuickMap::default())
     }
 
     fn replace(
         &self,
         from: &Arena,
         handle: Handle,
-        known: &mut HashMap<usize, Expr<'b>>,
+        known: &mut QuickMap<usize, Expr<'b>>,
     ) -> Expr<'b> {
         let sign = |e: Expr<'b>| if handle.is_negative() { -e } else { e };
         if let Some(&expr) = known.get(&handle.index()) {

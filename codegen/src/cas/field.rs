@@ -11,7 +11,7 @@
 //! An identity that holds for all real inputs holds here at random inputs; one that does not hold
 //! fails with a probability of about degree / `P` (Schwartz and Zippel).
 
-use std::collections::HashMap;
+use super::hasher::QuickMap;
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::OnceLock;
 
@@ -86,6 +86,9 @@ fn invert(a: u64) -> u64 {
     }
     t0.rem_euclid(P as i64) as u64
 }
+
+/// A map from values of nodes.
+pub(crate) type ByValue<T> = QuickMap<Element, T>;
 
 impl Element {
     /// Zero.
@@ -269,7 +272,7 @@ pub const LOGARITHMS: u32 = 239_857;
 #[derive(Debug)]
 pub struct Logarithms {
     /// Exponents of the first powers of the root of unity.
-    small: HashMap<u64, u32>,
+    small: QuickMap<u64, u32>,
     /// Its power by which a giant step goes back.
     giant: u64,
 }
@@ -291,7 +294,7 @@ impl Logarithms {
         // The order is prime, so every root of unity but one generates all; most numbers lead to one.
         let roots = (2..).map(|number| power(number, COFACTOR));
         let root = roots.into_iter().find(|root| *root != 1).unwrap_or(1);
-        let mut small = HashMap::new();
+        let mut small = QuickMap::default();
         let mut at = 1;
         for exponent in 0..SMALL {
             small.insert(at, exponent);

@@ -3,8 +3,7 @@
 //! No order depends on a hash. Keys come from the generator and not from a user, so nothing is gained by
 //! a hash that no one can foresee, which takes several times longer.
 
-use super::field::Element;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasherDefault, Hasher};
 
 /// A multiplicative hash of words.
@@ -41,5 +40,5 @@ impl Hasher for FieldHasher {
 /// A map whose keys are hashed quickly.
 pub(crate) type QuickMap<K, T> = HashMap<K, T, BuildHasherDefault<FieldHasher>>;
 
-/// A map from values of nodes.
-pub(crate) type ByValue<T> = QuickMap<Element, T>;
+/// A set of what is hashed quickly.
+pub(crate) type QuickSet<T> = HashSet<T, BuildHasherDefault<FieldHasher>>;

@@ -5,10 +5,10 @@
 //! sines and cosines, which take most of the arithmetic: AVX2 and AVX-512 give the same numbers to the
 //! last digit.
 
-use super::fuse::{Arithmetic, Kind};
+use super::BLOCK;
+use super::passes::{Worker, work};
 use super::plan::{Pass, Slot};
 use super::trigonometry::{are_small, sines_and_cosines};
-use super::{BLOCK, signed};
 use pulp::NullaryFnOnce;
 use std::cell::Cell;
 
@@ -47,91 +47,32 @@ impl<const FUSED: bool> NullaryFnOnce for Run<'_, FUSED> {
     #[inline(always)]
     fn call(self) {
         for pass in self.passes {
-            self.pass(pass);
+            work(pass, &self);
         }
     }
-}
-
-/// The body for every operation in place of [`Arithmetic`] `$o`, `$f` being its function.
-macro_rules! for_each {
-    ($o:ident, $f:ident, $body:expr) => {{
-        {
-            const $o: Arithmetic = Arithmetic::Add;
-            let $f = |x: f64, y: f64| x + y;
-            $body
-        }
-        {
-            const $o: Arithmetic = Arithmetic::Sub;
-            let $f = |x: f64, y: f64| x - y;
-            $body
-        }
-        {
-            const $o: Arithmetic = Arithmetic::Mul;
-            let $f = |x: f64, y: f64| x * y;
-            $body
-        }
-    }};
-}
-
-/// Goes on with `$body` where the pass is of a kind.
-macro_rules! when {
-    ($at:ident, $kind:expr, $body:expr) => {
-        if $at.code == const { $kind.code() } {
-            return $body;
-        }
-    };
 }
 
 impl<'a, const FUSED: bool> Run<'a, FUSED> {
-    // One comparison after the other, which the compiler makes one jump of; kinds within kinds would be several.
-    #[inline(always)]
-    fn pass(&self, at: &Pass) {
-        for_each!(F, f, {
-            when!(at, Kind::One(F), self.each(at, |[a, b]| f(a, b)));
-            when!(at, Kind::From(F), self.each(at, |[a, b, c]| c - f(a, b)));
-            for_each!(G, g, {
-                when!(
-                    at,
-                    Kind::Then(F, G),
-                    self.each(at, |[a, b, c]| g(f(a, b), c))
-                );
-                when!(
-                    at,
-                    Kind::FromChain(F, G),
-                    self.each(at, |[a, b, c, d]| d - g(f(a, b), c))
-                );
-                for_each!(H, h, {
-                    when!(
-                        at,
-                        Kind::Chain(F, G, H),
-                        self.each(at, |[a, b, c, d]| h(g(f(a, b), c), d))
-                    );
-                    when!(
-                        at,
-                        Kind::Both(F, G, H),
-                        self.each(at, |[a, b, c, d]| g(f(a, b), h(c, d)))
-                    );
-                });
-            });
-        });
-        when!(at, Kind::Divide, self.each(at, |[a, b]| a / b));
-        when!(at, Kind::Negate, self.each(at, |[a]| -a));
-        when!(at, Kind::Root, self.each(at, |[a]| a.sqrt()));
-        when!(at, Kind::Sign, self.each(at, |[a]| signed(1.0, a)));
-        when!(at, Kind::Signed, self.each(at, |[a, b]| signed(b, a)));
-        when!(at, Kind::ThreeSigned, self.three(at, |a, b| signed(b, a)));
-        when!(at, Kind::TwoProducts, self.two(at, |a, b| a * b));
-        when!(at, Kind::ThreeProducts, self.three(at, |a, b| a * b));
-        when!(at, Kind::Direction, self.each(at, |[a, b]| a.atan2(b)));
-        when!(at, Kind::Angle, self.angles(at));
-    }
-
     #[inline(always)]
     fn block(&self, slot: Slot) -> &'a [[Cell<f64>; WIDTH]] {
         self.blocks[slot as usize].as_chunks().0
     }
 
-    /// One result of N operands.
+    /// Sines and cosines by the library, out of the way of what is usual.
+    #[cold]
+    #[inline(never)]
+    fn large_angles(&self, at: &Pass) {
+        let [angles, sines, cosines] =
+            [at.operands[0], at.results[0], at.results[1]].map(|slot| &self.blocks[slot as usize]);
+        for ((angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
+            let angle = angle.get();
+            sine.set(angle.sin());
+            cosine.set(angle.cos());
+        }
+    }
+}
+
+impl<const FUSED: bool> Worker for Run<'_, FUSED> {
     #[inline(always)]
     fn each<const N: usize>(&self, at: &Pass, f: impl Fn([f64; N]) -> f64) {
         // Loops, as closures for arrays would double the work of the compiler.
@@ -157,7 +98,6 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
         }
     }
 
-    /// Two results of a common operand and one of their own.
     #[inline(always)]
     fn two(&self, at: &Pass, f: impl Fn(f64, f64) -> f64) {
         let operands: [_; 3] = std::array::from_fn(|i| self.block(at.operands[i]));
@@ -169,7 +109,6 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
         }
     }
 
-    /// Three results of a common operand and one of their own.
     #[inline(always)]
     fn three(&self, at: &Pass, f: impl Fn(f64, f64) -> f64) {
         let operands: [_; 4] = std::array::from_fn(|i| self.block(at.operands[i]));
@@ -182,7 +121,6 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
         }
     }
 
-    /// Sines and cosines.
     #[inline(always)]
     fn angles(&self, at: &Pass) {
         let angles = self.block(at.operands[0]);
@@ -208,19 +146,6 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
             let (sine, cosine) = sines_and_cosines::<WIDTH, FUSED>(load(&angles[part]));
             store(&sines[part], sine);
             store(&cosines[part], cosine);
-        }
-    }
-
-    /// Sines and cosines by the library, out of the way of what is usual.
-    #[cold]
-    #[inline(never)]
-    fn large_angles(&self, at: &Pass) {
-        let [angles, sines, cosines] =
-            [at.operands[0], at.results[0], at.results[1]].map(|slot| &self.blocks[slot as usize]);
-        for ((angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
-            let angle = angle.get();
-            sine.set(angle.sin());
-            cosine.set(angle.cos());
         }
     }
 }

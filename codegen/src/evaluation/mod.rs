@@ -11,6 +11,7 @@ mod fuse;
 mod guards;
 mod inputs;
 mod lanes;
+mod passes;
 mod plan;
 mod rows;
 mod single;
@@ -22,6 +23,7 @@ mod turn;
 use crate::lowering::Program;
 use guards::check;
 use plan::Plan;
+use single::Single;
 use std::cell::Cell;
 
 /// Samples per block: what a program has alive stays in the nearest caches.
@@ -80,7 +82,7 @@ impl Program {
         output: &mut [f64],
     ) -> Result<(), Failed> {
         match samples {
-            1 => single::evaluate(self, inputs, output, &mut Vec::new()),
+            1 => single::evaluate(self, inputs, output),
             _ => Evaluator::new(self).evaluate(samples, inputs, output),
         }
     }
@@ -90,18 +92,18 @@ impl Program {
 #[derive(Debug)]
 pub struct Evaluator {
     program: Program,
-    single: Vec<f64>,
+    single: Option<Single>,
     rows: Option<Memory>,
     numbers: Option<Memory>,
 }
 
 impl Evaluator {
-    /// Prepares a program. What is only needed for blocks is prepared with the first one.
+    /// Prepares a program. What is only needed for single samples or for blocks is prepared with the first one.
     #[must_use]
     pub fn new(program: &Program) -> Self {
         Self {
             program: program.clone(),
-            single: Vec::new(),
+            single: None,
             rows: None,
             numbers: None,
         }
@@ -120,7 +122,8 @@ impl Evaluator {
     ) -> Result<(), Failed> {
         let program = &self.program;
         if samples == 1 {
-            return single::evaluate(program, inputs, output, &mut self.single);
+            let single = self.single.get_or_insert_with(|| Single::new(program));
+            return single.evaluate(program, inputs, output);
         }
         // Numbers of a row lie side by side, so they are moved when all are there.
         let memory = self

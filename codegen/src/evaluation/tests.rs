@@ -127,6 +127,27 @@ fn blocks_give_what_single_samples_give() {
 }
 
 #[test]
+fn a_program_made_ready_gives_what_it_gives_once() {
+    let program = program();
+    let width = program.entries.len();
+    let mut evaluator = Evaluator::new(&program);
+    let mut states = states(BLOCK);
+    // The guard fails between states at which it holds.
+    states[2 * 7] = std::f64::consts::FRAC_PI_2;
+    for (number, state) in states.chunks(2).enumerate() {
+        let inputs = [rows(state, false), rows(&[1.7], true)];
+        let (mut once, mut ready) = (vec![f64::NAN; width], vec![f64::NAN; width]);
+        let done = program.evaluate(1, &inputs, &mut once);
+        assert_eq!(evaluator.evaluate(1, &inputs, &mut ready), done);
+        assert_eq!(done.is_err(), number == 7);
+        for (column, (a, b)) in once.iter().zip(&ready).enumerate() {
+            let close = (a - b).abs() <= 1e-15 * a.abs().max(1.0);
+            assert!(close || done.is_err(), "number {column}: {b} for {a}");
+        }
+    }
+}
+
+#[test]
 fn one_large_angle_of_a_block_is_the_library_s() {
     let program = program();
     let width = program.entries.len();

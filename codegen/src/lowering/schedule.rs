@@ -2,8 +2,8 @@
 
 use super::dag::{Angle, Dag, Definition, Edge};
 use super::program::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
+use crate::cas::hasher::QuickMap;
 use crate::diagnostic::InternalError;
-use std::collections::HashMap;
 
 /// The program of a DAG whose angles are planned.
 ///
@@ -53,9 +53,9 @@ struct Schedule<'d> {
     steps: Vec<Step>,
     done: Vec<Option<Operand>>,
     /// The steps that are the negatives of nodes.
-    negatives: HashMap<usize, Operand>,
+    negatives: QuickMap<usize, Operand>,
     /// The group of nodes that is computed together with each node, if it is not begun yet.
-    groups: HashMap<usize, usize>,
+    groups: QuickMap<usize, usize>,
     is_begun: Vec<bool>,
 }
 
@@ -69,7 +69,7 @@ impl<'d> Schedule<'d> {
             needed: dag.needed(dag.entries().iter().map(|entry| entry.node())),
             steps: Vec::new(),
             done: vec![None; dag.len()],
-            negatives: HashMap::new(),
+            negatives: QuickMap::default(),
             groups: members.collect(),
             is_begun: vec![false; dag.groups().len()],
         }

@@ -1,7 +1,7 @@
 //! What a replacement saves.
 
 use super::{Dag, Definition};
-use std::collections::HashSet;
+use crate::cas::hasher::QuickSet;
 
 impl Dag {
     /// Takes away one use of a node; what is no longer needed is let go with it. The operations let go.
@@ -79,7 +79,7 @@ impl Dag {
     /// Nodes that are no deeper than it are not.
     pub(crate) fn depend(&self, nodes: impl Iterator<Item = usize>, on: usize) -> bool {
         let depth = self.depths[on];
-        let mut seen = HashSet::new();
+        let mut seen = QuickSet::default();
         let mut stack: Vec<usize> = nodes.collect();
         while let Some(node) = stack.pop() {
             if node == on {

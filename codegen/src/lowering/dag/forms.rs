@@ -3,7 +3,7 @@
 use super::sieve::Sieve;
 use super::{Dag, Definition, Edge};
 use crate::cas::field::Element;
-use std::collections::HashMap;
+use crate::cas::hasher::QuickMap;
 
 /// The sums and products of two nodes that have the value of a node, of the nodes that were looked at.
 ///
@@ -14,7 +14,7 @@ pub(super) struct Forms(Option<Found>);
 
 #[derive(Debug, Clone)]
 struct Found {
-    pairs: HashMap<usize, Vec<Definition>>,
+    pairs: QuickMap<usize, Vec<Definition>>,
     sieve: Sieve,
     inverses: Vec<Element>,
 }
@@ -23,7 +23,7 @@ impl Found {
     fn new(dag: &Dag) -> Self {
         let inverse = |node| dag.value(Edge::to(node)).inverse();
         Self {
-            pairs: HashMap::new(),
+            pairs: QuickMap::default(),
             sieve: Sieve::new(dag),
             inverses: (0..dag.len()).map(inverse).collect(),
         }

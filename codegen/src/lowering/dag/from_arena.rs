@@ -2,9 +2,9 @@
 
 use super::{Angle, Constant, Context, Dag, Definition, Edge, GuardedEdge, Origin, Symbol, Turn};
 use crate::cas::arena::{Handle, Op};
+use crate::cas::hasher::QuickMap;
 use crate::cas::{Arena, Expr};
 use crate::lowering::GuardedExpr;
-use std::collections::HashMap;
 
 /// The DAG of some entries. Guards whose value no entry needs are left out.
 pub(crate) fn from_arena<'a>(
@@ -34,7 +34,7 @@ pub(crate) struct Copy<'a> {
     arena: &'a Arena,
     pub(crate) dag: Dag,
     /// The node of each node of the arena.
-    numbers: HashMap<usize, usize>,
+    numbers: QuickMap<usize, usize>,
 }
 
 impl<'a> Copy<'a> {
@@ -59,7 +59,7 @@ impl<'a> Copy<'a> {
                 turns: (0..arena.direction_count()).map(turn).collect(),
                 scopes: arena.scope_names(),
             }),
-            numbers: HashMap::new(),
+            numbers: QuickMap::default(),
         }
     }
 

@@ -22,12 +22,11 @@ pub(crate) use node::{Angle, Constant, Definition, Edge};
 
 use super::program::Condition;
 use crate::cas::arena::{Fingerprint, negative_name};
-use crate::cas::field::{Element, canonical};
-use crate::cas::hasher::ByValue;
+use crate::cas::field::{ByValue, Element, canonical};
+use crate::cas::hasher::QuickMap;
 use crate::cas::{Direction, InputElement};
 use digits::Digits;
 use forms::Forms;
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// What a root and an arc tangent count, so that they are saved first.
@@ -381,7 +380,7 @@ impl Dag {
     pub(crate) fn node_of(
         &mut self,
         definition: Definition,
-        known: &mut HashMap<Definition, usize>,
+        known: &mut QuickMap<Definition, usize>,
     ) -> usize {
         *known
             .entry(definition)

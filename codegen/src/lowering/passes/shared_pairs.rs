@@ -6,8 +6,7 @@
 //! have little to do with another leg's; a small function is searched as a whole.
 
 use super::single_replacements::{LOSS, fits};
-use crate::cas::field::{Element, canonical};
-use crate::cas::hasher::ByValue;
+use crate::cas::field::{ByValue, Element, canonical};
 #[cfg(test)]
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition, Dominators, Edge};

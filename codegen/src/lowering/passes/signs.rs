@@ -4,14 +4,14 @@
 //! value without the sign, and the sign goes on to whoever uses it. What is left are differences, and
 //! negative entries. The sign of a constant is the constant's, but in a difference.
 
+use crate::cas::hasher::QuickMap;
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Constant, Dag, Definition, Edge, Origin};
-use std::collections::HashMap;
 
 /// Moves the signs of all nodes.
 pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
     let mut is_flipped = vec![false; dag.len()];
-    let mut negatives = HashMap::new();
+    let mut negatives = QuickMap::default();
     for node in dag.operands_first() {
         let definition = dag.definition(node);
         let definition = definition.with_edges(|edge| edge.times(is_flipped[edge.node()]));
@@ -31,7 +31,7 @@ pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
 }
 
 /// The edge to a negative constant instead of the negative edge to a constant.
-fn with_its_sign(dag: &mut Dag, edge: Edge, negatives: &mut HashMap<usize, usize>) -> Edge {
+fn with_its_sign(dag: &mut Dag, edge: Edge, negatives: &mut QuickMap<usize, usize>) -> Edge {
     let Definition::Constant(constant) = dag.definition(edge.node()) else {
         return edge;
     };

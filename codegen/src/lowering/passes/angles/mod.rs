@@ -3,11 +3,11 @@
 mod plan;
 
 use crate::cas::arena::Fingerprint;
+use crate::cas::hasher::QuickMap;
 use crate::cas::{Angle as ConstantAngle, Direction, Number};
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Angle, Constant, Dag, Definition, Edge, Origin};
 use plan::{Plan, plan};
-use std::collections::HashMap;
 
 /// Writes all sines and cosines out.
 pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
@@ -81,7 +81,7 @@ fn needed_turns(dag: &Dag) -> Vec<u32> {
 struct Work<'d> {
     dag: &'d mut Dag,
     /// The nodes of the sines and cosines, inputs, and what was added.
-    known: HashMap<Definition, usize>,
+    known: QuickMap<Definition, usize>,
 }
 
 impl<'d> Work<'d> {

@@ -1,0 +1,94 @@
+//! What the passes of a plan compute, whatever they compute it on: a block of samples or a single one.
+
+use super::fuse::{Arithmetic, Kind};
+use super::plan::Pass;
+use super::signed;
+
+/// What carries passes out.
+pub(super) trait Worker {
+    /// One result of N operands.
+    fn each<const N: usize>(&self, at: &Pass, f: impl Fn([f64; N]) -> f64);
+
+    /// Two results of a common operand and one of their own.
+    fn two(&self, at: &Pass, f: impl Fn(f64, f64) -> f64);
+
+    /// Three results of a common operand and one of their own.
+    fn three(&self, at: &Pass, f: impl Fn(f64, f64) -> f64);
+
+    /// Sine and cosine of the operand.
+    fn angles(&self, at: &Pass);
+}
+
+/// The body for every operation in place of [`Arithmetic`] `$o`, `$f` being its function.
+macro_rules! for_each {
+    ($o:ident, $f:ident, $body:expr) => {{
+        {
+            const $o: Arithmetic = Arithmetic::Add;
+            let $f = |x: f64, y: f64| x + y;
+            $body
+        }
+        {
+            const $o: Arithmetic = Arithmetic::Sub;
+            let $f = |x: f64, y: f64| x - y;
+            $body
+        }
+        {
+            const $o: Arithmetic = Arithmetic::Mul;
+            let $f = |x: f64, y: f64| x * y;
+            $body
+        }
+    }};
+}
+
+/// Goes on with `$body` where the pass is of a kind.
+macro_rules! when {
+    ($at:ident, $kind:expr, $body:expr) => {
+        if $at.code == const { $kind.code() } {
+            return $body;
+        }
+    };
+}
+
+/// Carries a pass out.
+// One comparison after the other, which the compiler makes one jump of; kinds within kinds would be several.
+#[inline(always)]
+pub(super) fn work(at: &Pass, worker: &impl Worker) {
+    for_each!(F, f, {
+        when!(at, Kind::One(F), worker.each(at, |[a, b]| f(a, b)));
+        when!(at, Kind::From(F), worker.each(at, |[a, b, c]| c - f(a, b)));
+        for_each!(G, g, {
+            when!(
+                at,
+                Kind::Then(F, G),
+                worker.each(at, |[a, b, c]| g(f(a, b), c))
+            );
+            when!(
+                at,
+                Kind::FromChain(F, G),
+                worker.each(at, |[a, b, c, d]| d - g(f(a, b), c))
+            );
+            for_each!(H, h, {
+                when!(
+                    at,
+                    Kind::Chain(F, G, H),
+                    worker.each(at, |[a, b, c, d]| h(g(f(a, b), c), d))
+                );
+                when!(
+                    at,
+                    Kind::Both(F, G, H),
+                    worker.each(at, |[a, b, c, d]| g(f(a, b), h(c, d)))
+                );
+            });
+        });
+    });
+    when!(at, Kind::Divide, worker.each(at, |[a, b]| a / b));
+    when!(at, Kind::Negate, worker.each(at, |[a]| -a));
+    when!(at, Kind::Root, worker.each(at, |[a]| a.sqrt()));
+    when!(at, Kind::Sign, worker.each(at, |[a]| signed(1.0, a)));
+    when!(at, Kind::Signed, worker.each(at, |[a, b]| signed(b, a)));
+    when!(at, Kind::ThreeSigned, worker.three(at, |a, b| signed(b, a)));
+    when!(at, Kind::TwoProducts, worker.two(at, |a, b| a * b));
+    when!(at, Kind::ThreeProducts, worker.three(at, |a, b| a * b));
+    when!(at, Kind::Direction, worker.each(at, |[a, b]| a.atan2(b)));
+    when!(at, Kind::Angle, worker.angles(at));
+}
