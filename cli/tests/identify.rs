@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Bench, number, robot, shared};
+use overact_tier::{by_tier, is_full};
 use serde_json::Value;
 
 /// The serial robot with a shorter experiment.
@@ -133,8 +134,9 @@ fn the_document_has_its_keys() {
 
 #[test]
 fn partitions_are_ranked() {
+    let duration = by_tier(["duration = \"1 s\"", "duration = \"2 s\""]);
     let bench = Bench::with("planar-4rrr", |text| {
-        text.replace("duration = \"4 s\"", "duration = \"2 s\"")
+        text.replace("duration = \"4 s\"", duration)
     });
     let document = bench.json(&["partitions", "my.toml"]);
     let partitions = document["partitions"].as_array().expect("a list");
@@ -247,8 +249,12 @@ fn bad_experiments_are_told_of() {
     );
 }
 
+/// In the full tier. Either tier has the same digits from the library, and the same log from a robot.
 #[test]
 fn emps_has_the_published_digits() {
+    if !is_full() {
+        return;
+    }
     let (Some(data), Some(pulses)) = (
         shared("data/emps/DATA_EMPS.mat"),
         shared("data/emps/DATA_EMPS_PULSES.mat"),

@@ -19,7 +19,7 @@ use overact_tier::{by_tier, is_full};
 static RECORDS: LazyLock<Vec<Record>> = LazyLock::new(|| {
     let robot = DualV::new();
     let mut experiment = experiment(&robot, 1.0, 5);
-    experiment.duration_s = by_tier([2.5, 4.0]);
+    experiment.duration_s = by_tier([2.0, 4.0]);
     records(&robot, &experiment)
 });
 
@@ -192,12 +192,12 @@ fn dropped_and_repeated_samples_are_named() {
                 for rows in [positions, torques] {
                     // Twenty samples are gone; or ten are what the one before was.
                     if repeated {
-                        let held: Vec<f64> = rows[4 * 2000..4 * 2001].to_vec();
-                        rows[4 * 2000..4 * 2010]
+                        let held: Vec<f64> = rows[4 * 1500..4 * 1501].to_vec();
+                        rows[4 * 1500..4 * 1510]
                             .chunks_exact_mut(4)
                             .for_each(|row| row.copy_from_slice(&held));
                     } else {
-                        rows.drain(4 * 2000..4 * 2020);
+                        rows.drain(4 * 1500..4 * 1520);
                     }
                 }
             }
@@ -208,7 +208,7 @@ fn dropped_and_repeated_samples_are_named() {
             (CheckKind::DroppedSamples, Some("unloaded 1"), None),
             "{repeated}"
         );
-        assert!(failed(&result)[0].words.contains("t = 2.0"));
+        assert!(failed(&result)[0].words.contains("t = 1.5"));
     }
 }
 

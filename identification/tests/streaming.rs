@@ -29,11 +29,11 @@ fn text() -> String {
     text
 }
 
-fn identified(log: Log) -> Identification {
+fn identified(log: &Log, validation: &[Log]) -> Identification {
     let settings = Settings::for_bandwidth(5.0, FREQUENCY, &EMPS.info());
     let dataset = Dataset {
-        runs: std::slice::from_ref(&log),
-        validation: std::slice::from_ref(&log),
+        runs: std::slice::from_ref(log),
+        validation,
         true_values: None,
     };
     identify(&EMPS, &dataset, &settings, &|_| {}).expect("an identification")
@@ -64,8 +64,8 @@ fn a_long_file_is_identified_block_by_block() {
         torques,
         false,
     );
-    let streamed = identified(log.clone());
-    let whole = identified(whole.expect("a log"));
+    let streamed = identified(&log, std::slice::from_ref(&log));
+    let whole = identified(&whole.expect("a log"), &[]);
     assert_eq!(streamed.runs[0].samples, whole.runs[0].samples);
     for (a, b) in streamed.estimates.iter().zip(&whole.estimates) {
         assert_eq!(a.parameters, b.parameters);

@@ -5,6 +5,7 @@
 //! all that the tests' package depends on once more, so they stand here, where that is the macro and
 //! little else.
 
+use overact_tier::is_full;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -28,6 +29,16 @@ fn copy_descriptions() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// The cases of the default tier: a robot that compiles, wrong uses of the macro, and two descriptions, one of
+/// which is right but for its geometry. What else is said of descriptions is tested beside what says it.
+const FEW: [&str; 5] = [
+    "pass.rs",
+    "missing_file.rs",
+    "on_an_enum.rs",
+    "misspelled_key.rs",
+    "stretched_leg.rs",
+];
+
 #[test]
 fn wrong_uses_are_explained_and_right_ones_compile() -> Result<(), Box<dyn Error>> {
     copy_descriptions()?;
@@ -35,10 +46,12 @@ fn wrong_uses_are_explained_and_right_ones_compile() -> Result<(), Box<dyn Error
     for entry in fs::read_dir("tests/ui")? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default();
-        if path.extension().is_none_or(|e| e != "rs") {
+        let name = name.to_string_lossy();
+        let is_of_the_tier = is_full() || FEW.contains(&&*name);
+        if path.extension().is_none_or(|e| e != "rs") || !is_of_the_tier {
             continue;
         }
-        match name.to_string_lossy().starts_with("pass") {
+        match name.starts_with("pass") {
             true => cases.pass(path),
             false => cases.compile_fail(path),
         }

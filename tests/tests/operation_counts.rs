@@ -96,20 +96,25 @@ fn line(work: &Work, effort: Effort) -> Result<(String, usize), Failure> {
 #[test]
 fn no_other_tool_takes_fewer_operations() -> Result<(), Failure> {
     let mut table = String::new();
-    for work in &WORKS {
+    // The three largest take as long as all others together.
+    for work in by_tier([&WORKS[..11], &WORKS[..]]) {
         let (line, operations) = line(work, Effort::Quick)?;
         assert!(operations < work.best_known, "{line}");
         writeln!(table, "{line}")?;
     }
-    insta::assert_snapshot!(table);
+    let name = by_tier([
+        "no_other_tool_takes_fewer_operations_for_small_works",
+        "no_other_tool_takes_fewer_operations",
+    ]);
+    insta::assert_snapshot!(name, table);
     Ok(())
 }
 
 #[test]
 fn quick_search_is_within_five_percent_of_the_thorough_one() -> Result<(), Failure> {
     let mut table = String::new();
-    // A thorough search of all takes most of a minute; the default tier searches four small works.
-    let works = by_tier([&WORKS[6..10], &WORKS[..]]);
+    // A thorough search of all takes most of a minute; the default tier searches three small works.
+    let works = by_tier([&WORKS[6..9], &WORKS[..]]);
     for work in works {
         let (_, quick) = line(work, Effort::Quick)?;
         let (line, operations) = line(work, Effort::Thorough)?;

@@ -31,7 +31,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const TOLERANCE: f64 = 1e-9;
 const STATES: usize = 3;
 /// Mechanisms in the default tier and in the full one, which has to meet every feature and defect.
-const COUNT: [u64; 2] = [20, 208];
+const COUNT: [u64; 2] = [32, 208];
 /// Largest condition number of the model's own partition for its functions to be compared plainly.
 const PLAIN: f64 = 1e3;
 /// Largest joint rate of the path that the power is differentiated along, rad/s and m/s.

@@ -67,6 +67,24 @@ fn package(one: &Value, members: &[Value]) -> Package {
     }
 }
 
+/// Names of the workspace's libraries whose documentation has no example to look for.
+pub(crate) fn without_examples() -> Result<Vec<String>, Failure> {
+    let text = cargo(&["metadata", "--format-version", "1", "--no-deps"])?;
+    let document: Value = serde_json::from_str(&text)?;
+    let is_silent = |package: &&Value| {
+        let libraries = list(&package["targets"]).iter().filter(|target| {
+            let kinds = list(&target["kind"]);
+            kinds
+                .iter()
+                .any(|kind| kind == "lib" || kind == "proc-macro")
+        });
+        libraries.clone().count() > 0 && libraries.clone().all(|one| one["doctest"] == false)
+    };
+    let silent = list(&document["packages"]).iter().filter(is_silent);
+    let names = silent.filter_map(|package| package["name"].as_str().map(str::to_owned));
+    Ok(names.collect())
+}
+
 /// A list of a document, empty where there is none.
 pub(crate) fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)

@@ -115,6 +115,10 @@ impl<K: Kinematics> Robot<K> {
         let own = self.sizes.parameters - self.sizes.payload_parameters;
         out.fill(0.0);
         for i in 0..n {
+            // Of a column of the regressor all parameters but one are zero.
+            if chi[3 * i..3 * i + 3] == [0.0; 3] {
+                continue;
+            }
             let row = &moving.jacobian[i * r..(i + 1) * r];
             let rate: f64 = row.iter().zip(v).map(|(j, v)| j * v).sum();
             let second: f64 =

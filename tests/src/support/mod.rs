@@ -21,6 +21,7 @@ pub use sample::Sample;
 pub use served::Served;
 
 use overact_codegen::{Effort, Request, RobotModel, Source, compile, compile_with};
+use overact_tier::by_tier;
 use std::error::Error;
 use std::path::PathBuf;
 use std::{fs, sync::OnceLock};
@@ -59,7 +60,8 @@ pub fn model_of(source: &Source) -> Result<RobotModel, Failure> {
     }
 }
 
-/// The DualV's model as it is checked in, with all operations searched; compiled once.
+/// The DualV's model, compiled once: as it is derived in the default tier, with all operations searched as in
+/// the module that is checked in in the full one.
 ///
 /// # Errors
 ///
@@ -69,9 +71,12 @@ pub fn dualv() -> Result<&'static RobotModel, Failure> {
     let compiled = MODEL.get_or_init(|| {
         description("dualv")
             .and_then(|source| {
-                compile_with(&source, &Request::with_effort(Effort::Thorough))
-                    .map(|compiled| compiled.model)
-                    .map_err(|errors| errors.render_plain(&source).into())
+                compile_with(
+                    &source,
+                    &Request::with_effort(by_tier([Effort::None, Effort::Thorough])),
+                )
+                .map(|compiled| compiled.model)
+                .map_err(|errors| errors.render_plain(&source).into())
             })
             .map_err(|error| error.to_string())
     });

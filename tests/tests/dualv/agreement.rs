@@ -17,7 +17,7 @@ use overact_tier::by_tier;
 
 const TOLERANCE: f64 = 1e-10;
 /// States in the default tier and in the full one.
-const STATES: [usize; 2] = [10, 200];
+const STATES: [usize; 2] = [6, 200];
 
 redundant_backend!(Generated, "generated", overact_compiled::DualV);
 redundant_backend!(Kept123, "compiled 123", partitions::kept_123::DualV);

@@ -3,20 +3,36 @@
 //! The cost table pins the operation counts of all functions.
 
 use overact::{Columns, Function};
-use overact_codegen::CompiledFunction;
 use overact_codegen::derivation::MotionInput;
 use overact_codegen::description::{self, Description};
 use overact_codegen::emission;
 use overact_codegen::internals::{Arena, Derived, derive, random_states};
 use overact_codegen::lowering::{Operand, Operation, Program};
 use overact_codegen::mechanism::Mechanism;
+use overact_codegen::{CompiledFunction, Effort, Request, RobotModel, compile_with};
 use overact_tests::support::backend::evaluate;
 use overact_tests::support::{Failure, dualv};
+use overact_tier::is_full;
 use std::fmt::Write;
 
-fn function(function: Function, from: MotionInput) -> Result<&'static CompiledFunction, Failure> {
-    let found = dualv()?.function(function, from);
-    found.ok_or_else(|| format!("no {function:?} from {from:?}").into())
+/// The model with some functions only, their operations searched as in the module that is checked in.
+fn searched(
+    is_wanted: impl Fn(Function, MotionInput) -> bool + Sync,
+) -> Result<RobotModel, Failure> {
+    let source = overact_tests::support::description("dualv")?;
+    let request = Request {
+        wanted: &|_, function, from| is_wanted(function, from),
+        ..Request::with_effort(Effort::Thorough)
+    };
+    let compiled = compile_with(&source, &request).map_err(|e| e.render_plain(&source))?;
+    Ok(compiled.model)
+}
+
+/// The regressor from joint angles.
+fn regressor(model: &RobotModel) -> Result<&CompiledFunction, Failure> {
+    let function = Function::IdmRedPlatform(Columns::Standard);
+    let found = model.function(function, MotionInput::Joints);
+    found.ok_or_else(|| "no regressor".into())
 }
 
 #[test]
@@ -118,8 +134,10 @@ fn printed(derived: &Derived<'_>, picked: &dyn Fn(usize, usize) -> bool) -> Stri
 
 #[test]
 fn lowering_of_the_inverse_jacobian() -> Result<(), Failure> {
-    let program = &function(Function::InverseJacobian, MotionInput::Joints)?.program;
-    insta::assert_snapshot!(listing(program)?);
+    let is_wanted =
+        |function, from| function == Function::InverseJacobian && from == MotionInput::Joints;
+    let model = searched(is_wanted)?;
+    insta::assert_snapshot!(listing(&model.functions[0].program)?);
     Ok(())
 }
 
@@ -175,8 +193,12 @@ const fn operation(operation: &Operation) -> &'static str {
     }
 }
 
+/// In the full tier, whose model is searched. In the default one the text of the module is compared.
 #[test]
 fn cost_of_all_functions() -> Result<(), Failure> {
+    if !is_full() {
+        return Ok(());
+    }
     let mut table = format!(
         "{:<38} {:>10} {:>5} {:>5} {:>4} {:>5} {:>5} {:>6} {:>6} {:>5} {:>13}\n",
         "function",
@@ -213,13 +235,13 @@ fn cost_of_all_functions() -> Result<(), Failure> {
     Ok(())
 }
 
+/// In the full tier, as the cost of all functions.
 #[test]
 fn regressor_from_joints_stays_as_small_as_it_is() -> Result<(), Failure> {
-    let program = &function(
-        Function::IdmRedPlatform(Columns::Standard),
-        MotionInput::Joints,
-    )?
-    .program;
+    if !is_full() {
+        return Ok(());
+    }
+    let program = &regressor(dualv()?)?.program;
     let cost = program.cost();
     assert_eq!(program.output.shape, [3, 64]);
     assert!(cost.operations() <= OPERATIONS, "{cost}");
@@ -232,12 +254,15 @@ const OPERATIONS: usize = 375;
 
 #[test]
 fn emission_of_two_functions() -> Result<(), Failure> {
-    let file = emission::file(dualv()?, "robots/dualv.toml");
+    let both = [Function::ProjectPlatform, Function::IdmRedPayload];
+    let model = searched(|function, _| both.contains(&function))?;
+    let file = emission::file(&model, "robots/dualv.toml");
     let text = |name: &str| -> Result<String, Failure> {
         let signature = format!("    pub fn {name}(");
         let at = file.find(&signature).ok_or("no such function")?;
-        // The documentation begins behind the end of the function before.
-        let start = file[..at].rfind("    }\n").map_or(0, |end| end + 6);
+        let lines = file[..at].lines().rev();
+        let documentation = lines.take_while(|line| line.starts_with("    ///"));
+        let start = at - documentation.map(|line| line.len() + 1).sum::<usize>();
         let length = file[at..].find("\n    }\n").ok_or("no end")?;
         Ok(file[start..at + length + 7].to_owned())
     };
@@ -249,10 +274,7 @@ fn emission_of_two_functions() -> Result<(), Failure> {
 #[test]
 fn evaluation_of_the_regressor() -> Result<(), Failure> {
     let model = dualv()?;
-    let function = function(
-        Function::IdmRedPlatform(Columns::Standard),
-        MotionInput::Joints,
-    )?;
+    let function = regressor(model)?;
     let state = &random_states(&model.mechanism, 1, 7)[0];
     let values = evaluate(&function.program, &|name| match name {
         "pose" => Some(&state.pose),
