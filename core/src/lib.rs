@@ -1,10 +1,10 @@
 //! What the generator, the interpreter, the generated code and those who call it agree on.
 //!
 //! [`function`] is the one table of a robot's functions: what each is called and means, what it takes
-//! and which shape its output has. [`parameter`] are the fourteen standard parameters, [`error`] is what
-//! can go wrong at a state, [`singular`] from where on a configuration counts as singular,
-//! [`trigonometry`] the polynomials by which all backends compute sines and cosines, and [`text`] says
-//! which characters may not stand in what is written of a description.
+//! and which shape its output has. [`parameter`] are the fourteen standard parameters of the paper and the
+//! coefficient of a spring, [`error`] is what can go wrong at a state, [`singular`] from where on a
+//! configuration counts as singular, [`trigonometry`] the polynomials by which all backends compute sines
+//! and cosines, and [`text`] says which characters may not stand in what is written of a description.
 //!
 //! The crate is `no_std`, has no dependencies and allocates nothing.
 #![no_std]

@@ -13,7 +13,7 @@
 //! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series that are plotted |
 //! | [`data`] | a run is read from text or MATLAB and checked; a mapping names its columns and units |
 //! | [`filters`] | zero-phase filtering, decimation, differences |
-//! | `settings` | what an identification is told beside the data |
+//! | `prior`, `settings` | what is believed of the standard parameters, and what else an identification is told beside the data |
 //! | `monitor` | what raw numbers tell by themselves while they are gone through |
 //! | `kinematics` | forward kinematics, platform motion, conditioning and distribution of actuators |
 //! | `regression` | columns of the model, and the decimated system (39)-(41) of case 1, case 2 or all joints, as R factors |

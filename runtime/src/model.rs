@@ -7,7 +7,7 @@ use crate::{Error, Function, SampleError, Sizes, StandardParameter};
 pub struct Parameter {
     /// Unique name, `zz_2_leg3`, `m_platform` or `m_payload`.
     pub name: &'static str,
-    /// Which of the 14 standard parameters it is.
+    /// Which of the standard parameters it is.
     pub symbol: StandardParameter,
     /// SI unit, for instance `kg m²`.
     pub unit: &'static str,

@@ -172,7 +172,12 @@ impl<'a> Robot<'a> {
             StandardParameter::Fv => rate(),
             StandardParameter::Fs => rate().sign(),
             StandardParameter::K => self.spring_force(leg, joint),
-            _ => self.arena.one(),
+            StandardParameter::Off => self.arena.one(),
+            // The ten of a body act through its wrench.
+            symbol => {
+                debug_assert!(symbol.is_inertial(), "a joint's parameter without a force");
+                self.arena.zero()
+            }
         }
     }
 
