@@ -21,6 +21,7 @@ pub mod direction;
 mod divisors;
 pub mod expr;
 pub mod field;
+pub(crate) mod filter;
 pub(crate) mod hasher;
 pub mod number;
 pub mod print;

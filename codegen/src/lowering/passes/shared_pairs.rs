@@ -7,6 +7,7 @@
 
 use super::single_replacements::{LOSS, fits};
 use crate::cas::field::{ByValue, Element, canonical};
+use crate::cas::filter::Filter;
 #[cfg(test)]
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition, Dominators, Edge};
@@ -89,9 +90,13 @@ fn improve_group(dag: &mut Dag, (own, all): &(Vec<usize>, Vec<usize>)) -> i32 {
     let is_target = |node: &usize| dag.is_open(*node) && tree.cone(*node) > 1;
     let targets: Vec<usize> = own.iter().copied().filter(is_target).collect();
     let (requests, heads) = requests(dag, &tree, &targets, all);
+    let filter = Filter::new(heads.keys(), heads.len());
     let mut hits = Vec::new();
     for_each_pair(dag, all, |definition, value| {
         let ([key], negative) = canonical([value]);
+        if !filter.may_hold(&key) {
+            return;
+        }
         let Some(&head) = heads.get(&key) else { return };
         let bound = bound(&requests, head, &tree, definition);
         // What is there already is a matter of single operations.
