@@ -18,7 +18,7 @@ pub struct Prior {
 /// Reads `[prior]`.
 pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Prior> {
     let table = item.table("the table `[prior]`")?;
-    let values = table.get("values").map(|item| parameters(&item, robot));
+    let values = table.get("values").map(|item| values(&item, robot));
     let bounds = table.get("bounds").map(|item| bounds(&item, robot));
     table.finish();
     let named = |one: TrueParameter| (one.name.value, one.value);
@@ -26,6 +26,29 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Prior> 
         values: values.unwrap_or_default().into_iter().map(named).collect(),
         bounds: bounds.unwrap_or_default(),
     })
+}
+
+/// Reads `[prior.values]`: what can't be negative of any body or drive is not.
+fn values(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> {
+    use StandardParameter as P;
+    let all = parameters(item, robot);
+    for one in &all {
+        let words = match one.symbol {
+            P::M => "a body's mass",
+            P::Xx | P::Yy | P::Zz => "a body's moment of inertia",
+            P::Ia => "a rotor's inertia",
+            P::Fv | P::Fs => "a coefficient of friction",
+            _ => continue,
+        };
+        if one.value <= 0.0 {
+            let message = format!("{words} is positive, but `{}` is not", one.name.value);
+            let error = Diagnostic::new(message, one.name.span.clone());
+            let help =
+                "leave out what is not known: the nearest value that the data allow is taken";
+            item.context.report(error.help(help));
+        }
+    }
+    all
 }
 
 fn bounds(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, [f64; 2])> {

@@ -10,6 +10,7 @@
 //! The data enter by the R factors of the observation system, so a million samples cost as much as a
 //! thousand.
 
+mod completion;
 mod cones;
 mod density;
 mod equations;

@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use overact::StandardParameter;
 
-use super::pseudo_inertia::{Inertia, divergence};
+use super::{
+    completion::completed,
+    pseudo_inertia::{Inertia, divergence},
+};
 use crate::{
     error::Problem,
     estimation::base::BaseParameters,
@@ -26,7 +29,7 @@ pub(crate) fn problems(prior: &Prior, columns: &ColumnSet) -> Vec<Problem> {
     for (suffix, inertia) in &values.given {
         if divergence(inertia, inertia).is_none() {
             let message = format!(
-                "no body has the prior parameters of `m{suffix}`: its pseudo-inertia is not positive definite"
+                "no body has the prior parameters of `m{suffix}`: whatever the others are, its pseudo-inertia is not positive definite"
             );
             let help = "give moments about the origin of the body's frame, products of inertia with the sign -∫xy dm, a positive mass";
             problems.push(Problem::new(message).help(help));
@@ -88,7 +91,7 @@ impl Values {
             if own.iter().any(Option::is_some) {
                 values
                     .given
-                    .insert(suffix.to_owned(), completed(own, &uniform));
+                    .insert(suffix.to_owned(), completed(&own, &uniform));
             }
             values.uniform.insert(suffix.to_owned(), uniform);
         }
@@ -142,61 +145,8 @@ fn ball() -> Inertia {
     Inertia::from([moment, 0.0, 0.0, moment, 0.0, moment, 0.0, 0.0, 0.0, 1.0])
 }
 
-/// A body of which some parameters are given: first moments that are missing are zero, second moments, if
-/// none is given, those of the uniform body of the same mass about its own centre.
-fn completed(given: [Option<f64>; 10], uniform: &Inertia) -> Inertia {
-    let mut own = Inertia::from(given.map(Option::unwrap_or_default));
-    if given[..6].iter().all(Option::is_none) {
-        let mass = own[9];
-        let scaled = uniform * (mass / uniform[9]);
-        let steiner = |body: &Inertia| {
-            let [x, y, z] = [6, 7, 8].map(|k| body[k] / mass);
-            let square = [
-                y * y + z * z,
-                -x * y,
-                -x * z,
-                x * x + z * z,
-                -y * z,
-                x * x + y * y,
-            ];
-            square.map(|value| mass * value)
-        };
-        let (from, to) = (steiner(&scaled), steiner(&own));
-        for k in 0..6 {
-            own[k] = scaled[k] - from[k] + to[k];
-        }
-    }
-    own
-}
-
 /// What follows the symbol in the name of a column's parameter.
 pub(super) fn suffix(column: &Column) -> &str {
     let symbol = column.symbol.name();
     column.standard.strip_prefix(symbol).unwrap_or_default()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Inertia, ball, completed};
-
-    #[test]
-    fn a_mass_and_a_centre_get_the_uniform_body_s_moments_about_them() {
-        // A ball of 1 kg, moments 0.01, whose mass becomes 4 kg and whose centre goes to (0.5, 0, 0).
-        let mut given = [None; 10];
-        (given[6], given[9]) = (Some(2.0), Some(4.0));
-        let expected = Inertia::from([0.04, 0.0, 0.0, 1.04, 0.0, 1.04, 2.0, 0.0, 0.0, 4.0]);
-        assert!((completed(given, &ball()) - expected).norm() < 1e-15);
-        // Back again: a body that is not uniform about its own origin.
-        let mut back = [None; 10];
-        back[9] = Some(1.0);
-        assert!((completed(back, &expected) - ball()).norm() < 1e-15);
-    }
-
-    #[test]
-    fn moments_that_are_given_stay() {
-        let mut given = [None; 10];
-        (given[0], given[9]) = (Some(0.3), Some(1.0));
-        let own = completed(given, &ball());
-        assert_eq!((own[0], own[3], own[9]), (0.3, 0.0, 1.0));
-    }
 }

@@ -199,6 +199,7 @@ value = 1
 [prior.values]
 zz_1 = "2 kg"
 zz_3 = 1
+fv_1 = -2
 [prior.bounds]
 zz_1 = [0, 1]
 fv_1 = [3, 1]
@@ -210,11 +211,12 @@ ia_2 = [1, 2]
         "3:1 unknown key `value`; did you mean `values`?",
         "5:8 `zz_1`: expected a moment of inertia (kg m^2), found a mass (2 kg)",
         "6:1 the robot has no parameter `zz_3`; did you mean `zz_1`?",
-        "8:8 `zz_1` can't be bounded; masses, friction, rotor inertias and offsets can be",
-        "9:8 the smaller bound comes first; write [smallest, largest]",
-        "10:8 these bounds leave no positive value of `fs_1`; it can't be negative",
-        "11:8 3 numbers are no bounds; write [smallest, largest]",
-        "12:1 the robot has no parameter `ia_2`; did you mean `ia_1`?",
+        "7:1 a coefficient of friction is positive, but `fv_1` is not; leave out what is not known: the nearest value that the data allow is taken",
+        "9:8 `zz_1` can't be bounded; masses, friction, rotor inertias and offsets can be",
+        "10:8 the smaller bound comes first; write [smallest, largest]",
+        "11:8 these bounds leave no positive value of `fs_1`; it can't be negative",
+        "12:8 3 numbers are no bounds; write [smallest, largest]",
+        "13:1 the robot has no parameter `ia_2`; did you mean `ia_1`?",
     ];
     assert_eq!(errors(tables), expected);
 }
