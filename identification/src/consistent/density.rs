@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    prior::Values,
     unknowns::{Kind, Unknowns},
+    values::Values,
 };
 
 impl Values {

@@ -23,6 +23,7 @@ mod start;
 #[cfg(test)]
 mod tests;
 mod unknowns;
+mod values;
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -30,10 +31,10 @@ use serde::Serialize;
 pub(crate) use prior::problems;
 
 use self::{
-    prior::Values,
     pseudo_inertia::{Inertia, definiteness},
     solve::{Solution, solve},
     unknowns::{Kind, Unknowns},
+    values::Values,
 };
 use crate::{
     estimation::{

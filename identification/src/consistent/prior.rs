@@ -1,4 +1,4 @@
-//! The prior value of every standard parameter.
+//! The prior values that a description gives, completed, and what is wrong with them.
 
 use std::collections::BTreeMap;
 
@@ -7,20 +7,9 @@ use overact::StandardParameter;
 use super::{
     completion::completed,
     pseudo_inertia::{Inertia, divergence},
+    values::{Values, ball, suffix},
 };
-use crate::{
-    error::Problem,
-    estimation::base::BaseParameters,
-    prior::Prior,
-    regression::columns::{Column, ColumnSet},
-    result::Estimate,
-};
-
-/// Mean square radius of a body of which nothing is known, m².
-const SQUARE_RADIUS: f64 = 0.01;
-
-/// Coefficients of friction and rotors of which nothing is known (SI units).
-const SMALL: f64 = 0.1;
+use crate::{error::Problem, prior::Prior, regression::columns::ColumnSet};
 
 /// What is wrong with a prior for a model's columns.
 pub(crate) fn problems(prior: &Prior, columns: &ColumnSet) -> Vec<Problem> {
@@ -54,18 +43,6 @@ pub(crate) fn problems(prior: &Prior, columns: &ColumnSet) -> Vec<Problem> {
     problems
 }
 
-/// The prior value of every unknown.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Values {
-    /// Bodies by the suffix of their names that are given.
-    pub(super) given: BTreeMap<String, Inertia>,
-    /// Bodies by suffix of a common density.
-    uniform: BTreeMap<String, Inertia>,
-    pub(super) density: f64,
-    /// Coefficients by name.
-    scalars: BTreeMap<String, f64>,
-}
-
 impl Values {
     /// The values that are given, and uniform bodies of density 1.
     pub(super) fn new(prior: &Prior, columns: &ColumnSet) -> Self {
@@ -97,56 +74,4 @@ impl Values {
         }
         values
     }
-
-    /// The coefficients that are not given as the base parameters have them, or a part of them.
-    pub(super) fn with_estimate(
-        mut self,
-        columns: &ColumnSet,
-        base: &BaseParameters,
-        estimate: &Estimate,
-    ) -> Self {
-        let name = |index: usize| columns.as_slice().get(index).map(|one| one.name.clone());
-        for parameter in estimate.parameters.iter().filter(|one| one.value > 0.0) {
-            let Some(&kept) = base.columns.get(parameter.column) else {
-                continue;
-            };
-            let regrouped = &base.regroupings[parameter.column];
-            let members = regrouped.iter().map(|(index, _)| *index).chain([kept]);
-            let part = parameter.value / (regrouped.len() + 1) as f64;
-            for name in members.filter_map(name) {
-                self.scalars.entry(name).or_insert(part);
-            }
-        }
-        self
-    }
-
-    /// The ten parameters of a body.
-    pub(super) fn body(&self, suffix: &str) -> Inertia {
-        let uniform = || {
-            self.uniform
-                .get(suffix)
-                .map_or_else(ball, |own| own * self.density)
-        };
-        self.given.get(suffix).copied().unwrap_or_else(uniform)
-    }
-
-    /// The magnitude of a coefficient.
-    pub(super) fn scalar(&self, column: &Column) -> f64 {
-        let own = self.scalars.get(&column.name).copied();
-        own.map(f64::abs)
-            .filter(|value| *value > 0.0)
-            .unwrap_or(SMALL)
-    }
-}
-
-/// A ball of 1 kg at the origin.
-fn ball() -> Inertia {
-    let moment = SQUARE_RADIUS;
-    Inertia::from([moment, 0.0, 0.0, moment, 0.0, moment, 0.0, 0.0, 0.0, 1.0])
-}
-
-/// What follows the symbol in the name of a column's parameter.
-pub(super) fn suffix(column: &Column) -> &str {
-    let symbol = column.symbol.name();
-    column.standard.strip_prefix(symbol).unwrap_or_default()
 }

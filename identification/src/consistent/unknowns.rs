@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use overact::{Body, StandardParameter};
 
 use super::{
-    prior::{Values, suffix},
     pseudo_inertia::Inertia,
+    values::{Values, suffix},
 };
 use crate::{
     prior::Prior,
