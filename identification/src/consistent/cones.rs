@@ -19,11 +19,12 @@ pub(super) trait Cone {
     /// The values (of fewer than ten unknowns the first ones).
     fn values(&self) -> Inertia;
 
-    /// The matrix that makes changes of the values of the coordinates of a step towards a weight.
-    fn scaling(&self, weight: f64) -> Metric;
+    /// The matrix that makes changes of the values of the coordinates of a step.
+    fn scaling(&self) -> Metric;
 
-    /// The slope of the divergence times its weight in the coordinates of a step.
-    fn slope(&self, weight: f64) -> Inertia;
+    /// The slope of `cost` times the divergence without its logarithms, and of the barrier times `weight`,
+    /// in the coordinates of a step.
+    fn slope(&self, cost: f64, weight: f64) -> Inertia;
 
     /// Number of products of a distance and its multiplier, and their sum.
     fn products(&self) -> (usize, f64);
@@ -101,7 +102,7 @@ impl Cone for BodyCone {
         inertia(&(self.scaling * Matrix4::from_diagonal(&self.lambda) * self.scaling.transpose()))
     }
 
-    fn scaling(&self, _: f64) -> Metric {
+    fn scaling(&self) -> Metric {
         let mut all = Metric::zeros();
         for k in 0..10 {
             let mut unit = Inertia::zeros();
@@ -112,8 +113,8 @@ impl Cone for BodyCone {
         all
     }
 
-    fn slope(&self, weight: f64) -> Inertia {
-        let smooth = self.scaling.transpose() * self.cost * self.scaling * weight;
+    fn slope(&self, cost: f64, weight: f64) -> Inertia {
+        let smooth = self.scaling.transpose() * self.cost * self.scaling * cost;
         let barrier = Matrix4::from_diagonal(&self.lambda.map(|value| weight / value));
         coordinates(&(smooth - barrier))
     }
@@ -168,12 +169,12 @@ impl Cone for PositiveCone {
         first(self.side.distance)
     }
 
-    fn scaling(&self, _: f64) -> Metric {
+    fn scaling(&self) -> Metric {
         corner(self.side.stiffness().sqrt().recip())
     }
 
-    fn slope(&self, weight: f64) -> Inertia {
-        let slope = weight / self.prior + self.side.slope(weight);
+    fn slope(&self, cost: f64, weight: f64) -> Inertia {
+        let slope = cost / self.prior + self.side.slope(weight);
         first(slope / self.side.stiffness().sqrt())
     }
 
@@ -194,25 +195,21 @@ impl Cone for PositiveCone {
 
 /// A coefficient of either sign, which nothing but its magnitude holds back.
 pub(super) struct FreeCone {
-    magnitude: f64,
+    /// By how much it changes at the cost of ½.
+    scale: f64,
     value: f64,
     /// What the next step adds.
     proposed: f64,
 }
 
 impl FreeCone {
-    /// A coefficient whose half square by that of its magnitude is its divergence.
-    pub(super) fn new(magnitude: f64, value: f64) -> Self {
+    /// A coefficient whose half square by that of its magnitude costs `cost`.
+    pub(super) fn new(magnitude: f64, value: f64, cost: f64) -> Self {
         Self {
-            magnitude,
+            scale: magnitude / cost.sqrt(),
             value,
             proposed: 0.0,
         }
-    }
-
-    /// By how much it changes at the cost of ½.
-    fn scale(&self, weight: f64) -> f64 {
-        self.magnitude / weight.sqrt()
     }
 }
 
@@ -221,20 +218,20 @@ impl Cone for FreeCone {
         first(self.value)
     }
 
-    fn scaling(&self, weight: f64) -> Metric {
-        corner(self.scale(weight))
+    fn scaling(&self) -> Metric {
+        corner(self.scale)
     }
 
-    fn slope(&self, weight: f64) -> Inertia {
-        first(self.value / self.scale(weight))
+    fn slope(&self, _: f64, _: f64) -> Inertia {
+        first(self.value / self.scale)
     }
 
     fn products(&self) -> (usize, f64) {
         (0, 0.0)
     }
 
-    fn propose(&mut self, step: &Inertia, weight: f64) -> f64 {
-        self.proposed = self.scale(weight) * step[0];
+    fn propose(&mut self, step: &Inertia, _: f64) -> f64 {
+        self.proposed = self.scale * step[0];
         f64::INFINITY
     }
 
@@ -279,7 +276,7 @@ mod tests {
     fn the_slope_is_that_of_the_divergence() -> Result<(), &'static str> {
         let [prior, own] = bodies();
         let cone = BodyCone::new(&prior, &own, 1.0).ok_or("no body")?;
-        let (slope, scaling) = (cone.slope(1.0), cone.scaling(1.0));
+        let (slope, scaling) = (cone.slope(1.0, 1.0), cone.scaling());
         for k in 0..10 {
             let at = |factor: f64| {
                 let moved = own + scaling.column(k) * factor * 1e-5;
@@ -300,7 +297,7 @@ mod tests {
         for (weight, part) in [(0.1, 0.5), (0.02, 0.9), (0.01, 1.0)] {
             let step = Inertia::from_fn(|k, _| 0.01 * (k as f64 + weight).sin());
             let before = cone.values();
-            let change = cone.scaling(1.0) * step;
+            let change = cone.scaling() * step;
             let reach = cone.propose(&step, weight);
             assert!(reach > 1.0, "{reach}");
             cone.advance(part).ok_or("outside")?;
@@ -314,7 +311,7 @@ mod tests {
         let [prior, own] = bodies();
         let mut cone = BodyCone::new(&prior, &own, 1.0).ok_or("no body")?;
         for _ in 0..12 {
-            let step = -cone.slope(1.0);
+            let step = -cone.slope(1.0, 1.0);
             let reach = cone.propose(&step, 1.0);
             cone.advance((0.9 * reach).min(1.0)).ok_or("outside")?;
         }

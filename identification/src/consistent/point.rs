@@ -22,7 +22,7 @@ struct Block {
 }
 
 impl Block {
-    fn new(group: &Group, values: &DVector<f64>, weight: f64) -> Option<Self> {
+    fn new(group: &Group, values: &DVector<f64>, (weight, cost): (f64, f64)) -> Option<Self> {
         let own = values.rows(group.first, group.len());
         let cone: Box<dyn Cone> = match &group.kind {
             Kind::Body { prior } => {
@@ -30,7 +30,7 @@ impl Block {
                 Box::new(BodyCone::new(prior, &own, weight)?)
             }
             Kind::Positive { prior } => Box::new(PositiveCone::new(*prior, own[0], weight)?),
-            Kind::Free { scale } => Box::new(FreeCone::new(*scale, own[0])),
+            Kind::Free { scale } => Box::new(FreeCone::new(*scale, own[0], cost)),
         };
         let bounds = group.bounds.iter();
         let sides = bounds.flat_map(|(k, [low, high])| [(*k, *low, 1.0), (*k, *high, -1.0)]);
@@ -51,6 +51,8 @@ pub(super) struct Point {
     blocks: Vec<Block>,
     /// Number of unknowns.
     len: usize,
+    /// Weight of the divergence without its logarithms.
+    cost: f64,
 }
 
 /// A step that was made.
@@ -62,13 +64,19 @@ pub(super) struct Step {
 }
 
 impl Point {
-    /// On the path of a weight; none outside the cones and bounds.
-    pub(super) fn new(unknowns: &Unknowns, values: &DVector<f64>, weight: f64) -> Option<Self> {
+    /// On the path of the first weight, the second one being that of the divergence without its logarithms;
+    /// none outside the cones and bounds.
+    pub(super) fn new(
+        unknowns: &Unknowns,
+        values: &DVector<f64>,
+        weights: (f64, f64),
+    ) -> Option<Self> {
         let groups = unknowns.groups.iter();
-        let blocks = groups.map(|group| Block::new(group, values, weight));
+        let blocks = groups.map(|group| Block::new(group, values, weights));
         Some(Self {
             blocks: blocks.collect::<Option<_>>()?,
             len: unknowns.len(),
+            cost: weights.1,
         })
     }
 
@@ -106,7 +114,7 @@ impl Point {
         (a, b): (&DMatrix<f64>, &DVector<f64>),
         weight: f64,
     ) -> Option<Step> {
-        let equations = self.equations(a, weight)?;
+        let equations = self.equations(a)?;
         let slope = self.slope(weight);
         let step = equations.solved(&(b - a * self.values()), &slope);
         let square = step.norm_squared() + (&equations.matrix * &step).norm_squared();
@@ -115,7 +123,7 @@ impl Point {
             let mut own = Inertia::zeros();
             own.rows_mut(0, block.len)
                 .copy_from(&step.rows(block.first, block.len));
-            let change = block.cone.scaling(weight) * own;
+            let change = block.cone.scaling() * own;
             reach = reach.min(block.cone.propose(&own, weight));
             for side in &mut block.sides {
                 reach = reach.min(side.propose(change[side.place], weight));
@@ -126,12 +134,12 @@ impl Point {
             block.cone.advance(part)?;
             block.sides.iter_mut().for_each(|side| side.advance(part));
         }
-        let length = (square / weight).sqrt();
+        let length = (square / self.cost).sqrt();
         (length.is_finite() && part > 0.0).then_some(Step { length, part })
     }
 
-    /// The equations of a step towards a weight: M, with a row more for each bound.
-    pub(super) fn equations(&self, a: &DMatrix<f64>, weight: f64) -> Option<Equations> {
+    /// The equations of a step: M, with a row more for each bound.
+    pub(super) fn equations(&self, a: &DMatrix<f64>) -> Option<Equations> {
         let sides: usize = self.blocks.iter().map(|block| block.sides.len()).sum();
         let mut all = DMatrix::zeros(a.nrows() + sides, self.len);
         all.rows_mut(0, a.nrows()).copy_from(a);
@@ -142,11 +150,7 @@ impl Point {
                 row += 1;
             }
         }
-        let scalings: Vec<Metric> = self
-            .blocks
-            .iter()
-            .map(|one| one.cone.scaling(weight))
-            .collect();
+        let scalings: Vec<Metric> = self.blocks.iter().map(|one| one.cone.scaling()).collect();
         for (block, scaling) in self.blocks.iter().zip(&scalings) {
             let own = scaling.view((0, 0), (block.len, block.len));
             let scaled = all.columns(block.first, block.len) * own;
@@ -165,8 +169,8 @@ impl Point {
     /// The slope in the coordinates of a step.
     fn slope(&self, weight: f64) -> DVector<f64> {
         self.gathered(|block| {
-            let mut slope = block.cone.slope(weight);
-            let scaling = block.cone.scaling(weight);
+            let mut slope = block.cone.slope(self.cost, weight);
+            let scaling = block.cone.scaling();
             for side in &block.sides {
                 slope += scaling.row(side.place).transpose() * side.slope(weight);
             }

@@ -2,8 +2,8 @@
 //!
 //! ½ ||A x - b||² + γ D(x) is minimised, A x ≈ b being the data in units of their noise and D the sum of
 //! all divergences, of -log of the distances from the bounds, and of ½ (x/scale)² of free unknowns. The
-//! point follows the path of its weight μ, from where the prior is good enough down to μ = γ, and the
-//! multipliers of all barriers with it (primal-dual path following; Vandenberghe, *The
+//! point follows the path on which the barriers of D weigh μ, from where the prior is good enough down to
+//! μ = γ, and the multipliers of all barriers with it (primal-dual path following; Vandenberghe, *The
 //! CVXOPT linear and quadratic cone program solvers*, 2010). A step d = S u in the coordinates of the cones
 //! minimises ½ ||A d - r||² + ½ |u|² + gᵀ u, r being what is unexplained and g the slope. With M = A S that
 //! is u = Mᵀ y - g and (1 + M Mᵀ) y = r + M g: a system of as many unknowns as there are base parameters.
@@ -45,7 +45,7 @@ pub(super) struct Solution {
 pub(super) fn solve(unknowns: &Unknowns, a: &DMatrix<f64>, b: &DVector<f64>) -> Option<Solution> {
     let values = start(unknowns);
     let worst = (a * &values - b).norm_squared() / (2.0 * unknowns.len() as f64);
-    let mut point = Point::new(unknowns, &values, worst.max(LAST_WEIGHT))?;
+    let mut point = Point::new(unknowns, &values, (worst.max(LAST_WEIGHT), LAST_WEIGHT))?;
     let (mut fall, mut last) = (FALL, f64::INFINITY);
     for _ in 0..STEPS {
         let weight = (fall * point.weight()).max(LAST_WEIGHT);
@@ -72,8 +72,8 @@ fn determined(
 ) -> Option<DVector<f64>> {
     let none = DMatrix::zeros(0, a.ncols());
     let variances = |values: &DVector<f64>, a: &DMatrix<f64>| {
-        let point = Point::new(unknowns, values, LAST_WEIGHT)?;
-        Some(point.equations(a, LAST_WEIGHT)?.variances())
+        let point = Point::new(unknowns, values, (LAST_WEIGHT, LAST_WEIGHT))?;
+        Some(point.equations(a)?.variances())
     };
     let (before, after) = (variances(&start(unknowns), &none)?, variances(values, a)?);
     let part = after.zip_map(&before, |after, before| 1.0 - after / before);
