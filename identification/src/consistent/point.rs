@@ -156,14 +156,9 @@ impl Point {
             let scaled = all.columns(block.first, block.len) * own;
             all.columns_mut(block.first, block.len).copy_from(&scaled);
         }
-        Equations::new(
-            all,
-            scalings
-                .iter()
-                .zip(&self.blocks)
-                .map(|(scaling, block)| (block.first, block.len, *scaling))
-                .collect(),
-        )
+        let blocks = self.blocks.iter().zip(scalings);
+        let scalings = blocks.map(|(block, scaling)| (block.first, block.len, scaling));
+        Equations::new(all, scalings.collect())
     }
 
     /// The slope in the coordinates of a step.
