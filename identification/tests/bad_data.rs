@@ -19,7 +19,7 @@ use overact_tier::{by_tier, is_full};
 static RECORDS: LazyLock<Vec<Record>> = LazyLock::new(|| {
     let robot = DualV::new();
     let mut experiment = experiment(&robot, 1.0, 5);
-    experiment.duration_s = by_tier([2.0, 4.0]);
+    experiment.duration_s = by_tier([1.6, 4.0]);
     records(&robot, &experiment)
 });
 

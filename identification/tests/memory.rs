@@ -113,7 +113,7 @@ fn more_samples_take_hardly_more_memory() {
     for &(times, more, instruments, allowed) in by_tier([QUICK, THOROUGH]) {
         let most = |times| identified(&robot, folder.path(), &record, (times, instruments));
         // The first time, threads are started and tables made that stay.
-        most(3);
+        most(1);
         let (short, long) = (most(times), most(times + more));
         // The numbers of twenty additional records alone would take 6.4 MB.
         println!("{instruments:?}: at most {short:.1} MB at a time, then {long:.1} MB");

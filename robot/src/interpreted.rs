@@ -69,9 +69,10 @@ struct Scratch {
 }
 
 /// Memory that calls take and give back, so that a call allocates only when more threads than ever
-/// before are in it. Programs have memory of their own: sizing it anew would cost more than a sample.
+/// before are in it. Programs have memory of their own: sizing it anew would cost more than a sample, and so
+/// would moving it out and in, were it not boxed.
 #[derive(Debug)]
-struct Pool<T>(Mutex<Vec<T>>);
+struct Pool<T>(Mutex<Vec<Box<T>>>);
 
 impl<T> Default for Pool<T> {
     fn default() -> Self {
@@ -83,7 +84,7 @@ impl<T> Pool<T> {
     fn with<R>(&self, make: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
         // What a panicking thread left behind is memory like any other.
         let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut memory = free().pop().unwrap_or_else(make);
+        let mut memory = free().pop().unwrap_or_else(|| Box::new(make()));
         let result = work(&mut memory);
         free().push(memory);
         result

@@ -21,7 +21,7 @@ fn check(stem: &str, _: &dyn Model) -> Result<(), Failure> {
     let (model, expected) = described(stem)?;
     let drawn = samples(&expected.mechanism, &expected.parameters(), 1, 3, false)?;
     let moving = drawn.first().ok_or("no sample")?;
-    let limit = by_tier([24, 2000]);
+    let limit = by_tier([16, 2000]);
     let states: Vec<Sample> = poses(model)
         .into_iter()
         .map(|pose| with(moving, |sample| sample.state.pose = pose))
