@@ -21,7 +21,7 @@ pub struct BiasTerm<'a> {
 /// Along the path, with ω the angular velocity of the antecedent and q̇ the joint rate:
 /// ω' = ω + z q̇, β' = β + ω × z q̇, b' = b + β × l + ω (ω · l) - ω² l + 2 ω × z ṙ.
 #[must_use]
-pub fn end_bias<'a>(
+pub(crate) fn end_bias<'a>(
     arena: &'a Arena,
     leg: &Leg,
     frames: &LegFrames<'a>,

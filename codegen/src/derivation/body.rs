@@ -83,7 +83,11 @@ impl<'a> BodyMotion<'a> {
 
     /// The wrench at the frame's origin, per unit of an inertial parameter.
     #[must_use]
-    pub fn unit_wrench(&self, arena: &'a Arena, parameter: StandardParameter) -> [Vector3<'a>; 2] {
+    pub(crate) fn unit_wrench(
+        &self,
+        arena: &'a Arena,
+        parameter: StandardParameter,
+    ) -> [Vector3<'a>; 2] {
         use StandardParameter as P;
         let zero = Vector3::zero(arena);
         let first = |k: usize| {
@@ -136,7 +140,7 @@ pub(super) fn second_moment<'a>(
 
 /// Motion of all bodies of a leg for quasi-velocities u and their derivatives. `None` if a sine or
 /// cosine does not follow from the configuration.
-pub fn leg_bodies<'a>(
+pub(crate) fn leg_bodies<'a>(
     arena: &'a Arena,
     leg: &Leg,
     state: &LegState<'a>,

@@ -94,7 +94,11 @@ impl<'a> CarriedBody<'a> {
 
     /// The wrench at the body frame's origin per unit of an inertial parameter, in the base's axes.
     #[must_use]
-    pub fn unit_wrench(&self, arena: &'a Arena, parameter: StandardParameter) -> [Vector3<'a>; 2] {
+    pub(crate) fn unit_wrench(
+        &self,
+        arena: &'a Arena,
+        parameter: StandardParameter,
+    ) -> [Vector3<'a>; 2] {
         use StandardParameter as P;
         let zero = Vector3::zero(arena);
         let axes = || self.platform * self.mounted;

@@ -114,7 +114,7 @@ impl<'a> LegClosure<'a> {
 
     /// ∂u_i/∂v for all u, r numbers each.
     #[must_use]
-    pub fn reduced_jacobian(&self, twist: &[TwistCoordinate]) -> Rows<'a> {
+    pub(crate) fn reduced_jacobian(&self, twist: &[TwistCoordinate]) -> Rows<'a> {
         let row = |(force, moment): (&Vector3<'a>, &Vector3<'a>)| {
             on_twist(twist, self.arm, [*force, *moment])
         };
@@ -124,7 +124,7 @@ impl<'a> LegClosure<'a> {
     /// Whether the forces s on the u are projected with fewer products as one force at the leg's end
     /// than row by row: not with a moment at the end, nor where few rows take part.
     #[must_use]
-    pub fn is_shorter_at_end(&self, rows: &Rows<'a>, forces: &[Expr<'a>]) -> bool {
+    pub(crate) fn is_shorter_at_end(&self, rows: &Rows<'a>, forces: &[Expr<'a>]) -> bool {
         let parts = || (0..forces.len()).filter(|&i| !forces[i].is_zero());
         if parts().any(|i| !self.moments[i].is_zero()) {
             return false;
@@ -148,7 +148,11 @@ impl<'a> LegClosure<'a> {
 
     /// (F, p × F) of the forces s on the u, F = Σ s_i f_i.
     #[must_use]
-    pub fn project_at_end(&self, twist: &[TwistCoordinate], forces: &[Expr<'a>]) -> Vec<Expr<'a>> {
+    pub(crate) fn project_at_end(
+        &self,
+        twist: &[TwistCoordinate],
+        forces: &[Expr<'a>],
+    ) -> Vec<Expr<'a>> {
         let zero = Vector3::zero(self.determinant.arena());
         let parts = self.forces.iter().zip(forces);
         let force = parts.fold(zero, |sum, (f, s)| sum + f.scaled(*s));
@@ -157,7 +161,7 @@ impl<'a> LegClosure<'a> {
 
     /// A row of the six-vector (Ṗ, ω) of the platform point per twist coordinate.
     #[must_use]
-    pub fn platform_row(
+    pub(crate) fn platform_row(
         &self,
         row: usize,
         twist: &[TwistCoordinate],

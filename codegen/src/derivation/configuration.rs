@@ -59,7 +59,7 @@ impl<'a> Configuration<'a> {
 
     /// The same configuration with symbols for what is not known, see [`Unknown`].
     #[must_use]
-    pub fn with_unknowns(&self) -> Self {
+    pub(crate) fn with_unknowns(&self) -> Self {
         Self {
             unknowns: Some(RefCell::default()),
             ..self.clone()
@@ -84,13 +84,13 @@ impl<'a> Configuration<'a> {
 
     /// The angle of a revolute joint.
     #[must_use]
-    pub fn joint_angle(&self, index: usize) -> Direction {
+    pub(crate) fn joint_angle(&self, index: usize) -> Direction {
         self.arena.input_angle(JOINTS, index)
     }
 
     /// The position of a prismatic joint, m; `None` if it is not known from the pose.
     #[must_use]
-    pub fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
+    pub(crate) fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
         match self.from {
             MotionInput::Joints => Some(self.arena.input(JOINTS, index)),
             MotionInput::Pose | MotionInput::Actuators => {
@@ -102,13 +102,13 @@ impl<'a> Configuration<'a> {
     }
 
     /// Declares the sine and cosine of an angle.
-    pub fn learn(&mut self, angle: Direction, unit: Unit<'a>) {
+    pub(crate) fn learn(&mut self, angle: Direction, unit: Unit<'a>) {
         self.name(&angle, unit);
         self.known.push((angle, unit));
     }
 
     /// Declares the position of a prismatic joint.
-    pub fn learn_position(&mut self, index: usize, position: Expr<'a>) {
+    pub(crate) fn learn_position(&mut self, index: usize, position: Expr<'a>) {
         if let Some((leg, joint)) = self.names.get(index) {
             let _ = position.named(&format!("q{joint}_{leg}"));
         }
@@ -266,13 +266,13 @@ impl Unknown {
 
 /// Cosine and sine of a sum of two angles.
 #[must_use]
-pub fn add_angles<'a>((ca, sa): Unit<'a>, (cb, sb): Unit<'a>) -> Unit<'a> {
+pub(crate) fn add_angles<'a>((ca, sa): Unit<'a>, (cb, sb): Unit<'a>) -> Unit<'a> {
     (ca * cb - sa * sb, sa * cb + ca * sb)
 }
 
 /// The angle of a direction, within half a turn of its value at home.
 #[must_use]
-pub fn angle_near<'a>(arena: &'a Arena, (cosine, sine): Unit<'a>, home: f64) -> Expr<'a> {
+pub(crate) fn angle_near<'a>(arena: &'a Arena, (cosine, sine): Unit<'a>, home: f64) -> Expr<'a> {
     let [ch, sh] = [home.cos(), home.sin()].map(Number::float);
     let turned = (sine * ch - cosine * sh).atan2(cosine * ch + sine * sh);
     turned + arena.number(Number::float(home))

@@ -52,7 +52,10 @@ struct Work<'a> {
 
 /// The closed form, if the robot has one.
 #[must_use]
-pub fn closed_form<'a>(arena: &'a Arena, mechanism: &'a Mechanism) -> Option<ClosedForm<'a>> {
+pub(crate) fn closed_form<'a>(
+    arena: &'a Arena,
+    mechanism: &'a Mechanism,
+) -> Option<ClosedForm<'a>> {
     let motion = mechanism.platform.as_ref()?.motion;
     let mut free = [false; 3];
     for coordinate in motion.twist() {

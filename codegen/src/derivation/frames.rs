@@ -80,7 +80,7 @@ impl<'a> LegFrames<'a> {
 
     /// The vector from the origin of joint `index` to that of the last joint, along the links.
     #[must_use]
-    pub fn to_end(&self, arena: &'a Arena, leg: &Leg, index: usize) -> Vector3<'a> {
+    pub(crate) fn to_end(&self, arena: &'a Arena, leg: &Leg, index: usize) -> Vector3<'a> {
         let mut sum = Vector3::zero(arena);
         let mut at = leg.joints.len() - 1;
         while at != index {

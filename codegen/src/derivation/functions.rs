@@ -30,14 +30,14 @@ pub struct Derived<'a> {
 impl Derived<'_> {
     /// The columns that are not identically zero.
     #[must_use]
-    pub fn present_columns(&self) -> Vec<usize> {
+    pub(crate) fn present_columns(&self) -> Vec<usize> {
         let (rows, columns) = self.shape;
         let is_present = |&c: &usize| (0..rows).any(|r| !self.entries[r * columns + c].is_zero());
         (0..columns).filter(is_present).collect()
     }
 
     /// Leaves out all columns but some.
-    pub fn keep_columns(&mut self, kept: &[usize]) {
+    pub(crate) fn keep_columns(&mut self, kept: &[usize]) {
         let (rows, columns) = self.shape;
         let row = |r: usize| kept.iter().map(move |c| r * columns + c);
         let entries = (0..rows).flat_map(row).map(|at| self.entries[at]);

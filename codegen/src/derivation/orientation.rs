@@ -69,7 +69,7 @@ impl Orientation {
 
     /// The frames that can be met on the way from the base to a leg's frames, the base frame first.
     #[must_use]
-    pub fn stations(frames: &[Self]) -> Vec<Self> {
+    pub(crate) fn stations(frames: &[Self]) -> Vec<Self> {
         let mut stations: Vec<Self> = Vec::new();
         for frame in frames {
             for length in 0..=frame.0.len() {
@@ -113,7 +113,7 @@ impl Orientation {
 /// How many stations a leg has to choose axes from. Only the base, if the closure is of some components
 /// of the end's velocity or angular velocity alone: those are the base's.
 #[must_use]
-pub fn station_count(mechanism: &Mechanism, leg: usize) -> usize {
+pub(crate) fn station_count(mechanism: &Mechanism, leg: usize) -> usize {
     let rows = mechanism.closure_rows(leg);
     let whole = |part: usize| {
         let count = rows.iter().filter(|&&row| row / 3 == part).count();

@@ -118,7 +118,7 @@ impl<'a> PlatformPose<'a> {
 impl<'a> PlatformMotion<'a> {
     /// Velocity of the point at `arm` from the origin.
     #[must_use]
-    pub fn point_velocity(&self, arm: Vector3<'a>) -> Vector3<'a> {
+    pub(crate) fn point_velocity(&self, arm: Vector3<'a>) -> Vector3<'a> {
         self.velocity + self.angular_velocity.cross(arm)
     }
 
@@ -161,7 +161,7 @@ fn quaternion_rotation([w, x, y, z]: [Expr<'_>; 4]) -> Matrix3<'_> {
 
 /// Rz(rz) Ry(ry) Rx(rx) of constant angles.
 #[must_use]
-pub fn constant_rotation(arena: &Arena, rotation: [Angle; 3]) -> Matrix3<'_> {
+pub(crate) fn constant_rotation(arena: &Arena, rotation: [Angle; 3]) -> Matrix3<'_> {
     let about = |axis: usize| {
         let (cosine, sine) = rotation[axis].cosine_and_sine();
         Matrix3::rotation(axis, arena.number(cosine), arena.number(sine))

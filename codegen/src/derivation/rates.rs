@@ -72,7 +72,7 @@ impl Rates {
     /// Whether a joint has a rate of its own that turns or moves what is behind it and nothing else
     /// contributes to: no parallel run, no dependent joint.
     #[must_use]
-    pub fn is_alone(&self, joint: usize) -> bool {
+    pub(crate) fn is_alone(&self, joint: usize) -> bool {
         let Some(&own) = self.own(&[joint]).first() else {
             return false;
         };

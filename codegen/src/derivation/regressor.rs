@@ -60,7 +60,10 @@ impl<'a> Robot<'a> {
     ///
     /// # Errors
     /// Kept actuators that never determine the platform's motion.
-    pub fn project_on_actuators(&self, kept: &[usize]) -> Result<Projection<'a>, Underivable> {
+    pub(crate) fn project_on_actuators(
+        &self,
+        kept: &[usize],
+    ) -> Result<Projection<'a>, Underivable> {
         let all = self.inverse_jacobian();
         let kept_rows: Rows<'a> = kept.iter().map(|&i| all[i].clone()).collect();
         let home = |e: Expr<'a>| self.at_home(e);
@@ -129,7 +132,7 @@ impl<'a> Robot<'a> {
     /// A column from other columns. The platform's and each leg's parts are added up on their own, so
     /// that legs that meet in a platform point share theirs. `None` if a column is missing.
     #[must_use]
-    pub fn combined(
+    pub(crate) fn combined(
         &self,
         combination: &Combination,
         column_of: &dyn Fn(BodyParameter) -> Option<Vec<Expr<'a>>>,
@@ -210,7 +213,7 @@ impl<'a> Robot<'a> {
 
     /// Γ of all parameters at once, r numbers: body wrenches are added before they are projected.
     #[must_use]
-    pub fn generalised_forces(
+    pub(crate) fn generalised_forces(
         &self,
         motion: &RobotMotion<'a>,
         projection: &Projection<'a>,

@@ -140,7 +140,7 @@ impl<'a> Robot<'a> {
 
     /// The frames of a leg in the base's axes.
     #[must_use]
-    pub fn base_frames(&self, index: usize) -> Option<LegFrames<'a>> {
+    pub(crate) fn base_frames(&self, index: usize) -> Option<LegFrames<'a>> {
         let leg = &self.mechanism.legs[index];
         let first_joint = self.legs[index].first_joint;
         LegFrames::new(self.arena, leg, first_joint, &self.configuration, 0)
@@ -171,7 +171,7 @@ impl<'a> Robot<'a> {
 
     /// The value of an expression at the home configuration, with all rates set to small numbers.
     #[must_use]
-    pub fn at_home(&self, expr: Expr<'a>) -> f64 {
+    pub(crate) fn at_home(&self, expr: Expr<'a>) -> f64 {
         self.mechanism.home.value(self.arena, expr)
     }
 
@@ -257,7 +257,7 @@ impl<'a> Robot<'a> {
 
     /// ∂q̇_t/∂v, n_t x r.
     #[must_use]
-    pub fn joint_rows(&self) -> Rows<'a> {
+    pub(crate) fn joint_rows(&self) -> Rows<'a> {
         let mut rows = Vec::new();
         for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
             self.arena.enter(&leg.name);

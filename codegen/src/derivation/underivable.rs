@@ -39,7 +39,7 @@ impl From<InternalError> for Underivable {
 impl Underivable {
     /// The error at its place in the description.
     #[must_use]
-    pub fn locate(&self, description: &Description) -> Diagnostics {
+    pub(crate) fn locate(&self, description: &Description) -> Diagnostics {
         let place = |leg: &str| description.legs.iter().find(|l| l.name.value == leg);
         let diagnostic = match self {
             Self::InverseKinematics { leg } => {

@@ -69,12 +69,6 @@ impl Description {
     pub fn actuators(&self) -> Vec<(usize, usize)> {
         actuators(&self.legs)
     }
-
-    /// Whether parameter and actuator names do without the leg's: one leg and no platform.
-    #[must_use]
-    pub fn is_single_leg(&self) -> bool {
-        self.platform.is_none() && self.legs.len() == 1
-    }
 }
 
 /// A name as a Rust type.

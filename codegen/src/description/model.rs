@@ -127,14 +127,6 @@ pub struct Placement {
     pub rotation: [Angle; 3],
 }
 
-impl Placement {
-    /// No displacement.
-    pub const IDENTITY: Self = Self {
-        at: [Number::ZERO; 3],
-        rotation: [Angle::ZERO; 3],
-    };
-}
-
 /// A placed leg.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leg {
@@ -183,7 +175,7 @@ impl End {
     /// The components of the six-vector (position, orientation) in the base frame that the last frame
     /// shares with the platform.
     #[must_use]
-    pub fn shared_components(&self) -> Vec<usize> {
+    pub(crate) fn shared_components(&self) -> Vec<usize> {
         match self {
             Self::Rigid(_) => (0..6).collect(),
             Self::Point { along, .. } => (0..3).filter(|&axis| along[axis]).collect(),

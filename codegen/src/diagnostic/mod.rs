@@ -161,7 +161,7 @@ impl Diagnostic {
 
     /// With a way out, if there is one.
     #[must_use]
-    pub fn maybe_help(self, help: Option<String>) -> Self {
+    pub(crate) fn maybe_help(self, help: Option<String>) -> Self {
         Self {
             help: help.or(self.help),
             ..self
@@ -205,7 +205,7 @@ impl Diagnostics {
 
     /// Whether an error at exactly this place is known.
     #[must_use]
-    pub fn has_error_at(&self, span: &Span) -> bool {
+    pub(crate) fn has_error_at(&self, span: &Span) -> bool {
         self.list.iter().any(|d| d.span.as_ref() == Some(span))
     }
 

@@ -129,7 +129,7 @@ fn needs_joints(model: &RobotModel, function: &CompiledFunction) -> bool {
 
 /// `[f64; 3]` or `[[f64; 64]; 3]`.
 #[must_use]
-pub fn array_type(array: &Array) -> TokenStream {
+pub(crate) fn array_type(array: &Array) -> TokenStream {
     let length = |n: usize| Literal::usize_unsuffixed(n);
     match array.shape[..] {
         [rows, columns] => {

@@ -126,7 +126,7 @@ impl Labels {
 
     /// For every step of a program the name that its value has as an entry of the output.
     #[must_use]
-    pub fn of_outputs(&self, program: &Program) -> Vec<Option<String>> {
+    pub(crate) fn of_outputs(&self, program: &Program) -> Vec<Option<String>> {
         let mut names = vec![None; program.steps.len()];
         for (entry, label) in program.entries.iter().zip(&self.outputs) {
             if let crate::lowering::Operand::Step(at) = entry.operand

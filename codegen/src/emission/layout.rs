@@ -26,7 +26,7 @@ impl Sections {
 
 /// Writes the headings of sections into formatted code; functions stand in the order of `sections`.
 #[must_use]
-pub fn with_headings(code: &str, sections: &[Sections]) -> String {
+pub(crate) fn with_headings(code: &str, sections: &[Sections]) -> String {
     let mut out = String::with_capacity(code.len());
     let mut left = sections.iter();
     let mut starts = [].iter().peekable();
@@ -63,7 +63,7 @@ fn assigns(line: &str, name: &str) -> bool {
 
 /// Packs the elements of arrays that the pretty printer has put on lines of their own.
 #[must_use]
-pub fn pack_arrays(code: &str) -> String {
+pub(crate) fn pack_arrays(code: &str) -> String {
     let mut out = String::with_capacity(code.len());
     let mut inside = false;
     // The line that is being filled, and its indentation.

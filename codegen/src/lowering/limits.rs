@@ -41,7 +41,7 @@ pub struct SearchLimits {
 
 impl SearchLimits {
     /// No node is looked at.
-    pub const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         replaces: false,
         compares_regular_states: false,
         pair_rounds: 0,
@@ -54,7 +54,7 @@ impl SearchLimits {
     };
 
     /// Single replacements, one after the other.
-    pub const SINGLE_REPLACEMENTS: Self = Self {
+    pub(crate) const SINGLE_REPLACEMENTS: Self = Self {
         replaces: true,
         ..Self::NONE
     };
@@ -84,7 +84,7 @@ impl SearchLimits {
 
     /// The limits of a function that matters less: of these no more than single replacements.
     #[must_use]
-    pub const fn of_lesser_functions(self) -> Self {
+    pub(crate) const fn of_lesser_functions(self) -> Self {
         if self.replaces {
             Self::SINGLE_REPLACEMENTS
         } else {

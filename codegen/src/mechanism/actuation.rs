@@ -52,7 +52,7 @@ impl Mechanism {
     /// The rates of all joints per twist coordinate at the home configuration, n_t x r; `None` if a
     /// leg is not regular there.
     #[must_use]
-    pub fn rates_at_home(&self) -> Option<DMatrix<f64>> {
+    pub(crate) fn rates_at_home(&self) -> Option<DMatrix<f64>> {
         let Some(platform) = &self.platform else {
             return Some(DMatrix::identity(self.dof(), self.dof()));
         };
@@ -69,7 +69,7 @@ impl Mechanism {
     /// The first actuators that determine the platform's motion at home, well conditioned if there are
     /// such: r of them, or fewer if all together do not determine it.
     #[must_use]
-    pub fn independent_actuators(&self) -> Vec<usize> {
+    pub(crate) fn independent_actuators(&self) -> Vec<usize> {
         let Some(rates) = self.rates_at_home() else {
             return Vec::new();
         };

@@ -51,7 +51,7 @@ impl Home {
 
 /// Why a leg has no home configuration.
 #[derive(Debug, Clone, PartialEq)]
-pub enum HomeError {
+pub(crate) enum HomeError {
     /// Newton's iteration ends with this distance between leg end and platform (m, rad).
     Open {
         /// Index of the leg.
@@ -88,7 +88,7 @@ impl Home {
     ///
     /// # Errors
     /// Every leg that does not close, or is singular where it closes.
-    pub fn refine(mechanism: &Mechanism, rough: &Self) -> Result<Self, Vec<HomeError>> {
+    pub(crate) fn refine(mechanism: &Mechanism, rough: &Self) -> Result<Self, Vec<HomeError>> {
         let Some(platform) = &mechanism.platform else {
             let joints = || rough.joints.clone();
             return Ok(Self::new(mechanism, joints(), joints()));

@@ -64,7 +64,7 @@ impl Motion {
 
     /// Names of the twist coordinates.
     #[must_use]
-    pub fn twist_names(self) -> Vec<String> {
+    pub(crate) fn twist_names(self) -> Vec<String> {
         let name = |c: &TwistCoordinate| match c {
             TwistCoordinate::Linear(a) => format!("v_{}", AXES[*a]),
             TwistCoordinate::Angular(a) => format!("omega_{}", AXES[*a]),
@@ -74,7 +74,7 @@ impl Motion {
 
     /// The axis of the only rotation, for motions whose orientation is one angle `phi`.
     #[must_use]
-    pub const fn rotation_axis(self) -> Option<usize> {
+    pub(crate) const fn rotation_axis(self) -> Option<usize> {
         match self {
             Self::Rotation { axis } | Self::Planar { axis } | Self::Schoenflies { axis } => {
                 Some(axis)

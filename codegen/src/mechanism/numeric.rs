@@ -153,7 +153,7 @@ impl Leg {
     /// The components of the six-vector (position, orientation) that the leg's end shares with the
     /// platform.
     #[must_use]
-    pub fn shared_components(&self) -> Vec<usize> {
+    pub(crate) fn shared_components(&self) -> Vec<usize> {
         let end = self.end.as_ref();
         end.map_or_else(Vec::new, End::shared_components)
     }
@@ -174,7 +174,7 @@ impl Leg {
 
     /// The rows of [`Self::end_jacobian`] of the shared components.
     #[must_use]
-    pub fn closure_jacobian(&self, q: &[f64]) -> DMatrix<f64> {
+    pub(crate) fn closure_jacobian(&self, q: &[f64]) -> DMatrix<f64> {
         self.end_jacobian(q).select_rows(&self.shared_components())
     }
 }

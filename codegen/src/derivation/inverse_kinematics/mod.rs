@@ -104,7 +104,7 @@ impl<'a, 'm> Task<'a, 'm> {
 }
 
 /// Learns the leg's angles and slides from the pose. `None` if no rule fits the leg.
-pub fn solve_leg<'a>(
+pub(crate) fn solve_leg<'a>(
     task: Task<'a, '_>,
     configuration: &mut Configuration<'a>,
 ) -> Option<Vec<Reach<'a>>> {

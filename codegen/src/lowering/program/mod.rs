@@ -46,7 +46,7 @@ pub enum Operation {
 impl Operation {
     /// Whether the operation counts as one.
     #[must_use]
-    pub const fn is_counted(&self) -> bool {
+    pub(crate) const fn is_counted(&self) -> bool {
         matches!(
             self,
             Self::Add(..) | Self::Sub(..) | Self::Mul(..) | Self::Div(..)

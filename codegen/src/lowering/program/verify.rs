@@ -9,7 +9,7 @@ impl Program {
     ///
     /// # Errors
     /// The first invariant that is broken, in words.
-    pub fn verify(&self) -> Result<(), String> {
+    pub(crate) fn verify(&self) -> Result<(), String> {
         self.verify_shapes()?;
         for (at, step) in self.steps.iter().enumerate() {
             for operand in step.operation.operands() {
