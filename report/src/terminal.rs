@@ -174,6 +174,7 @@ pub fn estimate(estimate: &Estimate) -> String {
     };
     let how = match estimate.estimator {
         Estimator::LeastSquares => "",
+        Estimator::OrdinaryLeastSquares => ", by ordinary least squares",
         Estimator::InstrumentalVariables => ", by instruments",
     };
     let mut text = String::new();

@@ -1,7 +1,7 @@
 //! The measured TX40: its two files as its controller wrote them, with a wrist whose sixth motor turns two
 //! joints.
 
-use overact_identification::{Estimate, Removal, Stage};
+use overact_identification::{Estimate, Estimator, Removal, Stage};
 use overact_robot::{Identifier, Robot};
 use overact_tier::is_full;
 use std::path::{Path, PathBuf};
@@ -64,6 +64,18 @@ fn errors_are_those_that_were_published() {
         assert_eq!(base.parameters.len(), count);
         let error = base.relative_error_percent;
         assert!((error - published).abs() < 0.1, "{error} {published}");
+        // Ordinary least squares stand beside weighted ones in one result.
+        let ordinary = estimates
+            .iter()
+            .find(|one| one.estimator == Estimator::OrdinaryLeastSquares);
+        assert_eq!(ordinary.is_some(), weighted);
+        if let Some(ordinary) = ordinary {
+            let error = ordinary.relative_error_percent;
+            assert!(
+                !ordinary.weighted && (error - errors[0]).abs() < 0.1,
+                "{error}"
+            );
+        }
         // Joint 6 has little friction of its own: nearly all of it is the motor's, at the sum of both rates.
         let value = |name: &str| {
             let mut all = base.parameters.iter();

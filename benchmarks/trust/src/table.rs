@@ -23,6 +23,7 @@ pub fn markdown(cells: &[Cell]) -> String {
             cell.stage.name(),
             match cell.estimator {
                 Estimator::LeastSquares => "least squares",
+                Estimator::OrdinaryLeastSquares => "ordinary least squares",
                 Estimator::InstrumentalVariables => "instruments",
             },
             cell.noise.torque,

@@ -41,6 +41,8 @@ pub struct Outcome {
     pub recommended: Estimate,
     /// The essential parameters.
     pub essential: Estimate,
+    /// All base parameters by ordinary least squares, where the others are by weighted ones.
+    pub ordinary: Option<Estimate>,
     /// All base parameters by instruments, where there are some.
     pub instrumental: Option<Estimate>,
     /// Whether errors of the regressor spoil the estimates.
@@ -85,6 +87,7 @@ pub fn estimate_projection(
     let (instrumental, errors_in_regressor) =
         context.with_instruments((&selected, &names), &base, settings);
     Ok(Outcome {
+        ordinary: context.by_ordinary((&selected, &names), settings)?,
         instrumental,
         errors_in_regressor,
         base: context.estimate(
@@ -184,6 +187,35 @@ impl Context<'_> {
             removals,
             stop,
         }
+    }
+
+    /// The base parameters by ordinary least squares, where the settings ask for weighted ones and there is more
+    /// than one line to weight.
+    fn by_ordinary(
+        &self,
+        (selected, names): (&[usize], &[String]),
+        settings: &Settings,
+    ) -> Result<Option<Estimate>, Error> {
+        if !settings.weighted || self.system.lines.len() < 2 {
+            return Ok(None);
+        }
+        let settings = Settings {
+            weighted: false,
+            ..settings.clone()
+        };
+        let estimation = estimate(self.system, selected, &settings)?;
+        let intervals = Intervals::new(self.system, selected, &estimation);
+        let white = estimation.standard_deviations.iter();
+        let pairs = white.zip(intervals.deviations());
+        let correlated: Vec<f64> = pairs.map(|(white, own)| white.max(own)).collect();
+        let parameters = self.parameters((&estimation, &intervals), &correlated, (selected, names));
+        let way = (Vec::new(), None);
+        Ok(Some(Estimate {
+            estimator: Estimator::OrdinaryLeastSquares,
+            weighted: false,
+            parameters,
+            ..self.estimate(Stage::Base, (estimation, None), selected, names, way)
+        }))
     }
 
     /// The estimate by instruments, where there are some, and what it says of that by least squares.

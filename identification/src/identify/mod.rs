@@ -64,7 +64,7 @@ pub fn identify(
     let prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
     let mut warnings = prepared_warnings(&prepared, dataset.validation);
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
-    let (errors_in_regressor, instrumental) = regressor_errors(&outcomes);
+    let (errors_in_regressor, others) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
     let consistent = consistent_all(&prepared, &estimates, &settings.prior, &mut warnings);
     let least_squares = estimates.iter().map(Predictor::of_estimate);
@@ -130,7 +130,7 @@ pub fn identify(
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,
-        estimates: estimates.into_iter().chain(instrumental).collect(),
+        estimates: estimates.into_iter().chain(others).collect(),
         consistent: consistent.into_iter().map(|(_, own)| own).collect(),
         cross_validation,
         errors_in_regressor,
@@ -153,14 +153,14 @@ fn reaches(watched: &[Watched]) -> Vec<Reach> {
     united.unwrap_or_default()
 }
 
-/// What is known of errors in the regressors, and the estimates by instruments.
+/// What is known of errors in the regressors, and the estimates by other means than those that are judged.
 fn regressor_errors(
     outcomes: &[Result<Outcome, Error>],
 ) -> (Vec<ErrorsInRegressor>, Vec<Estimate>) {
     let own = || outcomes.iter().filter_map(|outcome| outcome.as_ref().ok());
     let told = own().map(|outcome| outcome.errors_in_regressor.clone());
-    let estimates = own().filter_map(|outcome| outcome.instrumental.clone());
-    (told.collect(), estimates.collect())
+    let others = own().flat_map(|one| one.ordinary.iter().chain(&one.instrumental));
+    (told.collect(), others.cloned().collect())
 }
 
 /// The estimates, each with the number of its projection. A projection on kept actuators that fails is

@@ -12,8 +12,11 @@ use crate::{
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Estimator {
-    /// By ordinary or weighted least squares.
+    /// By ordinary or weighted least squares, as the settings ask for.
     LeastSquares,
+    /// By ordinary least squares, beside weighted ones: where the two differ by more than their deviations, the
+    /// model does not explain all lines equally well.
+    OrdinaryLeastSquares,
     /// By instrumental variables.
     InstrumentalVariables,
 }
