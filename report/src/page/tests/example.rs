@@ -286,6 +286,8 @@ pub(super) fn identification() -> Identification {
         warnings: vec![format!("beware of {HOSTILE}"), String::from("clipped")],
         checks: checks(),
         calibration: None,
+        gains: Vec::new(),
+        gain_parameters: Vec::new(),
         assumptions: vec![String::from("the gains are right")],
         verdicts: vec![
             verdict(ModelKind::Platform, Grade::UseListed, &["m_platformR"]),
