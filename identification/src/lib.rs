@@ -78,7 +78,7 @@ pub use identify::{
 pub use kinematics::{Motion, Motions, motion};
 pub use prior::Prior;
 pub use regression::{
-    columns::{Column, ColumnSet, Direction},
+    columns::{Column, ColumnSet, Direction, is_carried},
     factor::Factor,
     projection::{ModelKind, Projection},
     system::{Part, PartitionCondition, Stretch, System},

@@ -1,8 +1,9 @@
-//! What the identification of drive gains needs: values that are known exactly, and drives with a signal each.
+//! What the identification of drive gains needs: values that are known exactly, drives with a signal each, and
+//! payloads of robots without platform.
 
 use super::experiment::parameters;
 use super::inventory::Inventory;
-use super::model::Leg;
+use super::model::{JointKind, Leg};
 use super::reader::Item;
 use crate::diagnostic::Diagnostic;
 use overact_core::StandardParameter;
@@ -17,6 +18,14 @@ impl Leg {
     pub fn has_coupled_motors(&self) -> bool {
         let mut joints = self.joints.iter();
         joints.any(|joint| joint.motor.is_some() && joint.variable.len() > 1)
+    }
+
+    /// Whether a body of the leg is the payload of a robot without platform: a fixed joint with the name
+    /// `payload`.
+    #[must_use]
+    pub fn carries_payload(&self) -> bool {
+        let mut joints = self.joints.iter();
+        joints.any(|joint| joint.kind.value == JointKind::Fixed && joint.name.value == "payload")
     }
 }
 

@@ -18,7 +18,7 @@ use crate::{
     data::Log,
     error::{Error, Problem},
     regression::{
-        columns::{Column, ColumnSet, Direction},
+        columns::{Column, ColumnSet, Direction, has_payload},
         elimination::{Elimination, eliminate},
         states::{States, random_states},
     },
@@ -50,7 +50,7 @@ impl PayloadUse {
                 .into());
         }
         let loaded = || runs.iter().filter(|log| log.payload());
-        if info.payload_parameters.is_empty() {
+        if !has_payload(info) {
             let problem = |log: &Log| {
                 Problem::new(format!(
                     "the run carries a payload, but the description of `{}` has none",

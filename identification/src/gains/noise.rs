@@ -80,7 +80,7 @@ impl Noise {
 fn covariance(equations: &Equations, selection: &Selection, values: &[f64]) -> DMatrix<f64> {
     let lines = &equations.system.lines;
     let r = lines.len();
-    let mut products = DMatrix::zeros(r, r);
+    let mut products: DMatrix<f64> = DMatrix::zeros(r, r);
     for stretch in &equations.system.stretches {
         let residuals: Vec<DVector<f64>> = stretch
             .lines

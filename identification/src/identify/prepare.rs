@@ -8,7 +8,7 @@ use crate::{
     assessment,
     consistent::{Consistent, consistent, problems},
     data::Log,
-    error::{Error, Problem},
+    error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
     kinematics,
     prior::Prior,
