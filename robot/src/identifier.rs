@@ -190,7 +190,8 @@ impl<'a> Identifier<'a> {
         let mut legs = self.robot.description().legs.iter();
         if legs.any(Leg::has_coupled_motors) {
             let problem = Problem::new(COUPLED_MOTORS).file(self.robot.file());
-            let help = "identify without gains; a gain of a motor scales its `torque_gain` in [data]";
+            let help =
+                "identify without gains; a gain of a motor scales its `torque_gain` in [data]";
             return Err(problem.help(help).into());
         }
         let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });

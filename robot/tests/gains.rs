@@ -1,6 +1,5 @@
 //! Gains of drives found from virtual experiments in which the mass of a payload is known.
 
-use overact::Model;
 use overact_identification::{Gains, Log, Settings, Stage, drive_gains};
 use overact_robot::{Identifier, Robot, Runs};
 use overact_tier::by_tier;
@@ -98,39 +97,69 @@ fn a_dualv_tells_its_gains_and_masses_by_a_payload_that_was_weighed() {
     let exact = exact(&robot, by_tier([2.0, 10.0]));
     let truth = exact.true_values.clone().expect("true values");
     for seed in 1..=by_tier([1, 5]) {
-        let runs = logged(&exact.identified, &WRONG, &[0.1; 4], seed);
-        let held = logged(&exact.validation, &WRONG, &[0.1; 4], seed + 100);
-        let result = Identifier::new(&robot).runs(&runs).validation(&held).run();
+        let runs = Runs {
+            identified: logged(&exact.identified, &WRONG, &[0.5; 4], seed),
+            validation: logged(&exact.validation, &WRONG, &[0.5; 4], seed + 100),
+            true_values: exact.true_values.clone(),
+        };
+        let result = Identifier::new(&robot).data(&runs).run();
         let result = result.expect("an identification");
         for (own, truth) in result.gains.iter().zip(WRONG) {
             let miss = (own.factor - truth) / own.deviation;
-            println!("{}: {} ± {}, {truth}, by TLS {:?}", own.actuator, own.factor, own.deviation, own.total_least_squares);
+            println!(
+                "{}: {} ± {}, {truth}, by TLS {:?}",
+                own.actuator, own.factor, own.deviation, own.total_least_squares
+            );
             assert!(miss.abs() < 3.0, "{own:?}, {truth}");
             assert!(own.deviation < 0.03 * truth, "{own:?}");
         }
         let joint = |name: &str| {
             let mut all = result.gain_parameters.iter();
-            all.find(|one| one.name.trim_end_matches('R') == name).expect(name)
+            all.find(|one| one.name.trim_end_matches('R') == name)
+                .expect(name)
         };
         let base: BTreeMap<&str, Option<f64>> = result
             .base_parameters
             .iter()
             .map(|one| (one.name.as_str(), one.true_value))
             .collect();
-        for name in ["m_platform", "zz_payload", "mx_payload", "zz_1_leg1", "zz_1_leg4"] {
+        for name in [
+            "m_platform",
+            "zz_payload",
+            "mx_payload",
+            "zz_1_leg1",
+            "zz_1_leg4",
+        ] {
             let own = joint(name);
             let truth = base[own.name.as_str()].expect("a true value");
             println!("{}: {} ± {}, {truth}", own.name, own.value, own.deviation);
-            assert!(((own.value - truth) / own.deviation).abs() < 3.0, "{own:?}, {truth}");
+            assert!(
+                ((own.value - truth) / own.deviation).abs() < 3.0,
+                "{own:?}, {truth}"
+            );
         }
         // The estimates with the torques that the gains give have the masses as well.
-        let all = result.by_least_squares().find(|one| one.stage == Stage::Base);
+        let all = result
+            .by_least_squares()
+            .find(|one| one.stage == Stage::Base);
         let all = &all.expect("an estimate").parameters;
-        let mass = all.iter().find(|one| one.name == "m_payload").expect("the mass");
-        assert!((mass.value / truth["m_payload"] - 1.0).abs() < 0.02, "{mass:?}");
-        let warned = result.warnings.iter().filter(|one| one.contains("torque_gain"));
+        let mass = all
+            .iter()
+            .find(|one| one.name == "m_payload")
+            .expect("the mass");
+        assert!(
+            (mass.value / truth["m_payload"] - 1.0).abs() < 0.02,
+            "{mass:?}"
+        );
+        let warned = result
+            .warnings
+            .iter()
+            .filter(|one| one.contains("torque_gain"));
         assert_eq!(warned.count(), 4, "{:?}", result.warnings);
-        let worst = result.cross_validation.iter().map(|one| one.relative_error_percent);
+        let worst = result
+            .cross_validation
+            .iter()
+            .map(|one| one.relative_error_percent);
         assert!(worst.fold(0.0, f64::max) < 20.0, "{:?}", result.warnings);
     }
 }
@@ -158,9 +187,15 @@ fn deviations_of_gains_are_honest() {
     let count = draws as f64;
     let sizes = squares.map(|sum: f64| (sum / count).sqrt());
     let means = sums.map(|sum| sum / count);
-    println!("errors in deviations {sizes:?}, their means {means:?}, plain total least squares by the truth {:?}", plain.map(|sum| sum / count));
+    println!(
+        "errors in deviations {sizes:?}, their means {means:?}, plain total least squares by the truth {:?}",
+        plain.map(|sum| sum / count)
+    );
     let [least, largest] = by_tier([[0.3, 2.0], [0.8, 1.2]]);
-    assert!(sizes.iter().all(|size| (least..largest).contains(size)), "{sizes:?}");
+    assert!(
+        sizes.iter().all(|size| (least..largest).contains(size)),
+        "{sizes:?}"
+    );
     let bias = 4.0 / count.sqrt();
     assert!(means.iter().all(|mean| mean.abs() < bias), "{means:?}");
 }
@@ -172,19 +207,29 @@ fn rx90(known: &str) -> String {
     let values = "[experiment.parameters]\nm_payload = 5\nmx_payload = 0.25\nmy_payload = -0.1\nmz_payload = 0.9\n\
                   xx_payload = 0.18\nyy_payload = 0.2\nzz_payload = 0.03\n";
     let start = text.find("[[experiment.run]]").expect("a run");
-    let end = start + 1 + text[start + 1..].find("[[experiment.run]]").expect("two runs");
+    let end = start
+        + 1
+        + text[start + 1..]
+            .find("[[experiment.run]]")
+            .expect("two runs");
     let loaded = text[start..end].replace("\"identification\"", "\"loaded\"\npayload = true");
     let text = text
         .replacen("[[place]]", payload, 1)
         .replacen("[experiment.parameters]\n", values, 1)
-        .replacen("decimation = 10", &format!("decimation = 10\ngains = true\n{known}"), 1);
+        .replacen(
+            "decimation = 10",
+            &format!("decimation = 10\ngains = true\n{known}"),
+            1,
+        );
     text + "\n" + &loaded
 }
 
 #[test]
 fn a_serial_robot_tells_its_gains_by_a_payload_on_its_last_body() {
     let wrong = [0.88, 1.2, 0.75, 1.33, 1.15, 0.8];
-    let robot = robot(&rx90("known = { m_payload = 5, mx_payload = 0.25, my_payload = -0.1, mz_payload = 0.9 }"));
+    let robot = robot(&rx90(
+        "known = { m_payload = 5, mx_payload = 0.25, my_payload = -0.1, mz_payload = 0.9 }",
+    ));
     let exact = exact(&robot, by_tier([5.0, 20.0]));
     let all = [exact.identified, exact.validation].concat();
     let settings = robot.settings(1000.0);
@@ -192,10 +237,16 @@ fn a_serial_robot_tells_its_gains_by_a_payload_on_its_last_body() {
         let runs = logged(&all, &wrong, &[1.0, 1.0, 0.5, 0.2, 0.2, 0.1], seed);
         let found = found(&robot, &runs, &settings);
         for (own, truth) in found.drives.iter().zip(wrong) {
-            println!("{}: {} ± {}, {truth}, by TLS {:?}", own.actuator, own.factor, own.deviation, own.total_least_squares);
+            println!(
+                "{}: {} ± {}, {truth}, by TLS {:?}",
+                own.actuator, own.factor, own.deviation, own.total_least_squares
+            );
             assert!(own.deviation < 0.1 * truth, "{own:?}");
         }
-        assert!(misses(&found, &wrong).iter().all(|miss| miss.abs() < 3.5), "{found:?}");
+        assert!(
+            misses(&found, &wrong).iter().all(|miss| miss.abs() < 3.5),
+            "{found:?}"
+        );
     }
 }
 
@@ -208,13 +259,22 @@ fn gains_that_nothing_fixes_are_refused_and_why() {
     let payload = robot(&dualv(KNOWN));
     let (loaded, unloaded): (Vec<Log>, Vec<Log>) = runs.iter().cloned().partition(Log::payload);
     let told = refused(&payload, &unloaded);
-    assert!(told.contains("`m_payload` is known, but no run carries the payload"), "{told}");
+    assert!(
+        told.contains("`m_payload` is known, but no run carries the payload"),
+        "{told}"
+    );
     let told = refused(&payload, &loaded);
-    assert!(told.contains("combination of those of `m_platform`, which are not"), "{told}");
+    assert!(
+        told.contains("combination of those of `m_platform`, which are not"),
+        "{told}"
+    );
     assert!(told.contains("record some without it"), "{told}");
     let regrouped = robot(&dualv("known = { m_2_leg1 = 1 }"));
     let told = refused(&regrouped, &runs);
-    assert!(told.contains("`m_2_leg1` is known, but its column is a combination"), "{told}");
+    assert!(
+        told.contains("`m_2_leg1` is known, but its column is a combination"),
+        "{told}"
+    );
     let zero = robot(&dualv("known = { mx_payload = 0 }"));
     let told = refused(&zero, &runs);
     assert!(told.contains("`mx_payload` is known to be zero"), "{told}");

@@ -12,9 +12,7 @@ use crate::{
 };
 use clap::ValueEnum;
 use overact::Model;
-use overact_identification::{
-    CalibrationScope, Grade, Identification, Progress as Doing,
-};
+use overact_identification::{CalibrationScope, Grade, Identification, Progress as Doing};
 use overact_robot::{Identifier, Robot, tracking};
 use std::path::PathBuf;
 

@@ -242,9 +242,7 @@ fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
     };
     if let (Some(item), true, false) = (&payload_item, payload, has_payload) {
         let error = item.error("the robot has no payload");
-        table
-            .context
-            .report(error.help(help_payload(robot)));
+        table.context.report(error.help(help_payload(robot)));
     }
     let validation = table
         .get("validation")

@@ -41,11 +41,17 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, f
         };
         match one.symbol {
             P::Fv | P::Fs | P::Off => report(
-                format!("friction and offsets are not known exactly, `{}` is one", one.name.value),
+                format!(
+                    "friction and offsets are not known exactly, `{}` is one",
+                    one.name.value
+                ),
                 "give masses, first moments, inertias or springs; friction is identified",
             ),
             P::M | P::Xx | P::Yy | P::Zz | P::Ia if one.value <= 0.0 => report(
-                format!("masses and moments of inertia are positive, but `{}` is not", one.name.value),
+                format!(
+                    "masses and moments of inertia are positive, but `{}` is not",
+                    one.name.value
+                ),
                 "leave out what is not known",
             ),
             _ => known.push((one.name.value.clone(), one.value)),

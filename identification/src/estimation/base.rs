@@ -159,6 +159,9 @@ pub fn base_parameters(
     Ok(base)
 }
 
+/// The columns of which another one is a combination; none where it is independent of all.
+pub(crate) type Combination = Option<Vec<usize>>;
+
 /// Finds the base parameters of the columns that are not among `known`, and of each known one the columns
 /// of which its own is a combination: none where it lies outside of their span, so that data tell its
 /// contribution from theirs.
@@ -170,7 +173,7 @@ pub(crate) fn base_parameters_beside(
     (columns, payload): (&ColumnSet, PayloadUse),
     known: &[usize],
     seed: u64,
-) -> Result<(BaseParameters, Vec<Option<Vec<usize>>>), Error> {
+) -> Result<(BaseParameters, Vec<Combination>), Error> {
     let regressor = random_regressor(model, columns, seed)?;
     let mut base = BaseParameters::default();
     let mut combinations = vec![Some(Vec::new()); known.len()];

@@ -49,7 +49,9 @@ pub(super) fn deviations(
         lambda[(own + j, own + j)] = *value;
     }
     let half = solution.triangle.tr_solve_upper_triangular(&lambda)?;
-    let whole = solution.triangle.tr_solve_upper_triangular(&half.transpose())?;
+    let whole = solution
+        .triangle
+        .tr_solve_upper_triangular(&half.transpose())?;
     let derivative = DMatrix::identity(size, size) - 0.5 * (&whole + whole.transpose());
     let moved = derivative.cholesky()?.solve(&whitened);
     let errors = solution.triangle.solve_upper_triangular(&moved)?;

@@ -10,7 +10,7 @@ use overact::Model;
 use crate::{
     data::Log,
     error::{Error, Problem, suggestion},
-    estimation::base::{BaseParameters, PayloadUse, base_parameters_beside},
+    estimation::base::{BaseParameters, Combination, PayloadUse, base_parameters_beside},
     regression::columns::ColumnSet,
     settings::Settings,
 };
@@ -19,8 +19,7 @@ use crate::{
 const NAMES: usize = 5;
 
 /// A way out that any robot has.
-const WEIGHED: &str =
-    "weigh a payload, give its mass in [identification.known] and record runs with it and without it";
+const WEIGHED: &str = "weigh a payload, give its mass in [identification.known] and record runs with it and without it";
 
 /// The columns of a model, split into those of known and of unknown parameters.
 #[derive(Debug)]
@@ -59,7 +58,7 @@ impl Split {
             .zip(&combinations)
             .any(|((_, value), others)| *value != 0.0 && others.is_none());
         if !fixes {
-            let problem = |((column, value), others): (&(usize, f64), &Option<Vec<usize>>)| {
+            let problem = |((column, value), others): (&(usize, f64), &Combination)| {
                 scaleless(&columns, payload, (*column, *value), others.as_deref())
             };
             let problems = known.iter().zip(&combinations).map(problem).collect();

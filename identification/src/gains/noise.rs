@@ -99,7 +99,11 @@ fn covariance(equations: &Equations, selection: &Selection, values: &[f64]) -> D
     let variances: Vec<f64> = lines.iter().map(variance).collect();
     DMatrix::from_fn(r, r, |i, l| {
         let scale = (products[(i, i)] * products[(l, l)]).sqrt();
-        let correlation = if scale > 0.0 { products[(i, l)] / scale } else { 0.0 };
+        let correlation = if scale > 0.0 {
+            products[(i, l)] / scale
+        } else {
+            0.0
+        };
         correlation * (variances[i] * variances[l]).sqrt()
     })
 }
@@ -123,7 +127,11 @@ fn not_negative(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
         let before = x.clone();
         for j in 0..n {
             let rest = target[j] - normal.row(j).tr_dot(&x) + normal[(j, j)] * x[j];
-            x[j] = if normal[(j, j)] > 0.0 { (rest / normal[(j, j)]).max(0.0) } else { 0.0 };
+            x[j] = if normal[(j, j)] > 0.0 {
+                (rest / normal[(j, j)]).max(0.0)
+            } else {
+                0.0
+            };
         }
         if (&x - before).amax() <= 1e-12 * x.amax() {
             break;

@@ -98,7 +98,11 @@ fn size(line: &Factor) -> f64 {
 pub(super) fn undetermined(actuators: &[String]) -> Error {
     let message = format!(
         "gains are not determined: the data do not tell {} of {}",
-        if actuators.len() == 1 { "that" } else { "those" },
+        if actuators.len() == 1 {
+            "that"
+        } else {
+            "those"
+        },
         actuators.join(", ")
     );
     Problem::new(message)
@@ -196,7 +200,13 @@ fn with_noise(
 fn change(before: &[f64], after: &[f64]) -> f64 {
     let each = before.iter().zip(after);
     each.map(|(a, b)| ((b - a) / b).abs())
-        .fold(0.0, |largest, one| if one > largest || one.is_nan() { one } else { largest })
+        .fold(0.0, |largest, one| {
+            if one > largest || one.is_nan() {
+                one
+            } else {
+                largest
+            }
+        })
 }
 
 /// The solution for given variances of the lines and Λ.
@@ -250,7 +260,8 @@ pub(super) fn total_least_squares(
     let reduced = Factor::reduced_together(lines, &weights, &selection.columns);
     let size = selection.columns.len();
     let mut all = DMatrix::zeros(size + 1, size + 1);
-    all.view_mut((0, 0), (size, size)).copy_from(&reduced.triangle);
+    all.view_mut((0, 0), (size, size))
+        .copy_from(&reduced.triangle);
     all.view_mut((0, size), (size, 1)).copy_from(&reduced.rhs);
     all[(size, size)] = reduced.residual_norm;
     let decomposition = all.svd(false, true);
@@ -258,6 +269,8 @@ pub(super) fn total_least_squares(
     let vectors = decomposition.v_t?;
     let vector = vectors.row(smallest);
     let scale = -1.0 / vector[size];
-    let gains: Vec<f64> = (selection.parameters()..size).map(|j| vector[j] * scale).collect();
+    let gains: Vec<f64> = (selection.parameters()..size)
+        .map(|j| vector[j] * scale)
+        .collect();
     gains.iter().all(|gain| gain.is_finite()).then_some(gains)
 }

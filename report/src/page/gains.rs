@@ -27,7 +27,11 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
 
 /// What was done, in words.
 fn introduction(settings: &Settings) -> String {
-    let known: Vec<String> = settings.known.keys().map(|name| format!("`{name}`")).collect();
+    let known: Vec<String> = settings
+        .known
+        .keys()
+        .map(|name| format!("`{name}`"))
+        .collect();
     paragraph(&format!(
         "What torque each drive gives was identified together with the parameters, relative to what is known: {}.",
         known.join(", ")
@@ -42,7 +46,11 @@ fn drives(gains: &[DriveGain]) -> String {
             Cell::digits(Some(one.factor), 5),
             Cell::digits(Some(one.deviation), 2),
             Cell::digits(one.total_least_squares, 5),
-            Cell::text(if one.is_wrong() { "not as described" } else { "" }),
+            Cell::text(if one.is_wrong() {
+                "not as described"
+            } else {
+                ""
+            }),
         ]
     });
     let right = |title: &str| Cell::text(title).class("n");
@@ -58,7 +66,9 @@ fn drives(gains: &[DriveGain]) -> String {
         rows: rows.collect(),
     };
     table.html()
-        + &note("All torques on this page are multiplied by these gains. Total least squares take all columns for equally wrong and stand for comparison.")
+        + &note(
+            "All torques on this page are multiplied by these gains. Total least squares take all columns for equally wrong and stand for comparison.",
+        )
 }
 
 /// The table of what was estimated with the gains.
@@ -83,5 +93,7 @@ fn parameters(parameters: &[JointParameter]) -> String {
         rows: rows.collect(),
     };
     table.html()
-        + &note("These deviations have a part that is the gains\u{2019}; intervals elsewhere on this page hold for the gains as found.")
+        + &note(
+            "These deviations have a part that is the gains\u{2019}; intervals elsewhere on this page hold for the gains as found.",
+        )
 }

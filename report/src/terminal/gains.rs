@@ -14,7 +14,11 @@ pub(crate) fn gains(gains: &[DriveGain]) -> String {
             one.actuator.clone(),
             significant(one.factor, 5),
             significant(one.deviation, 2),
-            String::from(if one.is_wrong() { "not as described" } else { "" }),
+            String::from(if one.is_wrong() {
+                "not as described"
+            } else {
+                ""
+            }),
         ]
     });
     let header = ["drive", "gain by the described", "deviation", ""];
@@ -39,9 +43,15 @@ mod tests {
         };
         let text = gains(&[gain("leg1", 1.2034), gain("leg2", 1.001)]);
         let line = |name: &str| text.lines().find(|line| line.contains(name)).unwrap_or("");
-        assert!(line("leg1").contains("1.2034") && line("leg1").contains("0.0031"), "{text}");
+        assert!(
+            line("leg1").contains("1.2034") && line("leg1").contains("0.0031"),
+            "{text}"
+        );
         assert!(line("leg1").contains("not as described"), "{text}");
-        assert!(line("leg2").contains("1.001") && !line("leg2").contains("not"), "{text}");
+        assert!(
+            line("leg2").contains("1.001") && !line("leg2").contains("not"),
+            "{text}"
+        );
         assert_eq!(gains(&[]), "");
     }
 }

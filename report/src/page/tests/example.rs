@@ -210,6 +210,7 @@ pub(super) fn settings() -> Settings {
         instruments: Instruments::None,
         period_s: None,
         prior: Prior::default(),
+        known: std::collections::BTreeMap::new(),
         filter_torques: false,
         validation_samples: None,
         kept_actuators: vec![0],
