@@ -14,13 +14,22 @@ fn robot(text: &str) -> Robot {
     Robot::from_text("robot.toml", text).expect("a robot")
 }
 
-/// A DualV that is sampled less often than the one of the paper.
+/// The DualV with these settings.
 fn dualv(identification: &str) -> String {
-    let lines = "[identification]\nfilter_cutoff = \"100 Hz\"\ndecimation = 10";
-    let text = text("dualv.toml").replace("sampling = \"5 kHz\"", "sampling = \"1 kHz\"");
-    let old = "[identification]\nfilter_cutoff = \"100 Hz\"\ndecimation = 50";
-    assert!(text.contains(old));
-    text.replace(old, &format!("{lines}\n{identification}"))
+    let text = text("dualv.toml");
+    assert_eq!(text.matches("[identification]\n").count(), 1);
+    text.replace(
+        "[identification]\n",
+        &format!("[identification]\n{identification}\n"),
+    )
+}
+
+/// The DualV, sampled less often than that of the paper.
+fn coarse(identification: &str) -> String {
+    let text = dualv(identification).replace("sampling = \"5 kHz\"", "sampling = \"1 kHz\"");
+    let coarse = text.replace("decimation = 50", "decimation = 10");
+    assert_ne!(coarse, text);
+    coarse
 }
 
 const KNOWN: &str = "gains = true\nknown = { m_payload = \"5.42 kg\" }";
@@ -93,10 +102,10 @@ fn refused(robot: &Robot, runs: &[Log]) -> String {
 
 #[test]
 fn a_dualv_tells_its_gains_and_masses_by_a_payload_that_was_weighed() {
-    let robot = robot(&dualv(KNOWN));
-    let exact = exact(&robot, by_tier([2.0, 10.0]));
+    let robot = robot(&by_tier([coarse(KNOWN), dualv(KNOWN)]));
+    let exact = exact(&robot, by_tier([1.0, 4.0]));
     let truth = exact.true_values.clone().expect("true values");
-    for seed in 1..=by_tier([1, 5]) {
+    for seed in 1..=by_tier([1, 3]) {
         let runs = Runs {
             identified: logged(&exact.identified, &WRONG, &[0.5; 4], seed),
             validation: logged(&exact.validation, &WRONG, &[0.5; 4], seed + 100),
@@ -111,7 +120,7 @@ fn a_dualv_tells_its_gains_and_masses_by_a_payload_that_was_weighed() {
                 own.actuator, own.factor, own.deviation, own.total_least_squares
             );
             assert!(miss.abs() < 3.0, "{own:?}, {truth}");
-            assert!(own.deviation < 0.03 * truth, "{own:?}");
+            assert!(own.deviation < 0.05 * truth, "{own:?}");
         }
         let joint = |name: &str| {
             let mut all = result.gain_parameters.iter();
@@ -168,10 +177,10 @@ fn a_dualv_tells_its_gains_and_masses_by_a_payload_that_was_weighed() {
 /// differs and is large.
 #[test]
 fn deviations_of_gains_are_honest() {
-    let robot = robot(&dualv(KNOWN));
-    let exact = exact(&robot, by_tier([2.0, 4.0]));
+    let robot = robot(&coarse(KNOWN));
+    let exact = exact(&robot, by_tier([1.0, 4.0]));
     let settings = robot.settings(1000.0);
-    let draws = by_tier([6, 300]);
+    let draws = by_tier([4, 300]);
     let noise = [0.5, 1.0, 2.0, 1.0];
     let (mut squares, mut sums) = ([0.0; 4], [0.0; 4]);
     let mut plain = [0.0; 4];
@@ -191,7 +200,7 @@ fn deviations_of_gains_are_honest() {
         "errors in deviations {sizes:?}, their means {means:?}, plain total least squares by the truth {:?}",
         plain.map(|sum| sum / count)
     );
-    let [least, largest] = by_tier([[0.3, 2.0], [0.8, 1.2]]);
+    let [least, largest] = by_tier([[0.2, 2.5], [0.8, 1.2]]);
     assert!(
         sizes.iter().all(|size| (least..largest).contains(size)),
         "{sizes:?}"
@@ -230,7 +239,7 @@ fn a_serial_robot_tells_its_gains_by_a_payload_on_its_last_body() {
     let robot = robot(&rx90(
         "known = { m_payload = 5, mx_payload = 0.25, my_payload = -0.1, mz_payload = 0.9 }",
     ));
-    let exact = exact(&robot, by_tier([5.0, 20.0]));
+    let exact = exact(&robot, by_tier([2.5, 20.0]));
     let all = [exact.identified, exact.validation].concat();
     let settings = robot.settings(1000.0);
     for seed in 1..=by_tier([1, 5]) {
@@ -252,11 +261,11 @@ fn a_serial_robot_tells_its_gains_by_a_payload_on_its_last_body() {
 
 #[test]
 fn gains_that_nothing_fixes_are_refused_and_why() {
-    let nothing = robot(&dualv(""));
-    let runs = exact(&nothing, 1.0).identified;
+    let nothing = robot(&coarse(""));
+    let runs = exact(&nothing, 0.5).identified;
     let told = refused(&nothing, &runs);
     assert!(told.contains("no parameter is known"), "{told}");
-    let payload = robot(&dualv(KNOWN));
+    let payload = robot(&coarse(KNOWN));
     let (loaded, unloaded): (Vec<Log>, Vec<Log>) = runs.iter().cloned().partition(Log::payload);
     let told = refused(&payload, &unloaded);
     assert!(
@@ -269,13 +278,13 @@ fn gains_that_nothing_fixes_are_refused_and_why() {
         "{told}"
     );
     assert!(told.contains("record some without it"), "{told}");
-    let regrouped = robot(&dualv("known = { m_2_leg1 = 1 }"));
+    let regrouped = robot(&coarse("known = { m_2_leg1 = 1 }"));
     let told = refused(&regrouped, &runs);
     assert!(
         told.contains("`m_2_leg1` is known, but its column is a combination"),
         "{told}"
     );
-    let zero = robot(&dualv("known = { mx_payload = 0 }"));
+    let zero = robot(&coarse("known = { mx_payload = 0 }"));
     let told = refused(&zero, &runs);
     assert!(told.contains("`mx_payload` is known to be zero"), "{told}");
 }

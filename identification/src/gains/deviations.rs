@@ -8,11 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{
-    noise::residual,
-    observation::Equations,
-    solve::{Selection, Solution},
-};
+use super::{noise::residual, observation::Equations, selection::Selection, solve::Solution};
 use crate::regression::{factor::Factor, system::Stretch};
 
 /// Batches that are wanted at least.

@@ -10,6 +10,7 @@
 //!
 //! - `known`: which columns are known, and whether they fix the scale;
 //! - `observation`: the equations of all runs, as R factors, case 1 of redundant robots;
+//! - `selection`: which columns are independent on the data;
 //! - `noise`: the noise of the drives' signals, as the residuals tell it;
 //! - `solve`: generalised total least squares with exact columns W and w;
 //! - `deviations`: how sure the gains are;
@@ -20,6 +21,7 @@ mod known;
 mod noise;
 mod observation;
 mod result;
+mod selection;
 mod solve;
 
 pub use result::{DriveGain, Gains, JointParameter};
@@ -35,7 +37,8 @@ use crate::{
 use deviations::deviations;
 use known::Split;
 use observation::Observer;
-use solve::{Selection, solve, total_least_squares, undetermined};
+use selection::{Selection, undetermined};
+use solve::{solve, total_least_squares};
 
 /// A gain that is less than so many deviations from zero is not determined.
 const DETERMINED: f64 = 5.0;

@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{observation::Equations, solve::Selection};
+use super::{observation::Equations, selection::Selection};
 use crate::regression::factor::Factor;
 
 /// Sweeps over the unknowns of least squares without negative ones.
