@@ -19,6 +19,7 @@
 //! | `regression` | columns of the model, and the decimated system (39)-(41) of case 1, case 2 or all joints, as R factors |
 //! | `estimation` | base parameters (42)-(43), least squares with standard deviations (44)-(48), elimination |
 //! | `calibration` | encoder offsets and lengths from the closure of redundant loops |
+//! | `gains` | gains of the drives, from parameters whose values are known |
 //! | `validation` | prediction against measurement, on any run |
 //! | `result` | what is told of estimates and runs |
 //! | `consistent` | standard parameters that a robot can have, the nearest to a prior that the data allow |
@@ -33,6 +34,7 @@ pub mod data;
 mod error;
 mod estimation;
 pub mod filters;
+mod gains;
 mod identify;
 mod kinematics;
 mod monitor;
@@ -65,6 +67,7 @@ pub use estimation::{
         Agreement, ErrorsInRegressor, RegressorError, RepeatedRun, SimulatedRun,
     },
 };
+pub use gains::{DriveGain, Gains, JointParameter, drive_gains};
 pub use identify::{
     BaseParameter, Identification, Outcome, Prepared, Progress, RankedProjection, Regrouping,
     Study, estimate_projection,
@@ -75,7 +78,7 @@ pub use identify::{
 pub use kinematics::{Motion, Motions, motion};
 pub use prior::Prior;
 pub use regression::{
-    columns::{Column, ColumnSet, Direction},
+    columns::{Column, ColumnSet, Direction, is_carried},
     factor::Factor,
     projection::{ModelKind, Projection},
     system::{Part, PartitionCondition, Stretch, System},

@@ -5,6 +5,8 @@
 //! The low-pass on the positions must not bend the signals inside of it: cutoff >= 10 f_dyn. The
 //! decimation removes all above the model's band: 0.8 f_m/(2 n_d) about 2 to 5 times f_dyn.
 
+use std::collections::BTreeMap;
+
 use overact::Info;
 use serde::{Deserialize, Serialize};
 
@@ -113,6 +115,10 @@ pub struct Settings {
     /// What is believed of the standard parameters before the data speak, for the consistent estimate.
     #[serde(default)]
     pub prior: Prior,
+    /// Standard parameters whose values are known exactly (SI units), by name: they fix the scale when the
+    /// gains of the drives are identified, and serve nothing else.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub known: BTreeMap<String, f64>,
     /// Kept actuators of case 2, indices among the actuators; r of them.
     pub kept_actuators: Vec<usize>,
     /// Seed of the random states from which the base parameters are found.
@@ -153,6 +159,7 @@ impl Settings {
             instruments: Instruments::default(),
             period_s: None,
             prior: Prior::default(),
+            known: BTreeMap::new(),
             kept_actuators: info.kept_actuators.to_vec(),
             seed: 1,
         }

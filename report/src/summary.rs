@@ -6,7 +6,7 @@ use crate::{
     intervals::half_width_percent,
     judgement::{grade_words, objections, passed},
     layout::{line, table},
-    terminal::calibration,
+    terminal::{calibration, gains},
     text::{fitted, visible},
 };
 use overact_identification::{
@@ -25,6 +25,9 @@ pub fn summary(identification: &Identification, page: Option<&str>) -> String {
         for told in calibration::calibration(calibration).lines() {
             line(&mut text, told);
         }
+    }
+    for told in gains::gains(&identification.gains).lines() {
+        line(&mut text, told);
     }
     for estimate in answers(identification) {
         text.push('\n');

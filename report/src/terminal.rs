@@ -1,6 +1,7 @@
 //! All tables of an identification as plain text, for a terminal or a file.
 
 pub(crate) mod calibration;
+pub(crate) mod gains;
 
 use crate::{
     intervals::{half_width_percent, is_outside},

@@ -8,6 +8,7 @@ use crate::{
 };
 use overact::{Info, Model};
 use overact_codegen::{description, diagnostic::did_you_mean};
+use overact_identification::is_carried;
 use overact_simulation::{Drives, Experiment, Record, Run, Term, Trajectory, simulate};
 use std::collections::BTreeMap;
 
@@ -130,8 +131,42 @@ impl VirtualExperiment<'_> {
     /// # Errors
     /// An experiment that can't be made, all that is wrong at once, or runs that could not be finished.
     pub fn records(&self, progress: &dyn Fn(f64, &str)) -> Result<Vec<Record>, Error> {
+        let info = self.robot.model().info();
+        if info.parameters.iter().any(is_carried) {
+            return self.records_with_carried(progress);
+        }
         simulate(self.robot.model(), &self.plan, progress)
             .map_err(|error| located(self.robot, &error))
+    }
+
+    /// Makes all runs of a robot without platform one by one: its payload is a body that is there in runs
+    /// with payload alone.
+    fn records_with_carried(&self, progress: &dyn Fn(f64, &str)) -> Result<Vec<Record>, Error> {
+        let info = self.robot.model().info();
+        let mut records = Vec::new();
+        for run in &self.plan.runs {
+            let mut plan = self.plan.clone();
+            plan.runs = vec![Run {
+                payload: false,
+                ..run.clone()
+            }];
+            if !run.payload {
+                let both = [Some(&mut plan.parameters), plan.nominal_parameters.as_mut()];
+                for values in both.into_iter().flatten() {
+                    let own = info.parameters.iter().zip(values);
+                    own.filter(|(parameter, _)| is_carried(parameter))
+                        .for_each(|(_, value)| *value = 0.0);
+                }
+            }
+            let made = simulate(self.robot.model(), &plan, progress)
+                .map_err(|error| located(self.robot, &error))?;
+            let made = made.into_iter();
+            records.extend(made.map(|record| Record {
+                payload: run.payload,
+                ..record
+            }));
+        }
+        Ok(records)
     }
 }
 

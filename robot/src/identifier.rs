@@ -1,10 +1,16 @@
 //! An identification of a robot from runs, as its description asks for it.
 
-use crate::{error::Error, partitions::partitions, robot::Robot, runs::Runs};
+use crate::{
+    error::{Error, Problem},
+    partitions::partitions,
+    robot::Robot,
+    runs::Runs,
+};
 use overact::Model;
+use overact_codegen::description::{COUPLED_MOTORS, Leg};
 use overact_identification::{
-    Calibration, CalibrationScope, Dataset, Identification, Instruments, Log, Progress, Settings,
-    Stage, Study, identify, study,
+    Calibration, CalibrationScope, Dataset, Gains, Identification, Instruments, Log, Progress,
+    Settings, Stage, Study, drive_gains, identify, study,
 };
 use std::collections::BTreeMap;
 
@@ -32,6 +38,7 @@ pub struct Identifier<'a> {
     true_values: Option<&'a BTreeMap<String, f64>>,
     settings: Option<Settings>,
     calibration: Option<CalibrationScope>,
+    gains: bool,
     progress: &'a dyn Fn(Progress<'_>),
 }
 
@@ -46,7 +53,8 @@ impl std::fmt::Debug for Identifier<'_> {
 }
 
 impl<'a> Identifier<'a> {
-    /// An identification of a robot, without runs so far.
+    /// An identification of a robot, without runs so far. Gains of drives are identified if its description
+    /// asks for them.
     #[must_use]
     pub fn new(robot: &'a Robot) -> Self {
         Self {
@@ -56,6 +64,7 @@ impl<'a> Identifier<'a> {
             true_values: None,
             settings: None,
             calibration: None,
+            gains: robot.description().identification.gains,
             progress: &|_| {},
         }
     }
@@ -99,6 +108,13 @@ impl<'a> Identifier<'a> {
             calibration,
             ..self
         }
+    }
+
+    /// With gains of the drives that are first identified from the runs to identify from and from what is
+    /// known ([`Settings::known`]), or without, whatever the description says.
+    #[must_use]
+    pub fn gains(self, gains: bool) -> Self {
+        Self { gains, ..self }
     }
 
     /// With someone who hears what is being done.
@@ -148,8 +164,53 @@ impl<'a> Identifier<'a> {
         own.identified()
     }
 
-    /// The identification of the robot as it is described.
+    /// The identification of the robot as it is described, with the gains of its drives where they are asked
+    /// for.
     fn identified(&self) -> Result<Identification, Error> {
+        if !self.gains {
+            return self.estimated();
+        }
+        let gains = self.drive_gains()?;
+        let [runs, validation] = self.scaled(&gains);
+        let own = Identifier {
+            runs: &runs,
+            validation: &validation,
+            ..self.clone()
+        };
+        let mut result = own.estimated()?;
+        let others = std::mem::take(&mut result.warnings);
+        result.warnings = [gains.warnings(), others].concat();
+        result.gains = gains.drives;
+        result.gain_parameters = gains.parameters;
+        Ok(result)
+    }
+
+    /// The gains of the drives.
+    fn drive_gains(&self) -> Result<Gains, Error> {
+        let mut legs = self.robot.description().legs.iter();
+        if legs.any(Leg::has_coupled_motors) {
+            let problem = Problem::new(COUPLED_MOTORS).file(self.robot.file());
+            let help =
+                "identify without gains; a gain of a motor scales its `torque_gain` in [data]";
+            return Err(problem.help(help).into());
+        }
+        let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });
+        let settings = self.with_defaults();
+        let (model, runs) = (self.robot.model(), self.runs);
+        Ok(drive_gains(model, runs, &settings, &tell)?)
+    }
+
+    /// The runs, and those to validate with, with torques multiplied by gains.
+    fn scaled(&self, gains: &Gains) -> [Vec<Log>; 2] {
+        let factors = gains.factors();
+        [self.runs, self.validation].map(|logs| {
+            let logs = logs.iter().cloned();
+            logs.map(|log| log.with_torque_factors(&factors)).collect()
+        })
+    }
+
+    /// The identification with the torques as they are.
+    fn estimated(&self) -> Result<Identification, Error> {
         let settings = self.with_defaults();
         let essential = self.essential();
         let beside = match settings.instruments {
@@ -178,6 +239,23 @@ impl<'a> Identifier<'a> {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn study(&self) -> Result<Study, Error> {
+        if !self.gains {
+            return self.studied();
+        }
+        let gains = self.drive_gains()?;
+        let [runs, validation] = self.scaled(&gains);
+        let own = Identifier {
+            runs: &runs,
+            validation: &validation,
+            ..self.clone()
+        };
+        let mut study = own.studied()?;
+        study.warnings.splice(0..0, gains.warnings());
+        Ok(study)
+    }
+
+    /// The comparison with the torques as they are.
+    fn studied(&self) -> Result<Study, Error> {
         let sizes = self.robot.model().info().sizes;
         let choices = partitions(sizes.actuators, sizes.dof);
         let settings = without_elimination(&self.with_defaults(), self.essential());

@@ -8,7 +8,8 @@
 use crate::{error::Error, robot::Robot};
 use overact::{Info, Model};
 use overact_identification::{
-    Estimate, Instruments, Log, Prepared, Projection, Settings, estimate_projection, prepare,
+    Estimate, Instruments, Log, Prepared, Projection, Settings, estimate_projection, is_carried,
+    prepare,
 };
 use overact_simulation::{
     Cascade, Drives, Experiment, Record, Recorded, follow_recorded, simulate,
@@ -87,6 +88,7 @@ fn along_references(
 ) -> Result<Vec<Log>, Error> {
     let whole = estimated(model, runs, settings)?;
     let robot = model.info().sizes.parameters;
+    let loaded = runs.iter().any(Log::payload);
     let mut beside = Vec::new();
     for log in runs {
         let reference = log.instruments().map(Log::load).transpose()?;
@@ -94,6 +96,10 @@ fn along_references(
         let mut parameters = whole.clone();
         if !log.payload() {
             parameters[robot..].fill(0.0);
+            // Of a robot without platform, where some runs carry its payload and some do not.
+            let own = model.info().parameters.iter().zip(&mut parameters);
+            own.filter(|(parameter, _)| loaded && is_carried(parameter))
+                .for_each(|(_, value)| *value = 0.0);
         }
         let recorded = Recorded {
             run: log.name(),

@@ -70,6 +70,7 @@ pub(crate) fn settings(description: &Description, info: &Info<'_>, frequency: f6
         },
         period_s: table.period,
         prior: prior(description, info),
+        known: table.known.iter().cloned().collect(),
         ..usual
     };
     if table.skip_start.is_none() && table.skip_end.is_none() {

@@ -53,6 +53,7 @@ const HOUSES: [House; 6] = [
             "regression",
             "estimation",
             "calibration",
+            "gains",
             "validation",
             "result",
             "consistent",

@@ -12,10 +12,8 @@ use crate::{
 };
 use clap::ValueEnum;
 use overact::Model;
-use overact_identification::{
-    CalibrationScope, Grade, Identification, Progress as Doing, Settings,
-};
-use overact_robot::{Identifier, Robot, Runs, tracking};
+use overact_identification::{CalibrationScope, Grade, Identification, Progress as Doing};
+use overact_robot::{Identifier, Robot, tracking};
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -53,6 +51,10 @@ pub(crate) struct Arguments {
         default_missing_value = "smallest"
     )]
     calibrate: Option<Scope>,
+    /// Identify the gains of the drives first, relative to what [identification.known] gives, and go on with
+    /// torques multiplied by them [default: what the description says]
+    #[arg(long)]
+    gains: bool,
     /// Write the description with the calibrated offsets and lengths
     #[arg(long, value_name = "TOML", requires = "calibrate")]
     calibrated_robot: Option<PathBuf>,
@@ -108,7 +110,12 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut settings = arguments.runs.settings(&robot, &runs);
     settings.kept_actuators = kept.unwrap_or(settings.kept_actuators);
     let scope = arguments.calibrate.map(CalibrationScope::from);
-    let mut result = identified(&robot, &runs, (settings, scope), as_json)?;
+    let identifier = Identifier::new(&robot).data(&runs).settings(settings);
+    let identifier = match arguments.gains {
+        true => identifier.gains(true),
+        false => identifier,
+    };
+    let mut result = identified(identifier, scope, as_json)?;
     let beside = reports.published().filter(|_| arguments.runs.are_virtual());
     if arguments.tracking || beside.is_some() {
         let bar = Progress::new("simulating", as_json);
@@ -164,14 +171,12 @@ fn refused(result: &Identification) -> Failure {
 
 /// The identification, with a bar on a terminal.
 fn identified(
-    robot: &Robot,
-    runs: &Runs,
-    (settings, calibrated): (Settings, Option<CalibrationScope>),
+    identifier: Identifier<'_>,
+    calibrated: Option<CalibrationScope>,
     as_json: bool,
 ) -> Result<Identification, Failure> {
     let bar = Progress::new("identifying", as_json);
     let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
-    let identifier = Identifier::new(robot).data(runs).settings(settings);
     let identifier = match calibrated {
         Some(scope) => identifier.calibrate(scope),
         None => identifier,

@@ -4,7 +4,7 @@ use super::dimension::Dimension;
 use super::drives::{self, Drives};
 use super::inventory::{Body, Inventory};
 use super::joint;
-use super::model::{JointKind, Spanned};
+use super::model::{JointKind, Leg, Spanned};
 use super::per_actuator::{effort, per_actuator};
 use super::reader::{Item, Table};
 use super::scope::Scope;
@@ -236,14 +236,13 @@ fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
         .as_ref()
         .and_then(Item::boolean)
         .unwrap_or(false);
-    let has_payload = robot
-        .platform
-        .is_some_and(|platform| platform.payload.is_some());
+    let has_payload = match robot.platform {
+        Some(platform) => platform.payload.is_some(),
+        None => robot.legs.iter().any(Leg::carries_payload),
+    };
     if let (Some(item), true, false) = (&payload_item, payload, has_payload) {
         let error = item.error("the robot has no payload");
-        table
-            .context
-            .report(error.help("describe it in a table [platform.payload]"));
+        table.context.report(error.help(help_payload(robot)));
     }
     let validation = table
         .get("validation")
@@ -274,6 +273,14 @@ fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
         fundamental: fundamental?,
         terms,
     })
+}
+
+/// Where a payload is described.
+fn help_payload(robot: &Inventory<'_>) -> &'static str {
+    match robot.platform {
+        Some(_) => "describe it in a table [platform.payload]",
+        None => "describe it as a joint of type \"fixed\" with the name `payload` on the last body",
+    }
 }
 
 fn term(item: &Item<'_, '_>, coordinates: &[(String, Dimension)], scope: &Scope) -> Option<Term> {

@@ -3,6 +3,7 @@
 use super::dimension::Dimension;
 use super::experiment::position;
 use super::inventory::Inventory;
+use super::known;
 use super::model::{Spanned, actuators};
 use super::reader::{Item, Table};
 use super::transmission;
@@ -135,6 +136,10 @@ pub struct Identification {
     pub instruments: Instruments,
     /// Period of the motion, s; found from each run if absent.
     pub period: Option<f64>,
+    /// Whether the gains of the drives are identified first.
+    pub gains: bool,
+    /// Standard parameters that are known exactly by name, SI units.
+    pub known: Vec<(String, f64)>,
 }
 
 /// Reads `[data]`.
@@ -294,6 +299,8 @@ pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>)
         essential: true,
         instruments: Instruments::default(),
         period: None,
+        gains: false,
+        known: Vec::new(),
     };
     if let Some(table) = item.and_then(|item| item.table("the table `[identification]`")) {
         fill(&mut settings, &table, robot);
@@ -371,6 +378,11 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         .and_then(|i| i.positive(Dimension::TIME, scope));
     settings.weighted = switch("weighted");
     settings.essential = switch("essential");
+    let known = table.get("known");
+    settings.known = known.map_or_else(Vec::new, |item| known::read(&item, robot));
+    settings.gains = table
+        .get("gains")
+        .is_some_and(|item| known::gains(&item, &settings.known, robot));
 }
 
 /// Velocities at which joints stand still: one for all actuators or a list.

@@ -23,6 +23,8 @@ pub struct Log {
     source: Source,
     /// What is subtracted from the position of each actuator of the source.
     offsets: Vec<f64>,
+    /// By what the torque of each actuator of the source is multiplied.
+    torque_factors: Vec<f64>,
     payload: bool,
     instruments: Option<Box<Log>>,
 }
@@ -88,6 +90,7 @@ impl Log {
             samples: positions.len() / actuators,
             source: Source::Memory([positions.into(), torques.into(), Arc::default()]),
             offsets: vec![0.0; actuators],
+            torque_factors: vec![1.0; actuators],
             payload,
             instruments: None,
         })
@@ -136,8 +139,10 @@ impl Log {
     pub fn others(&self, periods: Periods) -> Self {
         Self {
             source: Source::Others(Box::new(self.clone()), Arc::new(periods)),
-            // The other periods are this run's, whose offsets are subtracted already.
+            // The other periods are this run's, whose offsets are subtracted and whose torques are
+            // multiplied already.
             offsets: vec![0.0; self.actuators],
+            torque_factors: vec![1.0; self.actuators],
             ..self.clone()
         }
     }
@@ -153,6 +158,7 @@ impl Log {
             name: files.name().to_owned(),
             sampling_frequency,
             offsets: vec![0.0; files.actuators()],
+            torque_factors: vec![1.0; files.actuators()],
             actuators: files.actuators(),
             samples,
             source: Source::Files(files),
@@ -213,6 +219,15 @@ impl Log {
         self
     }
 
+    /// The same run with its torques multiplied by a factor for each actuator.
+    #[must_use]
+    pub fn with_torque_factors(mut self, factors: &[f64]) -> Self {
+        for (own, more) in self.torque_factors.iter_mut().zip(factors) {
+            *own *= more;
+        }
+        self
+    }
+
     /// The first `samples` of the run, in memory.
     ///
     /// # Errors
@@ -259,6 +274,7 @@ impl Log {
             rows,
             name: &self.name,
             offsets: &self.offsets,
+            torque_factors: &self.torque_factors,
             left: self.samples,
         })
     }
@@ -285,6 +301,8 @@ pub struct Reader<'a> {
     name: &'a str,
     /// What is subtracted from the position of each actuator.
     offsets: &'a [f64],
+    /// By what the torque of each actuator is multiplied.
+    torque_factors: &'a [f64],
     /// Samples that have not been given out.
     left: usize,
 }
@@ -314,6 +332,11 @@ impl Reader<'_> {
             row.iter_mut()
                 .zip(self.offsets)
                 .for_each(|(position, offset)| *position -= offset);
+        }
+        for row in block.torques.chunks_exact_mut(self.torque_factors.len()) {
+            row.iter_mut()
+                .zip(self.torque_factors)
+                .for_each(|(torque, factor)| *torque *= factor);
         }
         Ok(Some(block))
     }

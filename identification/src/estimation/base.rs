@@ -12,12 +12,13 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
-use overact::{Body, Model, StandardParameter};
+use overact::{Body, Info, Model, StandardParameter};
 
 use crate::{
+    data::Log,
     error::{Error, Problem},
     regression::{
-        columns::{Column, ColumnSet, Direction},
+        columns::{Column, ColumnSet, Direction, has_payload},
         elimination::{Elimination, eliminate},
         states::{States, random_states},
     },
@@ -35,6 +36,37 @@ pub enum PayloadUse {
     Separate,
     /// All runs carry it: it can't be told from the platform.
     Regrouped,
+}
+
+impl PayloadUse {
+    /// How the payload takes part in the runs.
+    ///
+    /// # Errors
+    /// No run, or runs with a payload that the model does not have.
+    pub(crate) fn of(info: &Info<'_>, runs: &[Log]) -> Result<Self, Error> {
+        if runs.is_empty() {
+            return Err(Problem::new("there is no run to identify from")
+                .help("give at least one log")
+                .into());
+        }
+        let loaded = || runs.iter().filter(|log| log.payload());
+        if !has_payload(info) {
+            let problem = |log: &Log| {
+                Problem::new(format!(
+                    "the run carries a payload, but the description of `{}` has none",
+                    info.name
+                ))
+                .file(log.name())
+                .help("add a payload to the description, or declare the run unloaded")
+            };
+            Error::check(loaded().map(problem).collect())?;
+        }
+        Ok(match loaded().count() {
+            0 => Self::Absent,
+            count if count == runs.len() => Self::Regrouped,
+            _ => Self::Separate,
+        })
+    }
 }
 
 /// The base parameters of a column set.
@@ -111,20 +143,10 @@ pub fn base_parameters(
     seed: u64,
 ) -> Result<BaseParameters, Error> {
     let regressor = random_regressor(model, columns, seed)?;
-    let robot = symmetric_order(columns, columns.indices(false));
-    let loads = symmetric_order(columns, columns.indices(true));
-    let blocks = match payload {
-        PayloadUse::Absent => vec![robot],
-        PayloadUse::Separate => vec![robot, loads],
-        PayloadUse::Regrouped => vec![[robot, loads].concat()],
-    };
     let mut base = BaseParameters::default();
-    for order in blocks {
-        collect(
-            &mut base,
-            columns,
-            eliminate(&regressor, &order, RANK_TOLERANCE),
-        );
+    for order in blocks(columns, payload) {
+        let found = eliminate(&regressor, &order, RANK_TOLERANCE);
+        collect(&mut base, columns, found);
     }
     if base.columns.is_empty() {
         return Err(Problem::new(format!(
@@ -135,6 +157,59 @@ pub fn base_parameters(
         .into());
     }
     Ok(base)
+}
+
+/// The columns of which another one is a combination; none where it is independent of all.
+pub(crate) type Combination = Option<Vec<usize>>;
+
+/// Finds the base parameters of the columns that are not among `known`, and of each known one the columns
+/// of which its own is a combination: none where it lies outside of their span, so that data tell its
+/// contribution from theirs.
+///
+/// # Errors
+/// A model that can't be evaluated near its home pose.
+pub(crate) fn base_parameters_beside(
+    model: &dyn Model,
+    (columns, payload): (&ColumnSet, PayloadUse),
+    known: &[usize],
+    seed: u64,
+) -> Result<(BaseParameters, Vec<Combination>), Error> {
+    let regressor = random_regressor(model, columns, seed)?;
+    let mut base = BaseParameters::default();
+    let mut combinations = vec![Some(Vec::new()); known.len()];
+    for order in blocks(columns, payload) {
+        let (own, mut unknown): (Vec<usize>, Vec<usize>) =
+            order.into_iter().partition(|column| known.contains(column));
+        let found = eliminate(&regressor, &unknown, RANK_TOLERANCE);
+        collect(&mut base, columns, found);
+        for column in own {
+            unknown.push(column);
+            let found = eliminate(&regressor, &unknown, RANK_TOLERANCE);
+            unknown.pop();
+            let mut dependent = found.dependent.into_iter();
+            let others = dependent.find(|(one, _)| *one == column);
+            let others = others.map(|(_, terms)| terms.into_iter().map(|(one, _)| one).collect());
+            let place = known.iter().position(|one| *one == column);
+            if let Some(place) = place.and_then(|place| combinations.get_mut(place)) {
+                *place = match found.zero.contains(&column) {
+                    true => Some(Vec::new()),
+                    false => others,
+                };
+            }
+        }
+    }
+    Ok((base, combinations))
+}
+
+/// The columns in the symmetric order, in blocks that are independent of each other.
+fn blocks(columns: &ColumnSet, payload: PayloadUse) -> Vec<Vec<usize>> {
+    let robot = symmetric_order(columns, columns.indices(false));
+    let loads = symmetric_order(columns, columns.indices(true));
+    match payload {
+        PayloadUse::Absent => vec![robot],
+        PayloadUse::Separate => vec![robot, loads],
+        PayloadUse::Regrouped => vec![[robot, loads].concat()],
+    }
 }
 
 /// Adds what one block yields to the base parameters.

@@ -20,6 +20,7 @@ use crate::{
     calibration::Calibration,
     consistent::Consistent,
     estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
+    gains::{DriveGain, JointParameter},
     regression::columns::ColumnSet,
     result::{CrossValidation, Estimate, Estimator, RunSummary},
     settings::Settings,
@@ -60,6 +61,14 @@ pub struct Identification {
     /// the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
+    /// Gains of the drives, relative to those of the description, by which all torques were multiplied, where
+    /// they were identified from the runs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gains: Vec<DriveGain>,
+    /// The base parameters that were estimated together with the gains. Their deviations have a part that is
+    /// the gains'; deviations of the other estimates are those for the gains as they were found.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gain_parameters: Vec<JointParameter>,
     /// Table 4, where controlled runs were compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tracking: Vec<TrackingError>,

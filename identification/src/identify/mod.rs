@@ -127,6 +127,8 @@ pub fn identify(
         checks,
         thresholds: Thresholds::default(),
         calibration: None,
+        gains: Vec::new(),
+        gain_parameters: Vec::new(),
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,

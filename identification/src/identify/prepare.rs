@@ -8,7 +8,7 @@ use crate::{
     assessment,
     consistent::{Consistent, consistent, problems},
     data::Log,
-    error::{Error, Problem},
+    error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
     kinematics,
     prior::Prior,
@@ -92,7 +92,7 @@ pub fn prepare(
     let info = model.info();
     settings.check(&info)?;
     check_projections(projections, model)?;
-    let payload = payload_use(model, runs)?;
+    let payload = PayloadUse::of(&info, runs)?;
     check_runs(model, runs, settings)?;
     progress(Progress::Base);
     let columns = ColumnSet::new(
@@ -190,37 +190,6 @@ pub(super) fn check_runs(
     let check = |log: &Log| kinematics::check(model, log, settings).err();
     let errors = runs.iter().filter_map(check);
     Error::check(errors.flat_map(|error| error.problems).collect())
-}
-
-/// How the payload takes part in the runs.
-fn payload_use(model: &dyn Model, runs: &[Log]) -> Result<PayloadUse, Error> {
-    let info = model.info();
-    if runs.is_empty() {
-        return Err(Problem::new("there is no run to identify from")
-            .help("give at least one log")
-            .into());
-    }
-    let loaded: Vec<&Log> = runs.iter().filter(|log| log.payload()).collect();
-    if info.payload_parameters.is_empty() {
-        Error::check(
-            loaded
-                .iter()
-                .map(|log| {
-                    Problem::new(format!(
-                        "the run carries a payload, but the description of `{}` has none",
-                        info.name
-                    ))
-                    .file(log.name())
-                    .help("add a payload to the description, or declare the run unloaded")
-                })
-                .collect(),
-        )?;
-    }
-    Ok(match loaded.len() {
-        0 => PayloadUse::Absent,
-        count if count == runs.len() => PayloadUse::Regrouped,
-        _ => PayloadUse::Separate,
-    })
 }
 
 /// What the user should know before any estimate.

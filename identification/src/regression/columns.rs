@@ -12,7 +12,7 @@
 //! Around standstill the sign of a measured velocity is noise. Within a dead band the columns fs can
 //! be zero.
 
-use overact::{Body, Columns, Function, Model, Parameter, SampleError, StandardParameter};
+use overact::{Body, Columns, Function, Info, Model, Parameter, SampleError, StandardParameter};
 
 use super::friction::{Rate, friction_rates};
 use crate::{error::Error, settings::Settings};
@@ -24,6 +24,23 @@ enum Origin {
     Robot(usize),
     /// A column of [`Function::IdmRedPayload`].
     Payload(usize),
+    /// A column of [`Function::IdmRedPlatform`] that counts in runs with the payload alone.
+    Carried(usize),
+}
+
+/// Whether a parameter is one of the payload of a robot without platform: of a body with the name `payload`,
+/// which the model has in all runs. Where some runs are labelled as runs with payload, its columns are zero in
+/// the others.
+#[must_use]
+pub fn is_carried(parameter: &Parameter) -> bool {
+    let of_leg = matches!(parameter.body, Body::Leg { .. });
+    let rest = parameter.name.strip_prefix(parameter.symbol.name());
+    of_leg && parameter.symbol.is_inertial() && rest == Some("_payload")
+}
+
+/// Whether a robot can carry a payload.
+pub(crate) fn has_payload(info: &Info<'_>) -> bool {
+    !info.payload_parameters.is_empty() || info.parameters.iter().any(is_carried)
 }
 
 /// The direction of motion in which a friction parameter acts.
@@ -163,7 +180,11 @@ impl ColumnSet {
         };
         let mut columns = Vec::new();
         for (index, (parameter, rate)) in info.parameters.iter().zip(rates).enumerate() {
-            let whole = Column::new(parameter, Origin::Robot(index));
+            let origin = match payload && is_carried(parameter) {
+                true => Origin::Carried(index),
+                false => Origin::Robot(index),
+            };
+            let whole = Column::new(parameter, origin);
             match rate {
                 Some(rate) => columns.extend(whole.split(&rate)),
                 None if asymmetric_friction
@@ -223,7 +244,7 @@ impl ColumnSet {
     #[must_use]
     pub fn indices(&self, payload: bool) -> Vec<usize> {
         (0..self.columns.len())
-            .filter(|&index| matches!(self.columns[index].origin, Origin::Payload(_)) == payload)
+            .filter(|&index| !matches!(self.columns[index].origin, Origin::Robot(_)) == payload)
             .collect()
     }
 
@@ -262,18 +283,19 @@ impl ColumnSet {
         let width = picked.len() + more;
         let mut lines = vec![vec![0.0; samples * width]; sizes.dof];
         // Where the numbers of a row come from: places of the robot's columns, then the payload's.
-        let place = |wanted: fn(Origin) -> Option<usize>| -> Vec<(usize, usize)> {
+        let place = |wanted: &dyn Fn(Origin) -> Option<usize>| -> Vec<(usize, usize)> {
             let all = columns().enumerate();
             all.filter_map(|(to, column)| Some((to, wanted(column.origin)?)))
                 .collect()
         };
-        let own = place(|origin| match origin {
+        let own = place(&|origin| match origin {
             Origin::Robot(k) => Some(k),
+            Origin::Carried(k) => loaded.then_some(k),
             Origin::Payload(_) => None,
         });
-        let load = place(|origin| match origin {
+        let load = place(&|origin| match origin {
             Origin::Payload(k) => Some(k),
-            Origin::Robot(_) => None,
+            Origin::Robot(_) | Origin::Carried(_) => None,
         });
         let sources = [
             (&robot, sizes.parameters, own),

@@ -2,7 +2,7 @@
 //! what the data could not tell.
 //!
 //! The verdict stands first, the parameters follow, and every plot says below what to look for in it.
-//! Each section is a file: `verdict`, `checks`, `calibration`, `parameters`, `estimators`, `limits`,
+//! Each section is a file: `verdict`, `checks`, `calibration`, `gains`, `parameters`, `estimators`, `limits`,
 //! `validation`, `inputs`, `residuals`, `elimination`, `conditioning`, `trajectories`, `tracking`, `data`.
 //! Sections that have nothing to show are left out.
 
@@ -13,6 +13,7 @@ mod consistent;
 mod data;
 mod elimination;
 mod estimators;
+mod gains;
 mod header;
 mod inputs;
 mod limits;
@@ -78,6 +79,7 @@ pub fn page(contents: &Contents<'_>) -> String {
         verdict::section(contents),
         checks::section(contents),
         calibration::section(contents),
+        gains::section(contents),
         parameters::section(contents),
         consistent::section(contents),
         estimators::section(contents),

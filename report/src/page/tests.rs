@@ -336,6 +336,8 @@ fn an_identification_without_anything_still_has_a_page() {
         verdicts: Vec::new(),
         thresholds: Thresholds::default(),
         calibration: None,
+        gains: Vec::new(),
+        gain_parameters: Vec::new(),
         tracking: Vec::new(),
         errors_in_regressor: Vec::new(),
         settings: settings(),

@@ -57,7 +57,7 @@ terms = []
         "16:1 the robot has no parameter `zz_2`; did you mean `zz_1`?",
         "18:8 `fs_1`: expected a torque (N m), found a quantity in m^2 kg s^-1 (0.1 m^2 kg s^-1)",
         "19:1 a run has no `name`; for instance name = \"unloaded 1\"",
-        "20:11 the robot has no payload; describe it in a table [platform.payload]",
+        "20:11 the robot has no payload; describe it as a joint of type \"fixed\" with the name `payload` on the last body",
         "23:18 the robot has no coordinate `2`; its coordinates are 1",
         "23:34 `harmonic`: expected an integer of at least 1, found 0",
         "24:49 `amplitude`: expected an angle (rad), found a length (1 m)",
@@ -219,6 +219,30 @@ ia_2 = [1, 2]
         "13:1 the robot has no parameter `ia_2`; did you mean `ia_1`?",
     ];
     assert_eq!(errors(tables), expected);
+}
+
+#[test]
+fn what_is_known_fixes_the_gains() {
+    let tables = r#"[identification]
+gains = true
+[identification.known]
+zz_3 = 1
+fv_1 = 2
+ia_1 = 0
+zz_1 = "2 kg"
+"#;
+    let expected = [
+        "3:9 gains are identified relative to what is known, and nothing is; give the mass of a payload that was weighed: [identification.known] m_payload = \"5 kg\"",
+        "5:1 the robot has no parameter `zz_3`; did you mean `zz_1`?",
+        "6:1 friction and offsets are not known exactly, `fv_1` is one; give masses, first moments, inertias or springs; friction is identified",
+        "7:1 masses and moments of inertia are positive, but `ia_1` is not; leave out what is not known",
+        "8:8 `zz_1`: expected a moment of inertia (kg m^2), found a mass (2 kg)",
+    ];
+    assert_eq!(errors(tables), expected);
+    let tables = "[identification]\ngains = true\nknown = { zz_1 = 0.5 }";
+    let good = good(&single(tables, ""));
+    assert!(good.identification.gains);
+    assert_eq!(good.identification.known, [(String::from("zz_1"), 0.5)]);
 }
 
 #[test]

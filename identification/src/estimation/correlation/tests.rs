@@ -81,6 +81,7 @@ pub(crate) fn settings() -> Settings {
         instruments: crate::settings::Instruments::None,
         period_s: None,
         prior: Default::default(),
+        known: Default::default(),
         kept_actuators: Vec::new(),
         seed: 1,
     }

@@ -210,6 +210,7 @@ pub(super) fn settings() -> Settings {
         instruments: Instruments::None,
         period_s: None,
         prior: Prior::default(),
+        known: std::collections::BTreeMap::new(),
         filter_torques: false,
         validation_samples: None,
         kept_actuators: vec![0],
@@ -286,6 +287,8 @@ pub(super) fn identification() -> Identification {
         warnings: vec![format!("beware of {HOSTILE}"), String::from("clipped")],
         checks: checks(),
         calibration: None,
+        gains: Vec::new(),
+        gain_parameters: Vec::new(),
         assumptions: vec![String::from("the gains are right")],
         verdicts: vec![
             verdict(ModelKind::Platform, Grade::UseListed, &["m_platformR"]),

@@ -1,0 +1,93 @@
+//! Standard deviations of gains and parameters to first order.
+//!
+//! The estimate is the zero of Σ_t z_t, where the scores z_t = Σ_i ([W V]_itᵀ ρ_it - [0; Ω_i g] ρ_it²/s_i²)/s_i²
+//! of sample t have the mean zero at the true values. With the derivative H = RᵀR - Λ of the sum and its
+//! covariance Z, the estimate has the covariance H^-1 Z H^-1. Z is found from sums over batches of successive
+//! samples, so that correlation of the lines among each other and of neighbours in time is taken in, and
+//! noise of unequal size.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{noise::residual, observation::Equations, selection::Selection, solve::Solution};
+use crate::regression::{factor::Factor, system::Stretch};
+
+/// Batches that are wanted at least.
+const FEWEST_BATCHES: usize = 30;
+
+/// The deviations of all values of a solution, in their order; none where the data do not tell them.
+pub(super) fn deviations(
+    equations: &Equations,
+    selection: &Selection,
+    solution: &Solution,
+) -> Option<Vec<f64>> {
+    let system = &equations.system;
+    let samples = |stretch: &Stretch| stretch.lines.first().map_or(0, DMatrix::nrows);
+    let kept: usize = system.stretches.iter().map(samples).sum();
+    let all = system.lines.iter().map(Factor::equations).max()?;
+    let batch = batch(kept);
+    let mut sums: Vec<DVector<f64>> = Vec::new();
+    for stretch in &system.stretches {
+        let scores = scores(stretch, selection, solution);
+        let mut first = 0;
+        while first < scores.nrows() {
+            let count = batch.min(scores.nrows() - first);
+            sums.push(scores.rows(first, count).row_sum().transpose());
+            first += count;
+        }
+    }
+    let size = selection.columns.len();
+    let own = size - selection.drives;
+    let sums = DMatrix::from_columns(&sums);
+    // In the coordinates R [-χ; g], in which H is the identity but for Λ.
+    let whitened = solution.triangle.tr_solve_upper_triangular(&sums)?;
+    let mut lambda = DMatrix::zeros(size, size);
+    for (j, value) in solution.lambda.iter().enumerate() {
+        lambda[(own + j, own + j)] = *value;
+    }
+    let half = solution.triangle.tr_solve_upper_triangular(&lambda)?;
+    let whole = solution
+        .triangle
+        .tr_solve_upper_triangular(&half.transpose())?;
+    let derivative = DMatrix::identity(size, size) - 0.5 * (&whole + whole.transpose());
+    let moved = derivative.cholesky()?.solve(&whitened);
+    let errors = solution.triangle.solve_upper_triangular(&moved)?;
+    let equations = (all * system.lines.len()) as f64;
+    let freedom = equations / (equations - size as f64).max(1.0);
+    let scale = (freedom * all as f64 / kept.max(1) as f64).sqrt();
+    let deviations: Vec<f64> = errors.row_iter().map(|row| scale * row.norm()).collect();
+    deviations
+        .iter()
+        .all(|deviation| deviation.is_finite())
+        .then_some(deviations)
+}
+
+/// Samples of a batch: about the third root of their number, longer than noise is correlated over after
+/// decimation.
+fn batch(samples: usize) -> usize {
+    let root = (samples as f64).cbrt().ceil() as usize;
+    root.min(samples / FEWEST_BATCHES).max(1)
+}
+
+/// The scores of successive samples, a row each.
+fn scores(stretch: &Stretch, selection: &Selection, solution: &Solution) -> DMatrix<f64> {
+    let size = selection.columns.len();
+    let own = size - selection.drives;
+    let samples = stretch.lines.first().map_or(0, DMatrix::nrows);
+    let mut scores = DMatrix::zeros(samples, size);
+    let gains = DVector::from_column_slice(solution.gains());
+    let lines = stretch.lines.iter().zip(&solution.variances);
+    for ((rows, variance), omega) in lines.zip(&solution.omegas) {
+        let residual = residual(rows, &selection.columns, &solution.values);
+        let weighted = &residual / *variance;
+        for (place, &column) in selection.columns.iter().enumerate() {
+            let products = rows.column(column).component_mul(&weighted);
+            let mut target = scores.column_mut(place);
+            target += products;
+        }
+        let squares = weighted.component_mul(&weighted);
+        for (j, noise) in omega.component_mul(&gains).iter().enumerate() {
+            scores.column_mut(own + j).axpy(-noise, &squares, 1.0);
+        }
+    }
+    scores
+}

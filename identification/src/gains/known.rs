@@ -1,0 +1,143 @@
+//! What is known: which columns have known parameters, and whether they fix the scale.
+//!
+//! Where all parameters are unknown, parameters and gains can be multiplied by one factor. A known
+//! parameter fixes it if its column is no combination of those of unknown ones: else its contribution goes
+//! into an unknown base parameter. The mass of a payload is such a parameter when some runs carry the
+//! payload and others do not; that of a single body of a chain is mostly regrouped into other bodies.
+
+use overact::Model;
+
+use crate::{
+    data::Log,
+    error::{Error, Problem, suggestion},
+    estimation::base::{BaseParameters, Combination, PayloadUse, base_parameters_beside},
+    regression::columns::ColumnSet,
+    settings::Settings,
+};
+
+/// Names of a sum that are written out.
+const NAMES: usize = 5;
+
+/// A way out that any robot has.
+const WEIGHED: &str = "weigh a payload, give its mass in [identification.known] and record runs with it and without it";
+
+/// The columns of a model, split into those of known and of unknown parameters.
+#[derive(Debug)]
+pub(super) struct Split {
+    pub(super) columns: ColumnSet,
+    /// Base parameters of the unknown ones.
+    pub(super) base: BaseParameters,
+    /// Columns of known parameters and their values (SI units).
+    pub(super) known: Vec<(usize, f64)>,
+}
+
+impl Split {
+    /// The split of a model's columns for these runs.
+    ///
+    /// # Errors
+    /// Nothing known that fixes the scale, or names that are no parameters.
+    pub(super) fn new(model: &dyn Model, runs: &[Log], settings: &Settings) -> Result<Self, Error> {
+        let info = model.info();
+        if settings.known.is_empty() {
+            let message = "gains are not determined: no parameter is known, so that gains and parameters have a factor in common";
+            return Err(Problem::new(message).help(WEIGHED).into());
+        }
+        let payload = PayloadUse::of(&info, runs)?;
+        let columns = ColumnSet::new(
+            model,
+            payload != PayloadUse::Absent,
+            settings.asymmetric_friction,
+            settings.seed,
+        )?;
+        let known = found(model, &columns, settings)?;
+        let places: Vec<usize> = known.iter().map(|(column, _)| *column).collect();
+        let all = (&columns, payload);
+        let (base, combinations) = base_parameters_beside(model, all, &places, settings.seed)?;
+        let fixes = known
+            .iter()
+            .zip(&combinations)
+            .any(|((_, value), others)| *value != 0.0 && others.is_none());
+        if !fixes {
+            let problem = |((column, value), others): (&(usize, f64), &Combination)| {
+                scaleless(&columns, payload, (*column, *value), others.as_deref())
+            };
+            let problems = known.iter().zip(&combinations).map(problem).collect();
+            Error::check(problems)?;
+        }
+        let columns = columns.with_reversals(model, settings)?;
+        Ok(Self {
+            columns,
+            base,
+            known,
+        })
+    }
+}
+
+/// The columns of the known parameters.
+fn found(
+    model: &dyn Model,
+    columns: &ColumnSet,
+    settings: &Settings,
+) -> Result<Vec<(usize, f64)>, Error> {
+    let info = model.info();
+    let all = columns.as_slice();
+    let (mut known, mut problems) = (Vec::new(), Vec::new());
+    for (name, value) in &settings.known {
+        if let Some(column) = all.iter().position(|one| one.name == *name) {
+            known.push((column, *value));
+        } else if info.payload_parameters.iter().any(|one| one.name == name) {
+            problems.push(
+                Problem::new(format!(
+                    "gains are not determined: `{name}` is known, but no run carries the payload"
+                ))
+                .help("record runs with the payload, too, and say which they are (--payload-data)"),
+            );
+        } else {
+            let problem = Problem::new(format!("the robot has no parameter `{name}`"));
+            let names = all.iter().map(|one| one.name.as_str());
+            problems.push(match suggestion(name, names) {
+                Some(other) => problem.help(format!("did you mean `{other}`?")),
+                None => problem.help("names are those of the parameters that `inspect` lists"),
+            });
+        }
+    }
+    Error::check(problems)?;
+    Ok(known)
+}
+
+/// Why a known parameter does not fix the scale; its column is a combination of `others`.
+fn scaleless(
+    columns: &ColumnSet,
+    payload: PayloadUse,
+    (column, value): (usize, f64),
+    others: Option<&[usize]>,
+) -> Problem {
+    let name = |column: &usize| {
+        let column = columns.as_slice().get(*column);
+        column.map_or_else(String::new, |one| format!("`{}`", one.name))
+    };
+    let own = name(&column);
+    let others = others.unwrap_or_default();
+    let problem = |why: String| Problem::new(format!("gains are not determined: {why}"));
+    if value == 0.0 {
+        return problem(format!("{own} is known to be zero, which fixes no scale")).help(WEIGHED);
+    }
+    if others.is_empty() {
+        return problem(format!("{own} has no effect on the torques")).help(WEIGHED);
+    }
+    let mut names: Vec<String> = others.iter().take(NAMES).map(name).collect();
+    if others.len() > NAMES {
+        names.push(format!("{} more", others.len() - NAMES));
+    }
+    let why = format!(
+        "{own} is known, but its column is a combination of those of {}, which are not",
+        names.join(", ")
+    );
+    let is_load = columns.indices(true).contains(&column);
+    match payload {
+        PayloadUse::Regrouped if is_load => {
+            problem(why).help("all runs carry the payload: record some without it, too")
+        }
+        _ => problem(why).help(format!("{WEIGHED}, or give the values of these, too")),
+    }
+}

@@ -1,0 +1,109 @@
+//! Global identification of the drives' gains: what torque each drive gives for a unit of its measured
+//! signal, together with the unknown parameters (M. Gautier, S. Briot, *Global identification of joint drive
+//! gains and dynamic parameters of robots*, J. Dynamic Systems, Measurement, and Control 136, 2014; the same
+//! of parallel robots in 2012).
+//!
+//! With V having a column for each drive, what its signal contributes to the projected torques, χ the unknown
+//! base parameters and w what known parameters contribute, V g = W χ + w. If w is no combination of the
+//! columns of W, it fixes the scale of g and χ: a payload that was weighed does, when some runs carry it and
+//! some do not. Noise is in V, not in W and w: least squares would be biased to small gains.
+//!
+//! - `known`: which columns are known, and whether they fix the scale;
+//! - `observation`: the equations of all runs, as R factors, case 1 of redundant robots;
+//! - `selection`: which columns are independent on the data;
+//! - `noise`: the noise of the drives' signals, as the residuals tell it;
+//! - `solve`: generalised total least squares with exact columns W and w;
+//! - `deviations`: how sure the gains are;
+//! - `result`: what is told.
+
+mod deviations;
+mod known;
+mod noise;
+mod observation;
+mod result;
+mod selection;
+mod solve;
+
+pub use result::{DriveGain, Gains, JointParameter};
+
+use overact::Model;
+
+use crate::{
+    data::Log,
+    error::{Error, Problem},
+    regression::factor::Factor,
+    settings::Settings,
+};
+use deviations::deviations;
+use known::Split;
+use observation::Observer;
+use selection::{Selection, undetermined};
+use solve::{solve, total_least_squares};
+
+/// A gain that is less than so many deviations from zero is not determined.
+const DETERMINED: f64 = 5.0;
+
+/// Identifies the gains of all drives from runs of a robot some of whose parameters are known
+/// ([`Settings::known`]). `progress` hears the name of a run, its samples that are done, and of how many.
+///
+/// # Errors
+/// Settings or runs that can't be used; gains that are not determined, and why.
+pub fn drive_gains(
+    model: &dyn Model,
+    runs: &[Log],
+    settings: &Settings,
+    progress: &dyn Fn(&str, usize, usize),
+) -> Result<Gains, Error> {
+    let info = model.info();
+    settings.check(&info)?;
+    let split = Split::new(model, runs, settings)?;
+    let observer = Observer {
+        model,
+        split: &split,
+        settings,
+    };
+    let equations = observer.equations(runs, progress)?;
+    let count = equations.system.lines.iter().map(Factor::equations).sum();
+    let unknowns = split.base.columns.len() + info.sizes.actuators;
+    if count <= unknowns {
+        let message = format!("{count} equations do not determine {unknowns} gains and parameters");
+        let help = "record longer runs or decimate less";
+        return Err(Problem::new(message).help(help).into());
+    }
+    let selection = Selection::new(&equations, info.actuators)?;
+    let solution = solve(&equations, &selection)?;
+    let all = || info.actuators.iter().map(|name| format!("`{name}`"));
+    let sure = deviations(&equations, &selection, &solution);
+    let sure = sure.ok_or_else(|| undetermined(&all().collect::<Vec<_>>()))?;
+    let (parameters, drives) = sure.split_at(selection.parameters());
+    let each = solution.gains().iter().zip(drives).zip(all());
+    let unsure: Vec<String> = each
+        .filter(|((gain, deviation), _)| **gain < DETERMINED * **deviation)
+        .map(|(_, name)| name)
+        .collect();
+    if !unsure.is_empty() {
+        return Err(undetermined(&unsure));
+    }
+    let plain = total_least_squares(&equations, &selection, &solution);
+    let drive = |(index, name): (usize, &&str)| DriveGain {
+        actuator: (*name).to_owned(),
+        factor: solution.gains()[index],
+        deviation: drives[index],
+        total_least_squares: plain.as_ref().map(|gains| gains[index]),
+    };
+    let parameter = |(place, deviation): (usize, &f64)| {
+        let base = selection.columns[place];
+        let column = split.columns.as_slice().get(split.base.columns[base]);
+        JointParameter {
+            name: split.base.names[base].clone(),
+            unit: column.map_or_else(String::new, |column| column.unit.to_owned()),
+            value: -solution.values[place],
+            deviation: *deviation,
+        }
+    };
+    Ok(Gains {
+        drives: info.actuators.iter().enumerate().map(drive).collect(),
+        parameters: parameters.iter().enumerate().map(parameter).collect(),
+        equations: count,
+    })
+}

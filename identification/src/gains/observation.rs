@@ -1,0 +1,208 @@
+//! One pass over the runs: the decimated equations [W V | w] of all lines, and how the drives' noise gets
+//! into them.
+//!
+//! Line i of a sample is Σ_j (J_p^inv)ᵀ_ij τ_j g_j = W_i χ + w_i. Columns j of V are filtered and decimated
+//! as the torques are. As Γ¹ = (J_p^inv)ᵀ τ, noise of variance σ_j² of τ_j has in lines i and l the
+//! covariance σ_j² J_ji J_jl; the means of J_ji J_jl over all samples are the `moments`.
+
+use nalgebra::DMatrix;
+use overact::{Function, Model};
+use rayon::prelude::*;
+
+use super::known::Split;
+use crate::{
+    blocks::{BLOCK, slice},
+    data::Log,
+    error::{Error, Problem},
+    filters::Decimator,
+    kinematics::{self, Motion, Motions},
+    regression::{
+        projection::Projection,
+        sink::{LineSink, Plan, observed},
+        system::System,
+    },
+    settings::Settings,
+};
+
+/// Values of all runs that are kept as successive equations (64 MB).
+const LARGEST_STRETCHES: usize = 1 << 23;
+
+/// The equations of all runs.
+#[derive(Debug)]
+pub(super) struct Equations {
+    /// Columns: those of unknown base parameters, then one for each actuator; on the right what is known.
+    pub(super) system: System,
+    /// For each actuator j the means of J_ji J_jl, r x r.
+    pub(super) moments: Vec<DMatrix<f64>>,
+}
+
+/// What is observed, the same for all runs.
+pub(super) struct Observer<'a> {
+    pub(super) model: &'a dyn Model,
+    pub(super) split: &'a Split,
+    pub(super) settings: &'a Settings,
+}
+
+/// Some successive samples: rows line by line, and sums of J_ji J_jl.
+struct Chunk {
+    lines: Vec<Vec<f64>>,
+    moments: Vec<DMatrix<f64>>,
+}
+
+impl Observer<'_> {
+    /// The equations of all runs. `progress` hears the run, the samples done, and of how many.
+    ///
+    /// # Errors
+    /// The problems of all runs together.
+    pub(super) fn equations(
+        &self,
+        runs: &[Log],
+        progress: &dyn Fn(&str, usize, usize),
+    ) -> Result<Equations, Error> {
+        let checked = runs.iter().filter_map(|log| {
+            let checked = kinematics::check(self.model, log, self.settings);
+            checked.err()
+        });
+        Error::check(checked.flat_map(|error| error.problems).collect())?;
+        let info = self.model.info();
+        let (r, n) = (info.sizes.dof, info.sizes.actuators);
+        let mut equations = Equations {
+            system: System::new(Projection::Platform, &info, self.columns()),
+            moments: vec![DMatrix::zeros(r, r); n],
+        };
+        let (mut samples, mut problems) = (0, Vec::new());
+        for (number, log) in runs.iter().enumerate() {
+            let budget = LARGEST_STRETCHES / runs.len();
+            match self.run((number, budget), log, &mut equations, progress) {
+                Ok(count) => samples += count,
+                Err(error) => problems.extend(error.problems),
+            }
+        }
+        Error::check(problems)?;
+        let scale = 1.0 / samples.max(1) as f64;
+        equations.moments.iter_mut().for_each(|own| *own *= scale);
+        Ok(equations)
+    }
+
+    /// Number of unknowns: base parameters and gains.
+    fn columns(&self) -> usize {
+        self.split.base.columns.len() + self.model.info().sizes.actuators
+    }
+
+    /// Adds the equations of a run, and tells how many samples they were made from.
+    fn run(
+        &self,
+        (number, budget): (usize, usize),
+        log: &Log,
+        equations: &mut Equations,
+        progress: &dyn Fn(&str, usize, usize),
+    ) -> Result<usize, Error> {
+        let sizes = self.model.info().sizes;
+        let (r, n) = (sizes.dof, sizes.actuators);
+        let mut motions = Motions::new(self.model, log, self.settings)?;
+        let samples = motions.samples();
+        let decimator = Decimator::new(self.settings.decimation)?;
+        let width = self.columns() + 1;
+        let plan = Plan::new(decimator.kept(samples), budget / (r * width).max(1));
+        let sink = |line: usize| {
+            let limit = self.settings.standstill_velocity.get(line).copied();
+            let stream = decimator.stream(width + usize::from(limit.is_some()), samples)?;
+            let columns = (self.columns(), false);
+            Ok(LineSink::new(&plan, stream, columns, limit))
+        };
+        let mut sinks: Vec<LineSink> = (0..r).map(sink).collect::<Result<_, Error>>()?;
+        while let Some(motion) = motions.next()? {
+            let chunks: Vec<Chunk> = (0..motion.samples.div_ceil(BLOCK))
+                .into_par_iter()
+                .map(|index| self.chunk(&motion, index * BLOCK))
+                .collect::<Result<_, Error>>()?;
+            sinks.par_iter_mut().enumerate().for_each(|(line, sink)| {
+                for (place, chunk) in chunks.iter().enumerate() {
+                    let velocities = motion.velocities.iter().copied();
+                    let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
+                    sink.push(&plan, (&chunk.lines[line], None), velocities);
+                }
+            });
+            for chunk in &chunks {
+                let own = equations.moments.iter_mut().zip(&chunk.moments);
+                own.for_each(|(all, more)| *all += more);
+            }
+            progress(log.name(), motions.done(), log.samples());
+        }
+        equations
+            .system
+            .extend(observed(number, &plan, sinks, None));
+        Ok(samples)
+    }
+
+    /// Evaluates up to [`BLOCK`] samples from number `first` of the motion on.
+    fn chunk(&self, motion: &Motion, first: usize) -> Result<Chunk, Error> {
+        let sizes = self.model.info().sizes;
+        let (r, n) = (sizes.dof, sizes.actuators);
+        let count = BLOCK.min(motion.samples - first);
+        let at = |error: overact::SampleError| -> Problem {
+            motion.outside(first + error.sample, error.error)
+        };
+        let pose = slice(&motion.pose, sizes.pose, first, count);
+        let twist = slice(&motion.twist, r, first, count);
+        let acceleration = slice(&motion.acceleration, r, first, count);
+        let torques = slice(&motion.torques, n, first, count);
+        let mut jacobians = vec![0.0; count * n * r];
+        self.model
+            .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
+            .map_err(at)?;
+        let known = self.split.known.iter().map(|(column, _)| *column);
+        let base = self.split.base.columns.iter().copied();
+        let picked: Vec<usize> = base.chain(known).collect();
+        let evaluated = self
+            .split
+            .columns
+            .evaluate(
+                self.model,
+                &[pose, twist, acceleration],
+                (count, 1.0 / motion.sampling_frequency),
+                motion.payload,
+                (&picked, 0),
+            )
+            .map_err(at)?;
+        let line = |(line, rows): (usize, Vec<f64>)| {
+            let drives = jacobians
+                .chunks_exact(n * r)
+                .zip(torques.chunks_exact(n))
+                .map(move |(jacobian, torques)| (jacobian.iter().skip(line).step_by(r), torques));
+            self.joined(&rows, picked.len(), drives)
+        };
+        let mut moments = vec![DMatrix::zeros(r, r); n];
+        for jacobian in jacobians.chunks_exact(n * r) {
+            for (row, own) in jacobian.chunks_exact(r).zip(&mut moments) {
+                for (i, l) in (0..r).flat_map(|i| (0..r).map(move |l| (i, l))) {
+                    own[(i, l)] += row[i] * row[l];
+                }
+            }
+        }
+        Ok(Chunk {
+            lines: evaluated.into_iter().enumerate().map(line).collect(),
+            moments,
+        })
+    }
+
+    /// Rows of a line: its columns of unknown parameters, what each drive's signal adds to it, and on the
+    /// right the sum of what is known, from rows of `width` columns of unknown and known parameters.
+    fn joined<'v>(
+        &self,
+        rows: &[f64],
+        width: usize,
+        drives: impl Iterator<Item = (impl Iterator<Item = &'v f64>, &'v [f64])>,
+    ) -> Vec<f64> {
+        let unknown = self.split.base.columns.len();
+        let mut all = Vec::new();
+        for (row, (factors, torques)) in rows.chunks_exact(width).zip(drives) {
+            let (own, known) = row.split_at(unknown);
+            all.extend_from_slice(own);
+            all.extend(factors.zip(torques).map(|(factor, torque)| factor * torque));
+            let values = self.split.known.iter().map(|(_, value)| value);
+            all.push(known.iter().zip(values).map(|(a, b)| a * b).sum());
+        }
+        all
+    }
+}

@@ -1,0 +1,99 @@
+//! Gains of the drives, as they are printed and as they are serialised.
+
+use serde::Serialize;
+
+/// Deviations by which a gain differs from that of the description before it is worth a warning.
+const DEVIATIONS: f64 = 3.0;
+
+/// Part by which a gain differs from that of the description before it is worth a warning.
+const PART: f64 = 0.02;
+
+/// The gain of one drive.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DriveGain {
+    /// Name of the actuator.
+    pub actuator: String,
+    /// Torque (N m) or force (N) of the drive for each unit of it in the log: the gain relative to that of
+    /// the description, by which the log was made.
+    pub factor: f64,
+    /// Standard deviation of the factor.
+    pub deviation: f64,
+    /// The factor by total least squares, for comparison: they take all columns for equally wrong. None
+    /// where they have no solution.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub total_least_squares: Option<f64>,
+}
+
+impl DriveGain {
+    /// Whether the description's gain is wrong: by more than three deviations and more than 2 %.
+    #[must_use]
+    pub fn is_wrong(&self) -> bool {
+        let difference = (self.factor - 1.0).abs();
+        difference > DEVIATIONS * self.deviation && difference > PART
+    }
+}
+
+/// A base parameter that was estimated together with the gains.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointParameter {
+    /// Its name: the kept parameter's, with the suffix `R` where others are regrouped into it. What is known
+    /// is not among them.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Estimate.
+    pub value: f64,
+    /// Standard deviation, which the gains' own is part of.
+    pub deviation: f64,
+}
+
+/// What an identification of the gains found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Gains {
+    /// One for each actuator.
+    pub drives: Vec<DriveGain>,
+    /// The base parameters that were unknown.
+    pub parameters: Vec<JointParameter>,
+    /// Number of equations.
+    pub equations: usize,
+}
+
+impl Gains {
+    /// By what the torques of each actuator are to be multiplied.
+    #[must_use]
+    pub fn factors(&self) -> Vec<f64> {
+        self.drives.iter().map(|one| one.factor).collect()
+    }
+
+    /// What is said of gains that the description has wrong.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let wrong = self.drives.iter().filter(|one| one.is_wrong());
+        wrong
+            .map(|one| {
+                format!(
+                    "the drive of `{}` gives {:.4} times the torque that the description says, with a standard deviation of {:.4}: check its `torque_gain`",
+                    one.actuator, one.factor, one.deviation
+                )
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::DriveGain;
+
+    #[test]
+    fn a_gain_is_wrong_beyond_three_deviations_and_two_per_cent() {
+        let gain = |factor, deviation| DriveGain {
+            actuator: String::from("leg1"),
+            factor,
+            deviation,
+            total_least_squares: None,
+        };
+        assert!(gain(1.05, 0.01).is_wrong() && gain(0.95, 0.01).is_wrong());
+        assert!(!gain(1.05, 0.02).is_wrong());
+        assert!(!gain(1.015, 0.001).is_wrong());
+    }
+}

@@ -1,0 +1,78 @@
+//! Which columns of the equations are solved for, and what is said where those of drives can't be.
+
+use super::observation::Equations;
+use crate::{
+    error::{Error, Problem},
+    regression::{
+        elimination::eliminate,
+        factor::{DATA_RANK_TOLERANCE, Factor},
+    },
+};
+
+/// Columns of the drives whose part outside of all others is below this part of their norm can't be told
+/// from them.
+const RANK_TOLERANCE: f64 = 1e-7;
+
+/// Which columns of the equations are solved for.
+#[derive(Debug, Clone)]
+pub(super) struct Selection {
+    /// Columns that are independent on the data: those of parameters, then those of all drives.
+    pub(super) columns: Vec<usize>,
+    /// Number of the drives.
+    pub(super) drives: usize,
+}
+
+impl Selection {
+    /// The columns that are independent on the data; `actuators` are the names of the drives.
+    ///
+    /// # Errors
+    /// Drives whose columns depend on others.
+    pub(super) fn new(equations: &Equations, actuators: &[&str]) -> Result<Self, Error> {
+        let lines = &equations.system.lines;
+        let weights: Vec<f64> = lines.iter().map(|line| 1.0 / size(line)).collect();
+        let factor = Factor::merged(lines, &weights);
+        let drives = actuators.len();
+        let unknown = factor.parameters() - drives;
+        let order: Vec<usize> = (0..unknown).collect();
+        let found = eliminate(factor.matrix(), &order, DATA_RANK_TOLERANCE);
+        let all: Vec<usize> = (unknown..factor.parameters()).collect();
+        let columns = [found.kept, all.clone()].concat();
+        let kept = eliminate(factor.matrix(), &columns, RANK_TOLERANCE).kept;
+        let missing = all.iter().filter(|column| !kept.contains(column));
+        let missing: Vec<String> = missing
+            .map(|column| format!("`{}`", actuators[column - unknown]))
+            .collect();
+        match missing.is_empty() {
+            true => Ok(Self { columns, drives }),
+            false => Err(undetermined(&missing)),
+        }
+    }
+
+    /// Number of parameters beside the gains.
+    pub(super) fn parameters(&self) -> usize {
+        self.columns.len() - self.drives
+    }
+}
+
+/// The root mean square of a line's rows, in units of which lines can be compared before their noise is
+/// known; 1 where there is nothing.
+pub(super) fn size(line: &Factor) -> f64 {
+    let norm = line.matrix().norm() / (line.equations().max(1) as f64).sqrt();
+    if norm > 0.0 { norm } else { 1.0 }
+}
+
+/// The problem of gains that the data do not tell.
+pub(super) fn undetermined(actuators: &[String]) -> Error {
+    let message = format!(
+        "gains are not determined: the data do not tell {} of {}",
+        if actuators.len() == 1 {
+            "that"
+        } else {
+            "those"
+        },
+        actuators.join(", ")
+    );
+    Problem::new(message)
+        .help("let all drives move and accelerate what is known, with the payload and without it, or give more that is known, such as the first moments of the payload")
+        .into()
+}

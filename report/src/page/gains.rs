@@ -1,0 +1,99 @@
+//! Gains of the drives that were identified from known parameters, before the dynamic parameters were.
+
+use super::{
+    Contents,
+    markup::{Section, note, paragraph},
+    table::{Cell, Table},
+};
+use overact_identification::{DriveGain, JointParameter, Settings};
+
+/// The section; empty where no gains were identified.
+pub(super) fn section(contents: &Contents<'_>) -> Section {
+    let identification = contents.identification;
+    let body = match identification.gains.is_empty() {
+        true => String::new(),
+        false => {
+            introduction(&identification.settings)
+                + &drives(&identification.gains)
+                + &parameters(&identification.gain_parameters)
+        }
+    };
+    Section {
+        id: "gains",
+        title: "Gains of the drives",
+        body,
+    }
+}
+
+/// What was done, in words.
+fn introduction(settings: &Settings) -> String {
+    let known: Vec<String> = settings
+        .known
+        .keys()
+        .map(|name| format!("`{name}`"))
+        .collect();
+    paragraph(&format!(
+        "What torque each drive gives was identified together with the parameters, relative to what is known: {}.",
+        known.join(", ")
+    ))
+}
+
+/// The table of the gains.
+fn drives(gains: &[DriveGain]) -> String {
+    let rows = gains.iter().map(|one| {
+        vec![
+            Cell::text(&one.actuator),
+            Cell::digits(Some(one.factor), 5),
+            Cell::digits(Some(one.deviation), 2),
+            Cell::digits(one.total_least_squares, 5),
+            Cell::text(if one.is_wrong() {
+                "not as described"
+            } else {
+                ""
+            }),
+        ]
+    });
+    let right = |title: &str| Cell::text(title).class("n");
+    let table = Table {
+        caption: String::from("Gains by those of the description"),
+        header: vec![vec![
+            Cell::text("drive"),
+            right("gain"),
+            right("deviation"),
+            right("by total least squares"),
+            Cell::text(""),
+        ]],
+        rows: rows.collect(),
+    };
+    table.html()
+        + &note(
+            "All torques on this page are multiplied by these gains. Total least squares take all columns for equally wrong and stand for comparison.",
+        )
+}
+
+/// The table of what was estimated with the gains.
+fn parameters(parameters: &[JointParameter]) -> String {
+    let rows = parameters.iter().map(|one| {
+        vec![
+            Cell::text(&one.name),
+            Cell::digits(Some(one.value), 6),
+            Cell::digits(Some(one.deviation), 2),
+            Cell::text(&one.unit).class("unit"),
+        ]
+    });
+    let right = |title: &str| Cell::text(title).class("n");
+    let table = Table {
+        caption: String::from("Parameters that were estimated together with the gains"),
+        header: vec![vec![
+            Cell::text("parameter"),
+            right("value"),
+            right("deviation"),
+            Cell::text("unit"),
+        ]],
+        rows: rows.collect(),
+    };
+    table.html()
+        + &note(
+            "These deviations have a part that is the gains\u{2019}; intervals elsewhere on this page hold for the gains as found.",
+        )
+}

@@ -1,0 +1,297 @@
+//! Gains of drives found from virtual experiments in which the mass of a payload is known.
+
+use overact_identification::{Gains, Log, Settings, Stage, drive_gains};
+use overact_robot::{Identifier, Robot, Runs};
+use overact_tier::by_tier;
+use std::{collections::BTreeMap, f64::consts::TAU, path::Path};
+
+fn text(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path.join("../robots").join(name)).expect("a description")
+}
+
+fn robot(text: &str) -> Robot {
+    Robot::from_text("robot.toml", text).expect("a robot")
+}
+
+/// The DualV with these settings.
+fn dualv(identification: &str) -> String {
+    let text = text("dualv.toml");
+    assert_eq!(text.matches("[identification]\n").count(), 1);
+    text.replace(
+        "[identification]\n",
+        &format!("[identification]\n{identification}\n"),
+    )
+}
+
+/// The DualV, sampled less often than that of the paper.
+fn coarse(identification: &str) -> String {
+    let text = dualv(identification).replace("sampling = \"5 kHz\"", "sampling = \"1 kHz\"");
+    let coarse = text.replace("decimation = 50", "decimation = 10");
+    assert_ne!(coarse, text);
+    coarse
+}
+
+const KNOWN: &str = "gains = true\nknown = { m_payload = \"5.42 kg\" }";
+
+/// What the drives of the DualV give for a unit of what the log says.
+const WRONG: [f64; 4] = [1.12, 0.83, 1.33, 0.72];
+
+/// Normal noise.
+struct Noise(u64);
+
+impl Noise {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        radius * (TAU * self.uniform()).cos()
+    }
+}
+
+/// The runs of the virtual experiment without noise, so long (s).
+fn exact(robot: &Robot, duration: f64) -> Runs {
+    let mut experiment = robot.experiment().expect("an experiment");
+    let plan = experiment.plan_mut();
+    plan.duration_s = duration;
+    plan.torque_noise = Vec::new();
+    plan.encoder_resolution = Vec::new();
+    let held_out = robot.held_out();
+    experiment.runs(&held_out, &|_, _| {}).expect("runs")
+}
+
+/// Runs as drives of such gains log them: torques with noise of deviations (N m), divided by the gains.
+fn logged(runs: &[Log], gains: &[f64], deviations: &[f64], seed: u64) -> Vec<Log> {
+    let mut noise = Noise(seed.wrapping_mul(0xd134_2543_de82_ef95));
+    let log = |log: &Log| {
+        let (positions, mut torques) = log.load().expect("a run");
+        for row in torques.chunks_exact_mut(gains.len()) {
+            for ((torque, gain), deviation) in row.iter_mut().zip(gains).zip(deviations) {
+                *torque = (*torque + deviation * noise.normal()) / gain;
+            }
+        }
+        let (frequency, n) = (log.sampling_frequency(), gains.len());
+        Log::new(log.name(), frequency, n, positions, torques, log.payload()).expect("a log")
+    };
+    runs.iter().map(log).collect()
+}
+
+fn found(robot: &Robot, runs: &[Log], settings: &Settings) -> Gains {
+    drive_gains(robot.model(), runs, settings, &|_, _, _| {}).expect("gains")
+}
+
+/// How many deviations each gain is off.
+fn misses(found: &Gains, truth: &[f64]) -> Vec<f64> {
+    let each = found.drives.iter().zip(truth);
+    each.map(|(own, truth)| (own.factor - truth) / own.deviation)
+        .collect()
+}
+
+/// What is said where no gains are found.
+fn refused(robot: &Robot, runs: &[Log]) -> String {
+    let identifier = Identifier::new(robot).runs(runs).gains(true);
+    let error = identifier.run().expect_err("no gains");
+    error.render(false)
+}
+
+#[test]
+fn a_dualv_tells_its_gains_and_masses_by_a_payload_that_was_weighed() {
+    let robot = robot(&by_tier([coarse(KNOWN), dualv(KNOWN)]));
+    let exact = exact(&robot, by_tier([1.0, 4.0]));
+    let truth = exact.true_values.clone().expect("true values");
+    for seed in 1..=by_tier([1, 3]) {
+        let runs = Runs {
+            identified: logged(&exact.identified, &WRONG, &[0.5; 4], seed),
+            validation: logged(&exact.validation, &WRONG, &[0.5; 4], seed + 100),
+            true_values: exact.true_values.clone(),
+        };
+        let result = Identifier::new(&robot).data(&runs).run();
+        let result = result.expect("an identification");
+        for (own, truth) in result.gains.iter().zip(WRONG) {
+            let miss = (own.factor - truth) / own.deviation;
+            println!(
+                "{}: {} ± {}, {truth}, by TLS {:?}",
+                own.actuator, own.factor, own.deviation, own.total_least_squares
+            );
+            assert!(miss.abs() < 3.0, "{own:?}, {truth}");
+            assert!(own.deviation < 0.05 * truth, "{own:?}");
+        }
+        let joint = |name: &str| {
+            let mut all = result.gain_parameters.iter();
+            all.find(|one| one.name.trim_end_matches('R') == name)
+                .expect(name)
+        };
+        let base: BTreeMap<&str, Option<f64>> = result
+            .base_parameters
+            .iter()
+            .map(|one| (one.name.as_str(), one.true_value))
+            .collect();
+        for name in [
+            "m_platform",
+            "zz_payload",
+            "mx_payload",
+            "zz_1_leg1",
+            "zz_1_leg4",
+        ] {
+            let own = joint(name);
+            let truth = base[own.name.as_str()].expect("a true value");
+            println!("{}: {} ± {}, {truth}", own.name, own.value, own.deviation);
+            assert!(
+                ((own.value - truth) / own.deviation).abs() < 3.0,
+                "{own:?}, {truth}"
+            );
+        }
+        // The estimates with the torques that the gains give have the masses as well.
+        let all = result
+            .by_least_squares()
+            .find(|one| one.stage == Stage::Base);
+        let all = &all.expect("an estimate").parameters;
+        let mass = all
+            .iter()
+            .find(|one| one.name == "m_payload")
+            .expect("the mass");
+        assert!(
+            (mass.value / truth["m_payload"] - 1.0).abs() < 0.02,
+            "{mass:?}"
+        );
+        let warned = result
+            .warnings
+            .iter()
+            .filter(|one| one.contains("torque_gain"));
+        assert_eq!(warned.count(), 4, "{:?}", result.warnings);
+        let worst = result
+            .cross_validation
+            .iter()
+            .map(|one| one.relative_error_percent);
+        assert!(worst.fold(0.0, f64::max) < 20.0, "{:?}", result.warnings);
+    }
+}
+
+/// Deviations are as large as the errors, and the errors have the mean zero, where the noise of the drives
+/// differs and is large.
+#[test]
+fn deviations_of_gains_are_honest() {
+    let robot = robot(&coarse(KNOWN));
+    let exact = exact(&robot, by_tier([1.0, 4.0]));
+    let settings = robot.settings(1000.0);
+    let draws = by_tier([4, 300]);
+    let noise = [0.5, 1.0, 2.0, 1.0];
+    let (mut squares, mut sums) = ([0.0; 4], [0.0; 4]);
+    let mut plain = [0.0; 4];
+    for draw in 0..draws {
+        let runs = logged(&exact.identified, &WRONG, &noise, 1 + draw);
+        let found = found(&robot, &runs, &settings);
+        for (j, miss) in misses(&found, &WRONG).into_iter().enumerate() {
+            squares[j] += miss * miss;
+            sums[j] += miss;
+            plain[j] += found.drives[j].total_least_squares.unwrap_or(f64::NAN) / WRONG[j];
+        }
+    }
+    let count = draws as f64;
+    let sizes = squares.map(|sum: f64| (sum / count).sqrt());
+    let means = sums.map(|sum| sum / count);
+    println!(
+        "errors in deviations {sizes:?}, their means {means:?}, plain total least squares by the truth {:?}",
+        plain.map(|sum| sum / count)
+    );
+    let [least, largest] = by_tier([[0.2, 2.5], [0.8, 1.2]]);
+    assert!(
+        sizes.iter().all(|size| (least..largest).contains(size)),
+        "{sizes:?}"
+    );
+    let bias = 4.0 / count.sqrt();
+    assert!(means.iter().all(|mean| mean.abs() < bias), "{means:?}");
+}
+
+/// The RX90 with a payload on its last body, of which the mass and the place of its centre are known.
+fn rx90(known: &str) -> String {
+    let text = text("rx90.toml");
+    let payload = "[[leg.arm.joint]]\nname = \"payload\"\ntype = \"fixed\"\n\n[[place]]";
+    let values = "[experiment.parameters]\nm_payload = 5\nmx_payload = 0.25\nmy_payload = -0.1\nmz_payload = 0.9\n\
+                  xx_payload = 0.18\nyy_payload = 0.2\nzz_payload = 0.03\n";
+    let start = text.find("[[experiment.run]]").expect("a run");
+    let end = start
+        + 1
+        + text[start + 1..]
+            .find("[[experiment.run]]")
+            .expect("two runs");
+    let loaded = text[start..end].replace("\"identification\"", "\"loaded\"\npayload = true");
+    let text = text
+        .replacen("[[place]]", payload, 1)
+        .replacen("[experiment.parameters]\n", values, 1)
+        .replacen(
+            "decimation = 10",
+            &format!("decimation = 10\ngains = true\n{known}"),
+            1,
+        );
+    text + "\n" + &loaded
+}
+
+#[test]
+fn a_serial_robot_tells_its_gains_by_a_payload_on_its_last_body() {
+    let wrong = [0.88, 1.2, 0.75, 1.33, 1.15, 0.8];
+    let robot = robot(&rx90(
+        "known = { m_payload = 5, mx_payload = 0.25, my_payload = -0.1, mz_payload = 0.9 }",
+    ));
+    let exact = exact(&robot, by_tier([2.5, 20.0]));
+    let all = [exact.identified, exact.validation].concat();
+    let settings = robot.settings(1000.0);
+    for seed in 1..=by_tier([1, 5]) {
+        let runs = logged(&all, &wrong, &[1.0, 1.0, 0.5, 0.2, 0.2, 0.1], seed);
+        let found = found(&robot, &runs, &settings);
+        for (own, truth) in found.drives.iter().zip(wrong) {
+            println!(
+                "{}: {} ± {}, {truth}, by TLS {:?}",
+                own.actuator, own.factor, own.deviation, own.total_least_squares
+            );
+            assert!(own.deviation < 0.1 * truth, "{own:?}");
+        }
+        assert!(
+            misses(&found, &wrong).iter().all(|miss| miss.abs() < 3.5),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
+fn gains_that_nothing_fixes_are_refused_and_why() {
+    let nothing = robot(&coarse(""));
+    let runs = exact(&nothing, 0.5).identified;
+    let told = refused(&nothing, &runs);
+    assert!(told.contains("no parameter is known"), "{told}");
+    let payload = robot(&coarse(KNOWN));
+    let (loaded, unloaded): (Vec<Log>, Vec<Log>) = runs.iter().cloned().partition(Log::payload);
+    let told = refused(&payload, &unloaded);
+    assert!(
+        told.contains("`m_payload` is known, but no run carries the payload"),
+        "{told}"
+    );
+    let told = refused(&payload, &loaded);
+    assert!(
+        told.contains("combination of those of `m_platform`, which are not"),
+        "{told}"
+    );
+    assert!(told.contains("record some without it"), "{told}");
+    let regrouped = robot(&coarse("known = { m_2_leg1 = 1 }"));
+    let told = refused(&regrouped, &runs);
+    assert!(
+        told.contains("`m_2_leg1` is known, but its column is a combination"),
+        "{told}"
+    );
+    let zero = robot(&coarse("known = { mx_payload = 0 }"));
+    let told = refused(&zero, &runs);
+    assert!(told.contains("`mx_payload` is known to be zero"), "{told}");
+}
+
+#[test]
+fn robots_whose_motors_turn_several_joints_have_no_gains_of_joints() {
+    let coupled = robot(&text("tx40.toml"));
+    let told = refused(&coupled, &[]);
+    assert!(told.contains("motors of this robot turn several"), "{told}");
+}
