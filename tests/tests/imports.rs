@@ -113,6 +113,7 @@ const HOUSES: [House; 6] = [
             "experiment",
             "check",
             "runs",
+            "excitation",
             "instruments",
             "tracking",
             "partitions",
