@@ -1,7 +1,7 @@
 //! A period of a run as the robot goes through it, and the peaks of everything that is limited.
 
 use super::frame::Frame;
-use super::limits::{Limit, LimitKind};
+use super::kind::LimitKind;
 use nalgebra::DMatrix;
 use overact::{Error, Function, Info, Model, math::wrap_angle};
 use overact_simulation::{Displacement, Sampled, Trajectory, sample};
@@ -210,10 +210,5 @@ impl Course {
             largest + UNKNOWN_BETWEEN * BETWEEN_SAMPLES * (0..rows).map(bend).fold(0.0, f64::max)
         };
         (0..width).map(peak).collect()
-    }
-
-    /// The largest part of each limit that the run takes.
-    pub(super) fn uses(&self, limits: &[Limit], between: bool) -> Vec<f64> {
-        limits.iter().map(|limit| limit.used(&self.peaks(limit.kind, between))).collect()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::course::{Bench, Course};
 use super::frame::Frame;
+use super::kind::LimitKind;
 use overact_codegen::description::{self, Description};
 use overact_simulation::Trajectory;
 use serde::Serialize;
@@ -23,39 +24,6 @@ const REACH_SHARE: f64 = 0.5;
 
 /// The first step along a coordinate when the reach is found out, m or rad, its growth and the last one.
 const REACH: [f64; 3] = [1e-3, 1.1, 1.5];
-
-/// What is limited.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LimitKind {
-    /// Displacement of each coordinate from home, m or rad.
-    Position,
-    /// Displacement of each actuator from home, m or rad.
-    Travel,
-    /// Speed of each actuator, m/s or rad/s.
-    Velocity,
-    /// Acceleration of each actuator, m/s² or rad/s².
-    Acceleration,
-    /// Torque or force of each actuator, N m or N.
-    Torque,
-    /// Condition number of J_p^inv or of its part of the kept actuators, columns scaled at home.
-    Condition,
-}
-
-impl LimitKind {
-    /// `position`, `travel` and so on: the key of `[excitation]` where there is one.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Position => "position",
-            Self::Travel => "travel",
-            Self::Velocity => "velocity",
-            Self::Acceleration => "acceleration",
-            Self::Torque => "torque",
-            Self::Condition => "condition",
-        }
-    }
-}
 
 /// Where a limit comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -94,11 +62,17 @@ pub struct Limit {
 
 impl Limit {
     /// The largest part of the limit that peaks take: 1 is all of it.
-    pub(super) fn used(&self, peaks: &[f64]) -> f64 {
+    fn used(&self, peaks: &[f64]) -> f64 {
         let part = |(peak, limit): (&f64, &f64)| if *peak == 0.0 { 0.0 } else { peak / limit };
         let parts = peaks.iter().zip(&self.values).map(part);
         parts.fold(0.0, |most: f64, part| if part.is_nan() { f64::INFINITY } else { most.max(part) })
     }
+}
+
+/// The largest part of each limit that a run takes, at the samples, or also between them.
+pub(super) fn uses(course: &Course, limits: &[Limit], between: bool) -> Vec<f64> {
+    let used = |limit: &Limit| limit.used(&course.peaks(limit.kind, between));
+    limits.iter().map(used).collect()
 }
 
 /// The limits of a description; `described` are its own runs to identify from.

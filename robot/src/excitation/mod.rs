@@ -5,7 +5,7 @@
 //! a redundant robot. Each coordinate moves along a finite Fourier series. From the bottom up:
 //!
 //! - `frame`: what is fixed of a run, and its series; `course`: the robot along it, and all peaks;
-//! - `limits`: limits and where they come from; `information`: what runs tell of the parameters;
+//! - `kind`, `limits`: what is limited, how much, and where that comes from; `information`: what runs tell of the parameters;
 //! - `evolution`: a search without derivatives; `search`: random series, evolution, and the check of the limits
 //!   at and between the samples of a fine grid; `text`: the runs in a description.
 
@@ -13,12 +13,14 @@ mod course;
 mod evolution;
 mod frame;
 mod information;
+mod kind;
 mod limits;
 mod search;
 mod text;
 
 pub use information::CaseOfRuns;
-pub use limits::{Limit, LimitKind, Origin};
+pub use kind::LimitKind;
+pub use limits::{Limit, Origin};
 
 use crate::{
     error::{Error, Problem},
@@ -294,7 +296,7 @@ impl<'a> Task<'a> {
             let course = self.bench.course(frame, trajectory, samples).ok()?;
             let own = self.question.information(&self.bench, frame, &course)?;
             information = added(&information, &own);
-            let uses = course.uses(&self.limits, false);
+            let uses = limits::uses(&course, &self.limits, false);
             used.iter_mut().zip(uses).for_each(|(most, own): (&mut f64, f64)| *most = most.max(own));
         }
         information.iter_mut().for_each(|matrix| *matrix *= factor);

@@ -5,7 +5,8 @@ use super::course::Bench;
 use super::evolution::Evolution;
 use super::frame::{Frame, Series};
 use super::information::Question;
-use super::limits::{Limit, LimitKind};
+use super::kind::LimitKind;
+use super::limits::{Limit, uses};
 use nalgebra::DMatrix;
 use overact_simulation::Trajectory;
 use rand_distr::{Distribution, StandardNormal};
@@ -113,7 +114,7 @@ impl<'a> Search<'a> {
             let trajectory = series.scaled(&whole, factor);
             let course = self.bench.course(series.frame, &trajectory, series.samples);
             let worst = course.as_ref().map_or(f64::INFINITY, |course| {
-                largest(&course.uses(self.limits, false))
+                largest(&uses(course, self.limits, false))
             });
             if let (Ok(course), true) = (&course, worst <= 1.0) {
                 let information = self.question.information(self.bench, series.frame, course)?;
@@ -131,7 +132,7 @@ impl<'a> Search<'a> {
         let Ok(course) = self.bench.course(series.frame, &trajectory, series.samples) else {
             return unreached();
         };
-        let uses = course.uses(self.limits, false).into_iter();
+        let uses = uses(&course, self.limits, false).into_iter();
         let kinds = self.limits.iter().map(|limit| limit.kind);
         // The series itself keeps the limits of position.
         let others = uses.zip(kinds).filter(|(_, kind)| *kind != LimitKind::Position);
@@ -186,7 +187,7 @@ impl<'a> Search<'a> {
         for _ in 0..SETTLING {
             let trajectory = series.rounded(&series.scaled(trajectory, factor));
             let course = self.bench.course(series.frame, &trajectory, samples);
-            let worst = course.map_or(f64::INFINITY, |course| largest(&course.uses(self.limits, true)));
+            let worst = course.map_or(f64::INFINITY, |course| largest(&uses(&course, self.limits, true)));
             if worst <= 1.0 - PRINTED {
                 let coarse = self.bench.course(series.frame, &trajectory, series.samples).ok()?;
                 let information = self.question.information(self.bench, series.frame, &coarse)?;
