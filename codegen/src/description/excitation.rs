@@ -66,7 +66,8 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Excitat
         let value = item.positive(Dimension::NONE, scope)?;
         if value < 1.0 {
             let error = item.error(format!("a condition number of {value} can't be"));
-            item.context.report(error.help("it is at least 1; 10 is far from singular"));
+            item.context
+                .report(error.help("it is at least 1; 10 is far from singular"));
         }
         Some(value)
     });
@@ -90,7 +91,10 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Excitat
 /// Reports limits that leave no motion.
 fn moves(item: &Item<'_, '_>, moves: bool) -> bool {
     if !moves {
-        let error = item.error(format!("`{}`: a limit of 0 leaves no motion", item.key.value));
+        let error = item.error(format!(
+            "`{}`: a limit of 0 leaves no motion",
+            item.key.value
+        ));
         let help = "leave the key out where there is no limit";
         item.context.report(error.help(help));
     }

@@ -52,6 +52,19 @@ impl<'a> Bench<'a> {
         self.lengths.get(coordinate).copied().unwrap_or(false)
     }
 
+    /// The units of what is limited, of each coordinate or actuator.
+    pub(super) fn units(&self, kind: LimitKind) -> Vec<&'static str> {
+        let unit = |is_length: &bool| kind.unit(*is_length);
+        match kind {
+            LimitKind::Position => self.lengths.iter().map(unit).collect(),
+            LimitKind::Condition => vec![kind.unit(false)],
+            _ => {
+                let revolute = self.info.actuator_is_revolute.iter();
+                revolute.map(|revolute| kind.unit(!revolute)).collect()
+            }
+        }
+    }
+
     /// A period of a run at so many samples.
     ///
     /// # Errors
@@ -81,12 +94,18 @@ impl<'a> Bench<'a> {
                 if !frame.payload {
                     own[sizes.parameters..].fill(0.0);
                 }
-                ask(Function::InverseDynamics, &[motion[0], motion[1], motion[2], &own])?
+                ask(
+                    Function::InverseDynamics,
+                    &[motion[0], motion[1], motion[2], &own],
+                )?
             }
         };
         let (n, r) = (sizes.actuators, sizes.dof);
-        let rates = jacobian.chunks_exact(n * r).zip(states.twist.chunks_exact(r));
-        let rate = |row: &[f64], twist: &[f64]| row.iter().zip(twist).map(|(j, v)| j * v).sum::<f64>();
+        let rates = jacobian
+            .chunks_exact(n * r)
+            .zip(states.twist.chunks_exact(r));
+        let rate =
+            |row: &[f64], twist: &[f64]| row.iter().zip(twist).map(|(j, v)| j * v).sum::<f64>();
         let velocity = rates.flat_map(|(j, v)| j.chunks_exact(r).map(move |row| rate(row, v)));
         let actuated = self.info.actuated_joints;
         let accelerations = joints.chunks_exact(sizes.joints);
@@ -108,7 +127,12 @@ impl<'a> Bench<'a> {
     }
 
     /// Displacements of the coordinates, and by how much each may rise between two samples.
-    fn displacement(&self, frame: &Frame, trajectory: &Trajectory, samples: usize) -> (Vec<f64>, Vec<f64>) {
+    fn displacement(
+        &self,
+        frame: &Frame,
+        trajectory: &Trajectory,
+        samples: usize,
+    ) -> (Vec<f64>, Vec<f64>) {
         let dof = self.info.sizes.dof;
         let mut displacement = vec![0.0; samples * dof];
         let (mut velocity, mut acceleration) = (vec![0.0; dof], vec![0.0; dof]);
@@ -125,7 +149,11 @@ impl<'a> Bench<'a> {
         if let Trajectory::Periodic { terms, .. } = trajectory {
             for term in terms {
                 let step = TAU * f64::from(term.harmonic) / samples as f64;
-                let at = self.info.coordinates.iter().position(|name| *name == term.coordinate);
+                let at = self
+                    .info
+                    .coordinates
+                    .iter()
+                    .position(|name| *name == term.coordinate);
                 if let Some(rise) = at.and_then(|at| rise.get_mut(at)) {
                     *rise += BETWEEN_SAMPLES * term.amplitude.abs() * step * step;
                 }
@@ -139,15 +167,23 @@ impl<'a> Bench<'a> {
         let n = self.info.sizes.actuators;
         let from = |index: usize| {
             let joint = self.info.actuated_joints.get(index);
-            let home = joint.and_then(|&joint| self.info.home_joints.get(joint)).copied();
+            let home = joint
+                .and_then(|&joint| self.info.home_joints.get(joint))
+                .copied();
             let home = home.unwrap_or(0.0);
             let start = positions.get(index).copied().unwrap_or(home) - home;
-            let turns = self.has_platform && self.info.actuator_is_revolute[index] && start.abs() > PI;
-            if turns { home + start - wrap_angle(start) } else { home }
+            let turns =
+                self.has_platform && self.info.actuator_is_revolute[index] && start.abs() > PI;
+            if turns {
+                home + start - wrap_angle(start)
+            } else {
+                home
+            }
         };
         let from: Vec<f64> = (0..n).map(from).collect();
         let rows = positions.chunks_exact(n);
-        rows.flat_map(|row| row.iter().zip(&from).map(|(at, from)| at - from)).collect()
+        rows.flat_map(|row| row.iter().zip(&from).map(|(at, from)| at - from))
+            .collect()
     }
 
     /// The condition number at each sample; infinite where the sign of the determinant differs from that at the
@@ -169,7 +205,11 @@ impl<'a> Bench<'a> {
             }
             let values = kept.singular_values();
             let condition = values.max() / values.min();
-            if crossed || condition.is_nan() { f64::INFINITY } else { condition }
+            if crossed || condition.is_nan() {
+                f64::INFINITY
+            } else {
+                condition
+            }
         };
         jacobians.chunks_exact(n * r).map(condition).collect()
     }
@@ -180,7 +220,9 @@ impl<'a> Bench<'a> {
         let mut pose = self.info.home_pose.to_vec();
         self.model.displace(&mut pose, displacement);
         let mut jacobian = vec![0.0; sizes.actuators * sizes.dof];
-        self.model.evaluate(Function::InverseJacobian, &[&pose], &mut jacobian).ok()?;
+        self.model
+            .evaluate(Function::InverseJacobian, &[&pose], &mut jacobian)
+            .ok()?;
         self.conditions(&jacobian).first().copied()
     }
 }

@@ -45,7 +45,9 @@ impl Evolution {
     pub(super) fn new(start: &[f64], step: f64, size: usize) -> Self {
         let n = start.len() as f64;
         let half = size / 2;
-        let raw: Vec<f64> = (1..=half).map(|i| (half as f64 + 0.5).ln() - (i as f64).ln()).collect();
+        let raw: Vec<f64> = (1..=half)
+            .map(|i| (half as f64 + 0.5).ln() - (i as f64).ln())
+            .collect();
         let sum: f64 = raw.iter().sum();
         let weights: Vec<f64> = raw.iter().map(|weight| weight / sum).collect();
         let parents = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
@@ -101,7 +103,12 @@ impl Evolution {
         let mut order: Vec<usize> = (0..values.len().min(self.drawn.len())).collect();
         order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
         let n = self.mean.len();
-        let best = || order.iter().zip(&self.weights).map(|(&at, weight)| (&self.drawn[at], *weight));
+        let best = || {
+            order
+                .iter()
+                .zip(&self.weights)
+                .map(|(&at, weight)| (&self.drawn[at], *weight))
+        };
         let mut shift = DVector::zeros(n);
         for (drawn, weight) in best() {
             shift += drawn * weight;
@@ -118,7 +125,11 @@ impl Evolution {
         if !far {
             path += &shift * (rates.path * (2.0 - rates.path) * rates.parents).sqrt();
         }
-        let lost = if far { rates.path * (2.0 - rates.path) } else { 0.0 };
+        let lost = if far {
+            rates.path * (2.0 - rates.path)
+        } else {
+            0.0
+        };
         let keep = 1.0 - rates.rank_one - rates.rank_many + rates.rank_one * lost;
         let mut covariance = &self.covariance * keep;
         covariance.ger(rates.rank_one, &path, &path, 1.0);
@@ -153,7 +164,10 @@ mod tests {
     fn a_narrow_valley_is_followed_to_its_end() {
         // -Σ 100^i (x_i - 1)² of 6 numbers with axes of very different lengths.
         let value = |x: &Vec<f64>| {
-            let terms = x.iter().zip(0..).map(|(x, i)| 10.0_f64.powi(i) * (x - 1.0).powi(2));
+            let terms = x
+                .iter()
+                .zip(0..)
+                .map(|(x, i)| 10.0_f64.powi(i) * (x - 1.0).powi(2));
             -terms.sum::<f64>()
         };
         let mut random = Pcg64::new(7, 0);

@@ -30,14 +30,19 @@ pub(super) struct Frame {
 }
 
 /// The runs of a description from which parameters are identified.
-pub(super) fn described(description: &Description, coordinates: &[&str]) -> Vec<(Frame, Trajectory)> {
+pub(super) fn described(
+    description: &Description,
+    coordinates: &[&str],
+) -> Vec<(Frame, Trajectory)> {
     let Some(experiment) = &description.experiment else {
         return Vec::new();
     };
     let runs = experiment.runs.iter().filter(|run| !run.validation);
     let own = runs.map(|run| {
         let terms = run.terms.iter().map(|term| Term {
-            coordinate: coordinates.get(term.index).map_or_else(String::new, |name| (*name).to_owned()),
+            coordinate: coordinates
+                .get(term.index)
+                .map_or_else(String::new, |name| (*name).to_owned()),
             harmonic: term.harmonic,
             amplitude: term.amplitude,
             phase_rad: term.phase,
@@ -68,21 +73,32 @@ pub(super) fn wanted(
 ) -> Vec<Frame> {
     let table = description.excitation.as_ref();
     let experiment = description.experiment.as_ref();
-    let carries = description.platform.as_ref().is_some_and(|p| p.payload.is_some());
+    let carries = description
+        .platform
+        .as_ref()
+        .is_some_and(|p| p.payload.is_some());
     let usual = match described.len() {
         0 => 1 + usize::from(carries),
         count => count,
     };
     let count = runs.or(table.and_then(|t| t.runs)).unwrap_or(usual);
     let highest = described.iter().map(|(frame, _)| frame.harmonics).max();
-    let harmonics = table.and_then(|t| t.harmonics).or(highest).unwrap_or(HARMONICS);
+    let harmonics = table
+        .and_then(|t| t.harmonics)
+        .or(highest)
+        .unwrap_or(HARMONICS);
     let [bandwidth, duration] = experiment.map_or(USUAL, |e| [e.bandwidth, e.duration]);
-    let held_out = experiment.iter().flat_map(|e| &e.runs).filter(|run| run.validation);
+    let held_out = experiment
+        .iter()
+        .flat_map(|e| &e.runs)
+        .filter(|run| run.validation);
     let taken: BTreeSet<&str> = held_out.map(|run| run.name.value.as_str()).collect();
     let numbers = (1..).map(|number| format!("excitation {number}"));
     let names = numbers.filter(|name| !taken.contains(name.as_str()));
     let frame = |(index, name): (usize, String)| {
-        let like = described.get(index % described.len().max(1)).map(|(frame, _)| frame);
+        let like = described
+            .get(index % described.len().max(1))
+            .map(|(frame, _)| frame);
         let second_half = carries && 2 * index >= count && count > 1;
         Frame {
             name,
@@ -107,11 +123,22 @@ pub(super) fn wanted(
 pub(super) fn coordinates(description: &Description) -> Vec<(String, bool)> {
     if let Some(platform) = &description.platform {
         let names = platform.motion.value.coordinates().into_iter();
-        return names.map(|name| (name.to_owned(), matches!(name, "x" | "y" | "z"))).collect();
+        return names
+            .map(|name| (name.to_owned(), matches!(name, "x" | "y" | "z")))
+            .collect();
     }
-    let joints = description.legs.iter().flat_map(|leg| leg.joints.iter().enumerate());
+    let joints = description
+        .legs
+        .iter()
+        .flat_map(|leg| leg.joints.iter().enumerate());
     let free = joints.filter(|(index, joint)| joint.is_independent(*index));
-    free.map(|(_, joint)| (joint.name.value.clone(), joint.kind.value == JointKind::Prismatic)).collect()
+    free.map(|(_, joint)| {
+        (
+            joint.name.value.clone(),
+            joint.kind.value == JointKind::Prismatic,
+        )
+    })
+    .collect()
 }
 
 /// Fourier series of a run: numbers without unit to terms of coordinates that keep their limits.
@@ -138,19 +165,28 @@ impl Series<'_> {
         let mut excess = 0.0;
         let width = 2 * self.frame.harmonics;
         for ((name, limit, _), own) in self.coordinates.iter().zip(numbers.chunks(width)) {
-            let pairs: Vec<(f64, f64)> = own.chunks(2).zip(1..).map(|(pair, harmonic)| {
-                let scale = limit / f64::from(harmonic);
-                (scale * pair[0], scale * pair[1])
-            }).collect();
+            let pairs: Vec<(f64, f64)> = own
+                .chunks(2)
+                .zip(1..)
+                .map(|(pair, harmonic)| {
+                    let scale = limit / f64::from(harmonic);
+                    (scale * pair[0], scale * pair[1])
+                })
+                .collect();
             let peak = self.peak(&pairs);
             let scale = if peak > *limit { limit / peak } else { 1.0 };
             excess += (peak / limit - 1.0).max(0.0);
-            terms.extend(pairs.iter().zip(1..).map(|((sine, cosine), harmonic)| Term {
-                coordinate: (*name).to_owned(),
-                harmonic,
-                amplitude: scale * sine.hypot(*cosine),
-                phase_rad: cosine.atan2(*sine),
-            }));
+            terms.extend(
+                pairs
+                    .iter()
+                    .zip(1..)
+                    .map(|((sine, cosine), harmonic)| Term {
+                        coordinate: (*name).to_owned(),
+                        harmonic,
+                        amplitude: scale * sine.hypot(*cosine),
+                        phase_rad: cosine.atan2(*sine),
+                    }),
+            );
         }
         (self.trajectory(terms), excess)
     }
@@ -177,7 +213,10 @@ impl Series<'_> {
             return numbers;
         };
         for term in terms {
-            let at = self.coordinates.iter().position(|(name, ..)| *name == term.coordinate);
+            let at = self
+                .coordinates
+                .iter()
+                .position(|(name, ..)| *name == term.coordinate);
             let Some(at) = at else { continue };
             let (sin, cos) = term.phase_rad.sin_cos();
             let size = term.amplitude * f64::from(term.harmonic) / self.coordinates[at].1;
@@ -207,7 +246,11 @@ impl Series<'_> {
         let Trajectory::Periodic { terms, .. } = trajectory else {
             return trajectory.clone();
         };
-        let is_length = |name: &str| self.coordinates.iter().any(|(own, _, length)| *own == name && *length);
+        let is_length = |name: &str| {
+            self.coordinates
+                .iter()
+                .any(|(own, _, length)| *own == name && *length)
+        };
         let round = |term: &Term| {
             let amplitude = term.amplitude;
             Term {

@@ -66,18 +66,27 @@ impl Question {
             all if all == frames.len() => PayloadUse::Regrouped,
             _ => PayloadUse::Separate,
         };
-        let columns = ColumnSet::new(bench.model, loaded > 0, settings.asymmetric_friction, settings.seed)?
-            .with_reversals(bench.model, settings)?;
+        let columns = ColumnSet::new(
+            bench.model,
+            loaded > 0,
+            settings.asymmetric_friction,
+            settings.seed,
+        )?
+        .with_reversals(bench.model, settings)?;
         let base = base_parameters(bench.model, &columns, payload, settings.seed)?;
         let sizes = bench.info.sizes;
         if sizes.actuators < sizes.dof {
             let message = "the robot has fewer actuators than coordinates";
-            let help = "exciting runs are searched for robots whose actuators drive all coordinates";
+            let help =
+                "exciting runs are searched for robots whose actuators drive all coordinates";
             return Err(Problem::new(message).help(help).into());
         }
         let projections = match sizes.actuators == sizes.dof {
             true => vec![Projection::Joints],
-            false => vec![Projection::Platform, Projection::Actuators(bench.kept.clone())],
+            false => vec![
+                Projection::Platform,
+                Projection::Actuators(bench.kept.clone()),
+            ],
         };
         let values = truth.map(|truth| base.regrouped(&columns, truth));
         let normal = DVector::from_element(base.columns.len(), 1.0);
@@ -111,7 +120,13 @@ impl Question {
         let (model, picked) = (bench.model, (&self.base.columns[..], 0));
         let lines = self
             .columns
-            .evaluate(model, &states, (course.samples, interval), frame.payload, picked)
+            .evaluate(
+                model,
+                &states,
+                (course.samples, interval),
+                frame.payload,
+                picked,
+            )
             .ok()?;
         let weight = frame.duration * self.sampling / course.samples as f64;
         let of = |projection: &Projection| match projection.kept(&bench.info) {
@@ -140,7 +155,11 @@ impl Question {
     fn platform_noise(&self, bench: &Bench<'_>, course: &Course) -> Vec<f64> {
         let r = bench.info.sizes.dof;
         let mut sums = vec![0.0; r];
-        for (row, noise) in course.jacobian.chunks_exact(r).zip(self.noise.iter().cycle()) {
+        for (row, noise) in course
+            .jacobian
+            .chunks_exact(r)
+            .zip(self.noise.iter().cycle())
+        {
             for (sum, entry) in sums.iter_mut().zip(row) {
                 *sum += (entry * noise).powi(2) / course.samples as f64;
             }
@@ -169,7 +188,9 @@ impl Question {
                 for (line, from) in lines.iter().enumerate() {
                     let factor = inverse[(line, a)];
                     let from = &from[own.clone()];
-                    to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
+                    to.iter_mut()
+                        .zip(from)
+                        .for_each(|(to, from)| *to += factor * from);
                 }
             }
             for (a, variance) in variances.iter_mut().enumerate() {
@@ -184,8 +205,16 @@ impl Question {
 
     /// Takes the factors by which parameters are normalised from typical information: that of each alone is 1.
     pub(super) fn normalise(&mut self, typical: &[DMatrix<f64>]) {
-        let factor = |value: &f64| if *value > 0.0 { value.sqrt().recip() } else { 1.0 };
-        let factors = |matrix: &DMatrix<f64>| DVector::from_iterator(matrix.nrows(), matrix.diagonal().iter().map(factor));
+        let factor = |value: &f64| {
+            if *value > 0.0 {
+                value.sqrt().recip()
+            } else {
+                1.0
+            }
+        };
+        let factors = |matrix: &DMatrix<f64>| {
+            DVector::from_iterator(matrix.nrows(), matrix.diagonal().iter().map(factor))
+        };
         self.scales = typical.iter().map(factors).collect();
     }
 
@@ -198,14 +227,15 @@ impl Question {
     /// How well runs with this information determine the parameters in each case.
     pub(super) fn judge(&self, information: &[DMatrix<f64>]) -> Vec<CaseOfRuns> {
         let cases = self.projections.iter().zip(information).zip(&self.scales);
-        let case = |((projection, matrix), scales): ((&Projection, &DMatrix<f64>), &DVector<f64>)| {
-            CaseOfRuns {
-                model: projection.model(),
-                log_det: log_det(matrix, scales),
-                condition: condition(matrix),
-                deviations: self.deviations(matrix),
-            }
-        };
+        let case =
+            |((projection, matrix), scales): ((&Projection, &DMatrix<f64>), &DVector<f64>)| {
+                CaseOfRuns {
+                    model: projection.model(),
+                    log_det: log_det(matrix, scales),
+                    condition: condition(matrix),
+                    deviations: self.deviations(matrix),
+                }
+            };
         cases.map(case).collect()
     }
 
@@ -217,7 +247,12 @@ impl Question {
             let variance = inverse[(index, index)] / information[(index, index)];
             Some(variance.sqrt() / value.abs())
         };
-        let mut all: Vec<f64> = self.values.iter().enumerate().filter_map(relative).collect();
+        let mut all: Vec<f64> = self
+            .values
+            .iter()
+            .enumerate()
+            .filter_map(relative)
+            .collect();
         all.sort_by(f64::total_cmp);
         Some([*all.first()?, *all.get(all.len() / 2)?, *all.last()?])
     }
@@ -231,7 +266,12 @@ fn log_det(information: &DMatrix<f64>, scales: &DVector<f64>) -> f64 {
         information[(i, j)] * scales[i] * scales[j] + ridge
     });
     let factor = Cholesky::new(scaled);
-    let sum = |l: DMatrix<f64>| l.diagonal().iter().map(|entry| 2.0 * entry.ln()).sum::<f64>();
+    let sum = |l: DMatrix<f64>| {
+        l.diagonal()
+            .iter()
+            .map(|entry| 2.0 * entry.ln())
+            .sum::<f64>()
+    };
     // Rounding may take the last digit of a matrix without information: it has the ridge alone.
     factor.map_or(count as f64 * RIDGE.ln(), |factor| sum(factor.unpack()))
 }

@@ -56,6 +56,8 @@ pub struct Limit {
     pub kind: LimitKind,
     /// The largest magnitude of each coordinate or actuator, SI; a single number for the condition.
     pub values: Vec<f64>,
+    /// Their units, for instance `rad/s`; nothing for the condition.
+    pub units: Vec<&'static str>,
     /// Where it comes from.
     pub origin: Origin,
 }
@@ -65,7 +67,13 @@ impl Limit {
     fn used(&self, peaks: &[f64]) -> f64 {
         let part = |(peak, limit): (&f64, &f64)| if *peak == 0.0 { 0.0 } else { peak / limit };
         let parts = peaks.iter().zip(&self.values).map(part);
-        parts.fold(0.0, |most: f64, part| if part.is_nan() { f64::INFINITY } else { most.max(part) })
+        parts.fold(0.0, |most: f64, part| {
+            if part.is_nan() {
+                f64::INFINITY
+            } else {
+                most.max(part)
+            }
+        })
     }
 }
 
@@ -81,7 +89,8 @@ pub(super) fn limits(
     description: &Description,
     described: &[(Frame, Trajectory)],
 ) -> Vec<Limit> {
-    let reach = |(frame, trajectory): &(Frame, Trajectory)| bench.course(frame, trajectory, SAMPLES);
+    let reach =
+        |(frame, trajectory): &(Frame, Trajectory)| bench.course(frame, trajectory, SAMPLES);
     // A run that the robot can't follow tells nothing; making it fails with its own error.
     let courses: Vec<Course> = described.iter().filter_map(|run| reach(run).ok()).collect();
     let of_runs = |kind: LimitKind| -> Option<Vec<f64>> {
@@ -89,20 +98,32 @@ pub(super) fn limits(
         all.reduce(|a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect())
     };
     let table = description.excitation.as_ref();
-    let key = |get: fn(&description::Excitation) -> &Option<Vec<f64>>| table.and_then(|t| get(t).clone());
+    let key =
+        |get: fn(&description::Excitation) -> &Option<Vec<f64>>| table.and_then(|t| get(t).clone());
     let mut all = Vec::new();
-    let mut add = |kind, own: Option<Vec<f64>>, runs: Option<Vec<f64>>, assumed: Option<Vec<f64>>| {
-        let own = own.map(|values| (values, Origin::Described));
-        let runs = runs.map(|values| (values, Origin::Runs));
-        let assumed = assumed.map(|values| (values, Origin::Assumed));
-        if let Some((values, origin)) = own.or(runs).or(assumed) {
-            all.push(Limit { kind, values, origin });
-        }
-    };
+    let mut add =
+        |kind, own: Option<Vec<f64>>, runs: Option<Vec<f64>>, assumed: Option<Vec<f64>>| {
+            let own = own.map(|values| (values, Origin::Described));
+            let runs = runs.map(|values| (values, Origin::Runs));
+            let assumed = assumed.map(|values| (values, Origin::Assumed));
+            if let Some((values, origin)) = own.or(runs).or(assumed) {
+                let units = bench.units(kind);
+                all.push(Limit {
+                    kind,
+                    values,
+                    units,
+                    origin,
+                });
+            }
+        };
     let moving = of_runs(LimitKind::Position).filter(|peaks| peaks.iter().any(|peak| *peak > 0.0));
     let own = table.and_then(|t| t.condition).map(|value| vec![value]);
-    let runs = of_runs(LimitKind::Condition).filter(|peak| peak.iter().all(|p| p.is_finite() && *p > SAFE_CONDITION));
-    let condition = own.clone().or(runs.clone()).map_or(SAFE_CONDITION, |values| values[0]);
+    let runs = of_runs(LimitKind::Condition)
+        .filter(|peak| peak.iter().all(|p| p.is_finite() && *p > SAFE_CONDITION));
+    let condition = own
+        .clone()
+        .or(runs.clone())
+        .map_or(SAFE_CONDITION, |values| values[0]);
     let assumed = match moving.is_some() {
         true => None,
         false => Some(reached(bench, condition)),
@@ -110,10 +131,23 @@ pub(super) fn limits(
     add(LimitKind::Position, key(|t| &t.position), moving, assumed);
     add(LimitKind::Travel, key(|t| &t.travel), None, None);
     let rates = |kind| of_runs(kind).filter(|peaks| peaks.iter().all(|peak| *peak > 0.0));
-    add(LimitKind::Velocity, key(|t| &t.velocity), rates(LimitKind::Velocity), None);
-    add(LimitKind::Acceleration, key(|t| &t.acceleration), rates(LimitKind::Acceleration), None);
+    add(
+        LimitKind::Velocity,
+        key(|t| &t.velocity),
+        rates(LimitKind::Velocity),
+        None,
+    );
+    add(
+        LimitKind::Acceleration,
+        key(|t| &t.acceleration),
+        rates(LimitKind::Acceleration),
+        None,
+    );
     if bench.parameters.is_some() {
-        let largest = description.experiment.as_ref().and_then(|e| e.torque_limit.clone());
+        let largest = description
+            .experiment
+            .as_ref()
+            .and_then(|e| e.torque_limit.clone());
         let share = largest.map(|all| all.iter().map(|limit| TORQUE_SHARE * limit).collect());
         add(LimitKind::Torque, share, rates(LimitKind::Torque), None);
     }

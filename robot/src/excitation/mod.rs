@@ -109,7 +109,11 @@ impl Robot {
     ///
     /// # Errors
     /// A robot without base parameters, or limits that no motion keeps.
-    pub fn excite(&self, effort: &Effort, progress: &dyn Fn(f64, &str)) -> Result<Excitation, Error> {
+    pub fn excite(
+        &self,
+        effort: &Effort,
+        progress: &dyn Fn(f64, &str),
+    ) -> Result<Excitation, Error> {
         let task = Task::new(self, effort)?;
         let chains = task.search(self, effort, progress)?;
         Ok(task.told(self, chains))
@@ -146,7 +150,9 @@ impl<'a> Task<'a> {
     fn new(robot: &'a Robot, effort: &Effort) -> Result<Self, Error> {
         let description = robot.description();
         let mut assumed = Vec::new();
-        let truth = robot.true_values().filter(|all| all.values().any(|value| *value != 0.0));
+        let truth = robot
+            .true_values()
+            .filter(|all| all.values().any(|value| *value != 0.0));
         if truth.is_none() {
             let words = "without [experiment.parameters] torques are not predicted, and deviations are not told";
             assumed.push(words.to_owned());
@@ -156,7 +162,10 @@ impl<'a> Task<'a> {
         let limits = limits::limits(&bench, description, &described);
         let frames = frame::wanted(description, &described, effort.runs);
         let noise = noise(robot, &bench.info, &mut assumed);
-        let sampling = description.experiment.as_ref().map_or(SAMPLING, |e| e.sampling);
+        let sampling = description
+            .experiment
+            .as_ref()
+            .map_or(SAMPLING, |e| e.sampling);
         let own = settings(description, &bench.info, sampling);
         let question = Question::new(&bench, &frames, &own, truth.as_ref(), (noise, sampling))?;
         let mut task = Self {
@@ -194,7 +203,9 @@ impl<'a> Task<'a> {
             let series = search.series(frame);
             let all = search.random(&series, &mut stream(effort.seed, u64::MAX));
             let count = all.len() as f64;
-            let sum = all.iter().fold(Vec::new(), |sum, one| added(&sum, &one.information));
+            let sum = all
+                .iter()
+                .fold(Vec::new(), |sum, one| added(&sum, &one.information));
             if sum.is_empty() {
                 return Err(self.no_motion(robot));
             }
@@ -225,7 +236,9 @@ impl<'a> Task<'a> {
             // A limit that holds every coordinate is refused; so each run has a series.
             let series = search.series(frame);
             let all = search.random(&series, &mut random);
-            let best = search.best(&all, &told_random).zip(search.best(&all, &told));
+            let best = search
+                .best(&all, &told_random)
+                .zip(search.best(&all, &told));
             let (of_random, start) = best.ok_or_else(|| self.no_motion(robot))?;
             let evolved = search.evolved(&series, start, &told, &mut random, &tell);
             let settled = search.settled(&series, &evolved);
@@ -246,11 +259,18 @@ impl<'a> Task<'a> {
             .iter()
             .map(|limit| format!("{} ({})", limit.kind.name(), limit.origin.words()))
             .collect();
-        let message = format!("no motion about home keeps all limits: {}", limits.join(", "));
+        let message = format!(
+            "no motion about home keeps all limits: {}",
+            limits.join(", ")
+        );
         let help = "give wider limits in the table [excitation], a smaller `position` or a slower `fundamental`";
         let table = robot.description().excitation.as_ref();
         let line = table.map(|table| robot.source().position(&table.span).line);
-        Problem::new(message).file(robot.file()).line(line).help(help).into()
+        Problem::new(message)
+            .file(robot.file())
+            .line(line)
+            .help(help)
+            .into()
     }
 
     /// All runs judged at equal duration.
@@ -258,7 +278,8 @@ impl<'a> Task<'a> {
         let names = self.frames.iter().map(|frame| frame.name.clone()).collect();
         let with = |all: Vec<Trajectory>| self.frames.iter().cloned().zip(all).collect();
         let (random, found): (Vec<_>, Vec<_>) = (with(chains.random), with(chains.found));
-        let duration = |runs: &[(Frame, Trajectory)]| runs.iter().map(|(f, _)| f.duration).sum::<f64>();
+        let duration =
+            |runs: &[(Frame, Trajectory)]| runs.iter().map(|(f, _)| f.duration).sum::<f64>();
         let whole = duration(&found);
         let mut assumed = self.assumed.clone();
         let judged = |runs: &[(Frame, Trajectory)]| self.judged(runs, whole / duration(runs));
@@ -268,8 +289,9 @@ impl<'a> Task<'a> {
         }
         let names_in = frame::coordinates(robot.description()).into_iter();
         let coordinates = self.bench.info.coordinates.iter().zip(names_in);
-        let coordinates: Vec<(&str, String, bool)> =
-            coordinates.map(|(model, (name, length))| (*model, name, length)).collect();
+        let coordinates: Vec<(&str, String, bool)> = coordinates
+            .map(|(model, (name, length))| (*model, name, length))
+            .collect();
         let nothing = || JudgedRuns {
             cases: Vec::new(),
             limits_used: Vec::new(),
@@ -297,7 +319,9 @@ impl<'a> Task<'a> {
             let own = self.question.information(&self.bench, frame, &course)?;
             information = added(&information, &own);
             let uses = limits::uses(&course, &self.limits, false);
-            used.iter_mut().zip(uses).for_each(|(most, own): (&mut f64, f64)| *most = most.max(own));
+            used.iter_mut()
+                .zip(uses)
+                .for_each(|(most, own): (&mut f64, f64)| *most = most.max(own));
         }
         information.iter_mut().for_each(|matrix| *matrix *= factor);
         (!runs.is_empty()).then(|| JudgedRuns {
@@ -313,10 +337,7 @@ fn stream(seed: u64, run: u64) -> Pcg64 {
 }
 
 /// The robot as it is judged.
-fn bench<'a>(
-    robot: &'a Robot,
-    truth: Option<&BTreeMap<String, f64>>,
-) -> Result<Bench<'a>, Error> {
+fn bench<'a>(robot: &'a Robot, truth: Option<&BTreeMap<String, f64>>) -> Result<Bench<'a>, Error> {
     let model = robot.model();
     let info = model.info();
     let sizes = info.sizes;
@@ -329,13 +350,14 @@ fn bench<'a>(
         entries.map(|entry| entry * entry).sum::<f64>().sqrt()
     };
     let all = || info.parameters.iter().chain(info.payload_parameters);
-    let value = |truth: &BTreeMap<String, f64>, name: &str| {
-        truth.get(name).copied().unwrap_or(0.0)
-    };
+    let value = |truth: &BTreeMap<String, f64>, name: &str| truth.get(name).copied().unwrap_or(0.0);
     Ok(Bench {
         model,
         has_platform: robot.description().platform.is_some(),
-        lengths: frame::coordinates(robot.description()).into_iter().map(|c| c.1).collect(),
+        lengths: frame::coordinates(robot.description())
+            .into_iter()
+            .map(|c| c.1)
+            .collect(),
         kept: match sizes.actuators > sizes.dof {
             true => info.kept_actuators.to_vec(),
             false => (0..sizes.actuators).collect(),

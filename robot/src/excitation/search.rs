@@ -76,7 +76,10 @@ pub(super) struct Search<'a> {
 impl<'a> Search<'a> {
     /// The series of a run: coordinates with a limit of 0 have none.
     pub(super) fn series(&self, frame: &'a Frame) -> Series<'a> {
-        let limits = self.limits.iter().find(|limit| limit.kind == LimitKind::Position);
+        let limits = self
+            .limits
+            .iter()
+            .find(|limit| limit.kind == LimitKind::Position);
         let limits = limits.map_or(&[][..], |limit| &limit.values);
         let all = self.bench.info.coordinates.iter().zip(limits).enumerate();
         let moving = all.filter(|(_, (_, limit))| **limit > 0.0);
@@ -94,7 +97,11 @@ impl<'a> Search<'a> {
     pub(super) fn random(&self, series: &Series<'_>, random: &mut Pcg64) -> Vec<Candidate> {
         let mut found = Vec::new();
         for _ in 0..ATTEMPTS / RANDOM {
-            let draw = |_| (0..series.len()).map(|_| StandardNormal.sample(random)).collect();
+            let draw = |_| {
+                (0..series.len())
+                    .map(|_| StandardNormal.sample(random))
+                    .collect()
+            };
             let drawn: Vec<Vec<f64>> = (0..RANDOM).map(draw).collect();
             let fitted = drawn.par_iter().map(|numbers| self.fitted(series, numbers));
             found.extend(fitted.collect::<Vec<_>>().into_iter().flatten());
@@ -117,8 +124,13 @@ impl<'a> Search<'a> {
                 largest(&uses(course, self.limits, false))
             });
             if let (Ok(course), true) = (&course, worst <= 1.0) {
-                let information = self.question.information(self.bench, series.frame, course)?;
-                return Some(Candidate { trajectory, information });
+                let information = self
+                    .question
+                    .information(self.bench, series.frame, course)?;
+                return Some(Candidate {
+                    trajectory,
+                    information,
+                });
             }
             factor *= (0.99 / worst).clamp(0.6, 0.98);
         }
@@ -128,14 +140,21 @@ impl<'a> Search<'a> {
     /// The value of a candidate beside what the runs before it tell, and whether it keeps all limits.
     fn value(&self, series: &Series<'_>, numbers: &[f64], before: &[DMatrix<f64>]) -> (f64, bool) {
         let (trajectory, excess) = series.bounded(numbers);
-        let unreached = || (UNREACHED - numbers.iter().map(|x| x * x).sum::<f64>(), false);
+        let unreached = || {
+            (
+                UNREACHED - numbers.iter().map(|x| x * x).sum::<f64>(),
+                false,
+            )
+        };
         let Ok(course) = self.bench.course(series.frame, &trajectory, series.samples) else {
             return unreached();
         };
         let uses = uses(&course, self.limits, false).into_iter();
         let kinds = self.limits.iter().map(|limit| limit.kind);
         // The series itself keeps the limits of position.
-        let others = uses.zip(kinds).filter(|(_, kind)| *kind != LimitKind::Position);
+        let others = uses
+            .zip(kinds)
+            .filter(|(_, kind)| *kind != LimitKind::Position);
         let violation: f64 = others.map(|(used, _)| (used - AIM).clamp(0.0, 10.0)).sum();
         let Some(own) = self.question.information(self.bench, series.frame, &course) else {
             return unreached();
@@ -156,15 +175,22 @@ impl<'a> Search<'a> {
         tell: &dyn Fn(usize),
     ) -> Trajectory {
         let numbers = series.numbers(&start.trajectory);
-        let mut best = (self.question.score(&added(before, &start.information)), None);
+        let mut best = (
+            self.question.score(&added(before, &start.information)),
+            None,
+        );
         let mut evolution = Evolution::new(&numbers, FIRST_STEP, CANDIDATES);
         for generation in 0..self.generations {
-            let late = self.deadline.is_some_and(|deadline| Instant::now() > deadline);
+            let late = self
+                .deadline
+                .is_some_and(|deadline| Instant::now() > deadline);
             if late || evolution.step() < LAST_STEP {
                 break;
             }
             let drawn = evolution.draw(CANDIDATES, random);
-            let values = drawn.par_iter().map(|numbers| self.value(series, numbers, before));
+            let values = drawn
+                .par_iter()
+                .map(|numbers| self.value(series, numbers, before));
             let values: Vec<(f64, bool)> = values.collect();
             for (numbers, (value, keeps)) in drawn.iter().zip(&values) {
                 if *keeps && *value > best.0 {
@@ -175,23 +201,40 @@ impl<'a> Search<'a> {
             evolution.learn(&values);
             tell(generation + 1);
         }
-        best.1.map_or_else(|| start.trajectory.clone(), |numbers| series.bounded(&numbers).0)
+        best.1.map_or_else(
+            || start.trajectory.clone(),
+            |numbers| series.bounded(&numbers).0,
+        )
     }
 
     /// A series with the numbers that are written, scaled down until it keeps all limits at and between the
     /// samples of a fine grid.
-    pub(super) fn settled(&self, series: &Series<'_>, trajectory: &Trajectory) -> Option<Candidate> {
+    pub(super) fn settled(
+        &self,
+        series: &Series<'_>,
+        trajectory: &Trajectory,
+    ) -> Option<Candidate> {
         let [least, each] = FINE_SAMPLES;
         let samples = least.max(each * series.frame.harmonics);
         let mut factor = 1.0;
         for _ in 0..SETTLING {
             let trajectory = series.rounded(&series.scaled(trajectory, factor));
             let course = self.bench.course(series.frame, &trajectory, samples);
-            let worst = course.map_or(f64::INFINITY, |course| largest(&uses(&course, self.limits, true)));
+            let worst = course.map_or(f64::INFINITY, |course| {
+                largest(&uses(&course, self.limits, true))
+            });
             if worst <= 1.0 - PRINTED {
-                let coarse = self.bench.course(series.frame, &trajectory, series.samples).ok()?;
-                let information = self.question.information(self.bench, series.frame, &coarse)?;
-                return Some(Candidate { trajectory, information });
+                let coarse = self
+                    .bench
+                    .course(series.frame, &trajectory, series.samples)
+                    .ok()?;
+                let information = self
+                    .question
+                    .information(self.bench, series.frame, &coarse)?;
+                return Some(Candidate {
+                    trajectory,
+                    information,
+                });
             }
             let [least, most] = SHRINK;
             factor *= (1.0 / worst).clamp(least, most);
@@ -200,10 +243,17 @@ impl<'a> Search<'a> {
     }
 
     /// The candidate that tells most beside what the runs before it tell.
-    pub(super) fn best<'c>(&self, all: &'c [Candidate], before: &[DMatrix<f64>]) -> Option<&'c Candidate> {
-        let score = |candidate: &&Candidate| self.question.score(&added(before, &candidate.information));
+    pub(super) fn best<'c>(
+        &self,
+        all: &'c [Candidate],
+        before: &[DMatrix<f64>],
+    ) -> Option<&'c Candidate> {
+        let score =
+            |candidate: &&Candidate| self.question.score(&added(before, &candidate.information));
         let scored = all.iter().map(|candidate| (score(&candidate), candidate));
-        scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
+        scored
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, candidate)| candidate)
     }
 }
 

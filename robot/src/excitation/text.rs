@@ -8,14 +8,12 @@ use std::fmt::Write;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
 
 /// What stands above the runs.
-const COMMENT: &str = "# Found by `overact excite`: they determine the base parameters best inside the limits.\n";
+const COMMENT: &str =
+    "# Found by `overact excite`: they determine the base parameters best inside the limits.\n";
 
 /// The tables `[[experiment.run]]` of runs; `coordinates` are the names that the model and the description have
 /// for the coordinates, and whether each is a length.
-pub(super) fn tables(
-    runs: &[(Frame, Trajectory)],
-    coordinates: &[(&str, String, bool)],
-) -> String {
+pub(super) fn tables(runs: &[(Frame, Trajectory)], coordinates: &[(&str, String, bool)]) -> String {
     let mut text = COMMENT.to_owned();
     for (frame, trajectory) in runs {
         let mut table = format!("\n[[experiment.run]]\nname = \"{}\"\n", frame.name);
@@ -25,9 +23,15 @@ pub(super) fn tables(
         if let Some(duration) = frame.own_duration {
             let _ = writeln!(table, "duration = \"{duration} s\"");
         }
-        let _ = writeln!(table, "fundamental = \"{} Hz\"\nterms = [", frame.fundamental);
+        let _ = writeln!(
+            table,
+            "fundamental = \"{} Hz\"\nterms = [",
+            frame.fundamental
+        );
         if let Trajectory::Periodic { terms, .. } = trajectory {
-            terms.iter().for_each(|own| table += &term(own, coordinates));
+            terms
+                .iter()
+                .for_each(|own| table += &term(own, coordinates));
         }
         text = text + &table + "]\n";
     }
@@ -36,8 +40,12 @@ pub(super) fn tables(
 
 /// A line of `terms`.
 fn term(term: &Term, coordinates: &[(&str, String, bool)]) -> String {
-    let known = coordinates.iter().find(|(name, ..)| *name == term.coordinate);
-    let (name, is_length) = known.map_or((term.coordinate.as_str(), false), |(_, name, length)| (name, *length));
+    let known = coordinates
+        .iter()
+        .find(|(name, ..)| *name == term.coordinate);
+    let (name, is_length) = known.map_or((term.coordinate.as_str(), false), |(_, name, length)| {
+        (name, *length)
+    });
     let amplitude = match is_length {
         true => format!("{:.3} mm", term.amplitude * 1e3),
         false => format!("{:.4} deg", term.amplitude.to_degrees()),
@@ -70,18 +78,25 @@ pub(super) fn description(robot: &Robot, tables: &str) -> Result<String, Error> 
     implied.set_implicit(true);
     let experiment = document.entry("experiment").or_insert(Item::Table(implied));
     let experiment = experiment.as_table_mut().ok_or_else(place)?;
-    let own = experiment.entry("run").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+    let own = experiment
+        .entry("run")
+        .or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
     let own = own.as_array_of_tables_mut().ok_or_else(place)?;
     let first = own.iter().next().and_then(Table::position);
-    let found = found.get("experiment").and_then(|table| table.get("run")?.as_array_of_tables());
+    let found = found
+        .get("experiment")
+        .and_then(|table| table.get("run")?.as_array_of_tables());
     let mut all = ArrayOfTables::new();
     for table in found.into_iter().flatten() {
         let mut table = table.clone();
         table.set_position(first);
         all.push(table);
     }
-    let is_held_out = |table: &&Table| table.get("validation").and_then(Item::as_bool) == Some(true);
-    own.iter().filter(is_held_out).for_each(|table| all.push(table.clone()));
+    let is_held_out =
+        |table: &&Table| table.get("validation").and_then(Item::as_bool) == Some(true);
+    own.iter()
+        .filter(is_held_out)
+        .for_each(|table| all.push(table.clone()));
     *own = all;
     Ok(document.to_string())
 }
