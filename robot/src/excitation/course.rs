@@ -4,7 +4,7 @@ use super::frame::Frame;
 use super::kind::LimitKind;
 use nalgebra::DMatrix;
 use overact::{Error, Function, Info, Model, math::wrap_angle};
-use overact_simulation::{Displacement, Sampled, Trajectory, sample};
+use overact_simulation::{Sampled, Trajectory, sample, trajectory::Displacement};
 use std::f64::consts::{PI, TAU};
 
 /// Between two samples a smooth series rises above both by at most an eighth of its largest second

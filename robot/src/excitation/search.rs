@@ -159,7 +159,7 @@ impl<'a> Search<'a> {
         let Some(own) = self.question.information(self.bench, series.frame, &course) else {
             return unreached();
         };
-        let parameters = (self.question.len() * self.question.cases()) as f64;
+        let parameters = (self.question.len() * self.question.scales.len()) as f64;
         let score = self.question.score(&added(before, &own));
         let lost = PENALTY * violation + 0.1 * excess;
         (score - parameters * lost, violation == 0.0)
