@@ -249,7 +249,10 @@ impl Course {
                 return largest + self.rise[at];
             }
             let bend = |row: usize| (value(row + 2) - 2.0 * value(row + 1) + value(row)).abs();
-            largest + UNKNOWN_BETWEEN * BETWEEN_SAMPLES * (0..rows).map(bend).fold(0.0, f64::max)
+            // Where friction changes its sign two neighbours have the jump, which is none of the smooth parts.
+            let smooth = |row: usize| bend(row).min(bend(row + 1)).min(bend(row + 2));
+            let largest_bend = (0..rows).map(smooth).fold(0.0, f64::max);
+            largest + UNKNOWN_BETWEEN * BETWEEN_SAMPLES * largest_bend
         };
         (0..width).map(peak).collect()
     }
