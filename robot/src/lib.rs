@@ -51,7 +51,9 @@ mod tracking;
 pub use check::{CheckedFile, check};
 pub use compiled_file::CompiledFile;
 pub use error::{Column, Error, Problem};
-pub use excitation::{CaseOfRuns, Effort, Excitation, JudgedRuns, Limit, LimitKind, Origin};
+pub use excitation::{
+    CaseOfRuns, Excitation, ExcitationEffort, JudgedRuns, Limit, LimitKind, Origin,
+};
 pub use experiment::VirtualExperiment;
 pub use identifier::Identifier;
 pub use instruments::beside_simulated;

@@ -2,11 +2,11 @@
 //! can be read.
 
 use overact::{Function, Model};
-use overact_robot::{Effort, Error, Excitation, LimitKind, Robot};
+use overact_robot::{Error, Excitation, ExcitationEffort, LimitKind, Robot};
 use overact_simulation::sample;
 
 /// A search that takes a second in a test.
-const EFFORT: Effort = Effort {
+const EFFORT: ExcitationEffort = ExcitationEffort {
     runs: None,
     seed: 3,
     generations: 30,
@@ -143,7 +143,7 @@ fn a_five_bar_is_excited_within_its_limits() {
     // The runs that are read are those that were judged.
     let judged = again
         .excite(
-            &Effort {
+            &ExcitationEffort {
                 generations: 0,
                 ..EFFORT
             },

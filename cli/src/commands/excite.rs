@@ -7,7 +7,7 @@ use crate::{
 };
 use overact::{Info, Model};
 use overact_identification::significant;
-use overact_robot::{Effort, Excitation, JudgedRuns, Limit, Robot};
+use overact_robot::{Excitation, ExcitationEffort, JudgedRuns, Limit, Robot};
 use std::{
     path::{Path, PathBuf},
     time::Duration,
@@ -42,13 +42,13 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let written = arguments.output.as_deref();
     output::check(&[&arguments.file], written.as_slice())?;
     let robot = Robot::from_toml(&arguments.file)?;
-    let effort = Effort {
+    let effort = ExcitationEffort {
         runs: arguments.runs.map(usize::from),
         seed: arguments.seed,
         time: arguments
             .time
             .map(|seconds| Duration::from_secs(seconds.into())),
-        ..Effort::default()
+        ..ExcitationEffort::default()
     };
     let bar = Progress::new("exciting", as_json);
     let found = robot.excite(&effort, &|fraction, run| bar.at(fraction, run))?;

@@ -140,7 +140,7 @@ impl Evolution {
         self.mean += shift * self.step;
         self.step *= growth.clamp(-1.0, 1.0).exp();
         (self.path, self.step_path, self.covariance) = (path, step_path, covariance);
-        if self.generation % LAZY == 0 {
+        if self.generation.is_multiple_of(LAZY) {
             self.decompose();
         }
     }

@@ -50,7 +50,7 @@ const SAMPLING: f64 = 5000.0;
 
 /// How exciting runs are searched.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Effort {
+pub struct ExcitationEffort {
     /// Number of runs; that of the description if absent.
     pub runs: Option<usize>,
     /// Seed of everything random: the same search gives the same runs.
@@ -61,12 +61,12 @@ pub struct Effort {
     pub time: Option<Duration>,
 }
 
-impl Default for Effort {
+impl Default for ExcitationEffort {
     fn default() -> Self {
         Self {
             runs: None,
             seed: 1,
-            generations: 400,
+            generations: 600,
             time: None,
         }
     }
@@ -111,7 +111,7 @@ impl Robot {
     /// A robot without base parameters, or limits that no motion keeps.
     pub fn excite(
         &self,
-        effort: &Effort,
+        effort: &ExcitationEffort,
         progress: &dyn Fn(f64, &str),
     ) -> Result<Excitation, Error> {
         let task = Task::new(self, effort)?;
@@ -147,7 +147,7 @@ struct Chains {
 }
 
 impl<'a> Task<'a> {
-    fn new(robot: &'a Robot, effort: &Effort) -> Result<Self, Error> {
+    fn new(robot: &'a Robot, effort: &ExcitationEffort) -> Result<Self, Error> {
         let description = robot.description();
         let mut assumed = Vec::new();
         let truth = robot
@@ -182,19 +182,23 @@ impl<'a> Task<'a> {
     }
 
     /// What is searched, with all that it stands on.
-    fn of(&self, effort: &Effort, start: Instant) -> Search<'_> {
+    fn of(&self, effort: &ExcitationEffort) -> Search<'_> {
         Search {
             bench: &self.bench,
             question: &self.question,
             limits: &self.limits,
             generations: effort.generations,
-            deadline: effort.time.map(|time| start + time),
+            deadline: None,
         }
     }
 
     /// Mean information of random runs with the payload and without, as far as there are such.
-    fn typical(&self, robot: &Robot, effort: &Effort) -> Result<Vec<DMatrix<f64>>, Error> {
-        let search = self.of(effort, Instant::now());
+    fn typical(
+        &self,
+        robot: &Robot,
+        effort: &ExcitationEffort,
+    ) -> Result<Vec<DMatrix<f64>>, Error> {
+        let search = self.of(effort);
         let mut typical = Vec::new();
         for payload in [false, true] {
             let Some(frame) = self.frames.iter().find(|frame| frame.payload == payload) else {
@@ -219,10 +223,11 @@ impl<'a> Task<'a> {
     fn search(
         &self,
         robot: &Robot,
-        effort: &Effort,
+        effort: &ExcitationEffort,
         progress: &dyn Fn(f64, &str),
     ) -> Result<Chains, Error> {
-        let search = self.of(effort, Instant::now());
+        let mut search = self.of(effort);
+        let start = Instant::now();
         let mut chains = Chains::default();
         let (mut told_random, mut told) = (Vec::new(), Vec::new());
         for (index, frame) in self.frames.iter().enumerate() {
@@ -232,6 +237,9 @@ impl<'a> Task<'a> {
                 progress(part * (index as f64 + done), &frame.name);
             };
             tell(0);
+            // Each run has its share of the time.
+            let share = |time: Duration| start + time.mul_f64(part * (index + 1) as f64);
+            search.deadline = effort.time.map(share);
             let mut random = stream(effort.seed, index as u64);
             // A limit that holds every coordinate is refused; so each run has a series.
             let series = search.series(frame);
