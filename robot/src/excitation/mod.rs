@@ -108,14 +108,18 @@ impl Robot {
     /// Searches exciting runs. `progress` hears the part that is done, from 0 to 1, and the name of a run.
     ///
     /// # Errors
-    /// A robot without base parameters, or limits that no motion keeps.
+    /// A robot without base parameters, limits that no motion keeps, or a description whose runs are not written
+    /// as tables of their own.
     pub fn excite(
         &self,
         effort: &ExcitationEffort,
         progress: &dyn Fn(f64, &str),
     ) -> Result<Excitation, Error> {
+        let start = Instant::now();
+        // A description that can't take the runs is refused before they are searched.
+        text::description(self, "")?;
         let task = Task::new(self, effort)?;
-        let chains = task.search(self, effort, progress)?;
+        let chains = task.search(self, effort, start, progress)?;
         Ok(task.told(self, chains))
     }
 
@@ -224,10 +228,10 @@ impl<'a> Task<'a> {
         &self,
         robot: &Robot,
         effort: &ExcitationEffort,
+        start: Instant,
         progress: &dyn Fn(f64, &str),
     ) -> Result<Chains, Error> {
         let mut search = self.of(effort);
-        let start = Instant::now();
         let mut chains = Chains::default();
         let (mut told_random, mut told) = (Vec::new(), Vec::new());
         for (index, frame) in self.frames.iter().enumerate() {

@@ -9,7 +9,7 @@ use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
 
 /// What stands above the runs.
 const COMMENT: &str =
-    "# Found by `overact excite`: they determine the base parameters best inside the limits.\n";
+    "\n# Found by `overact excite`: they determine the base parameters best inside the limits.\n";
 
 /// The tables `[[experiment.run]]` of runs; `coordinates` are the names that the model and the description have
 /// for the coordinates, and whether each is a length.
