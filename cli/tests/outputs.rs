@@ -40,7 +40,8 @@ fn refused(bench: &Bench, arguments: &[&str], words: &str) {
 #[test]
 fn an_output_is_never_an_input() {
     let bench = bench();
-    let cases: [&[&str]; 17] = [
+    let cases: [&[&str]; 18] = [
+        &["excite", "my.toml", "-o", "my.toml"],
         &[
             "identify",
             "my.toml",

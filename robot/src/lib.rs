@@ -26,6 +26,7 @@
 //! - `robot`: the running robot; `settings`, `experiment`: its tables as inputs of identification and
 //!   simulation; `runs`: logs and virtual runs;
 //! - `check`: everything that is wrong with a description, found without its model;
+//! - `excitation`: runs that determine the parameters best inside limits;
 //! - `instruments`: the motion of the simulated robot beside runs, by which errors of theirs are told;
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
@@ -34,6 +35,7 @@ mod calibration;
 mod check;
 mod compiled_file;
 mod error;
+mod excitation;
 mod experiment;
 mod identifier;
 mod instruments;
@@ -49,6 +51,9 @@ mod tracking;
 pub use check::{CheckedFile, check};
 pub use compiled_file::CompiledFile;
 pub use error::{Column, Error, Problem};
+pub use excitation::{
+    CaseOfRuns, Excitation, ExcitationEffort, JudgedRuns, Limit, LimitKind, Origin,
+};
 pub use experiment::VirtualExperiment;
 pub use identifier::Identifier;
 pub use instruments::beside_simulated;

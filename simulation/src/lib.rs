@@ -74,5 +74,6 @@ pub use error::{Cause, Error, Problem, RunError, Stage};
 pub use excitation::{Found, Search, search};
 pub use experiment::{Experiment, Run};
 pub use log::write_csv;
+pub use reference::{Sampled, sample};
 pub use run::{Record, simulate};
 pub use trajectory::{Term, Trajectory};

@@ -21,6 +21,46 @@ pub(crate) const BLOCK: usize = 256;
 /// An error of the model, and the sample of the run at which it occurred.
 pub(crate) type AtSample = (usize, overact::Error);
 
+/// A desired motion at equal steps of time: one row of numbers for each sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sampled {
+    /// Poses.
+    pub pose: Vec<f64>,
+    /// Twists, r numbers each, m/s or rad/s.
+    pub twist: Vec<f64>,
+    /// Their derivatives, r numbers each, m/s² or rad/s².
+    pub acceleration: Vec<f64>,
+    /// Positions of the n actuators, m or rad, without jumps of a turn.
+    pub positions: Vec<f64>,
+}
+
+/// The first `samples` samples of a trajectory, `1 / sampling_hz` seconds apart.
+///
+/// # Errors
+/// The model's error at the first sample that the robot does not reach.
+pub fn sample(
+    model: &dyn Model,
+    trajectory: &Trajectory,
+    sampling_hz: f64,
+    samples: usize,
+) -> Result<Sampled, overact::Error> {
+    let mut reference = Reference::new(model, trajectory, sampling_hz, None);
+    reference.fill(0, samples).map_err(|(_, error)| error)?;
+    let Reference {
+        pose,
+        twist,
+        acceleration,
+        positions,
+        ..
+    } = reference;
+    Ok(Sampled {
+        pose,
+        twist,
+        acceleration,
+        positions,
+    })
+}
+
 /// The desired motion of one run.
 pub(crate) struct Reference<'a> {
     model: &'a dyn Model,

@@ -114,6 +114,7 @@ const HOUSES: [House; 6] = [
             "experiment",
             "check",
             "runs",
+            "excitation",
             "instruments",
             "tracking",
             "partitions",

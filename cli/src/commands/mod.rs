@@ -2,6 +2,7 @@
 
 mod check;
 mod evaluate;
+mod excite;
 mod generate;
 mod identify;
 mod inspect;
@@ -40,6 +41,8 @@ pub(crate) enum Command {
     Generate(generate::Arguments),
     /// Evaluate a function on given states
     Evaluate(evaluate::Arguments),
+    /// Search runs that determine the parameters best inside limits
+    Excite(excite::Arguments),
     /// Make the virtual experiment of a description
     Simulate(simulate::Arguments),
     /// Estimate a robot's parameters from logs, or from its virtual experiment
@@ -60,6 +63,7 @@ impl Command {
             Self::Inspect(arguments) => inspect::run(arguments, json),
             Self::Generate(arguments) => generate::run(arguments, json),
             Self::Evaluate(arguments) => evaluate::run(arguments, json),
+            Self::Excite(arguments) => excite::run(arguments, json),
             Self::Simulate(arguments) => simulate::run(arguments, json),
             Self::Identify(arguments) => identify::run(arguments, json),
             Self::Partitions(arguments) => partitions::run(arguments, json),
@@ -74,6 +78,7 @@ impl Command {
             Self::Inspect(_) => "inspect",
             Self::Generate(_) => "generate",
             Self::Evaluate(_) => "evaluate",
+            Self::Excite(_) => "excite",
             Self::Simulate(_) => "simulate",
             Self::Identify(_) => "identify",
             Self::Partitions(_) => "partitions",
@@ -88,6 +93,7 @@ impl Command {
             Self::Generate(arguments) => arguments.files.as_slice(),
             Self::Inspect(arguments) => slice::from_ref(&arguments.file),
             Self::Evaluate(arguments) => slice::from_ref(&arguments.file),
+            Self::Excite(arguments) => slice::from_ref(&arguments.file),
             Self::Simulate(arguments) => slice::from_ref(&arguments.file),
             Self::Identify(arguments) => slice::from_ref(&arguments.file),
             Self::Partitions(arguments) => slice::from_ref(&arguments.file),

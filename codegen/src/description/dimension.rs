@@ -20,6 +20,7 @@ impl Dimension {
     pub(super) const SPEED: Self = Self([1, 0, -1, 0, 0]);
     pub(super) const ANGULAR_SPEED: Self = Self([0, 0, -1, 0, 1]);
     pub(super) const ACCELERATION: Self = Self([1, 0, -2, 0, 0]);
+    pub(super) const ANGULAR_ACCELERATION: Self = Self([0, 0, -2, 0, 1]);
     pub(super) const FORCE: Self = Self([1, 1, -2, 0, 0]);
     pub(super) const TORQUE: Self = Self([2, 1, -2, 0, 0]);
     pub(super) const POWER: Self = Self([2, 1, -3, 0, 0]);
@@ -32,7 +33,7 @@ impl Dimension {
     pub(super) const ANGULAR_STIFFNESS: Self = Self([2, 1, -2, 0, -1]);
 
     /// What a quantity of this dimension is called, with its article, and its unit.
-    const NAMES: [(Self, &'static str, &'static str); 19] = [
+    const NAMES: [(Self, &'static str, &'static str); 20] = [
         (Self::LENGTH, "a length", "m"),
         (Self::MASS, "a mass", "kg"),
         (Self::TIME, "a time", "s"),
@@ -42,6 +43,11 @@ impl Dimension {
         (Self::SPEED, "a speed", "m/s"),
         (Self::ANGULAR_SPEED, "an angular speed", "rad/s"),
         (Self::ACCELERATION, "an acceleration", "m/s^2"),
+        (
+            Self::ANGULAR_ACCELERATION,
+            "an angular acceleration",
+            "rad/s^2",
+        ),
         (Self::FORCE, "a force", "N"),
         (Self::TORQUE, "a torque", "N m"),
         (Self::POWER, "a power", "W"),

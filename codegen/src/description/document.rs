@@ -1,6 +1,7 @@
 //! The whole of a description, evaluated.
 
 use super::controller::Controller;
+use super::excitation::Excitation;
 use super::experiment::Experiment;
 use super::model::{Leg, Platform, Spanned, actuators};
 use super::prior::Prior;
@@ -31,6 +32,8 @@ pub struct Description {
     pub legs: Vec<Leg>,
     /// The virtual experiment.
     pub experiment: Option<Experiment>,
+    /// What a search of exciting trajectories keeps to.
+    pub excitation: Option<Excitation>,
     /// How a measured log maps on the robot.
     pub data: Option<Data>,
     /// The loops with which measured runs were made.

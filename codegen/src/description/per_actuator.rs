@@ -1,4 +1,4 @@
-//! Lists with a value for each actuator.
+//! Lists with a value for each actuator or coordinate.
 
 use super::dimension::Dimension;
 use super::model::JointKind;
@@ -19,24 +19,35 @@ pub(super) fn per_actuator(
     dimension: fn(JointKind) -> Dimension,
     scope: &Scope,
 ) -> Option<Vec<f64>> {
+    let dimensions: Vec<Dimension> = kinds.iter().map(|kind| dimension(*kind)).collect();
+    one_or_each(item, &dimensions, "actuator", scope)
+}
+
+/// One value for all of something, or a list with one for each.
+pub(super) fn one_or_each(
+    item: &Item<'_, '_>,
+    dimensions: &[Dimension],
+    what: &str,
+    scope: &Scope,
+) -> Option<Vec<f64>> {
     let items = if item.value.is_array() {
         item.list()?
     } else {
-        vec![item.clone(); kinds.len()]
+        vec![item.clone(); dimensions.len()]
     };
-    if items.len() != kinds.len() {
+    if items.len() != dimensions.len() {
         let message = format!(
-            "`{}`: expected one value or {}, one for each actuator, found {}",
+            "`{}`: expected one value or {}, one for each {what}, found {}",
             item.key.value,
-            kinds.len(),
+            dimensions.len(),
             items.len()
         );
         item.context.report(item.error(message));
         return None;
     }
-    let pairs = items.iter().zip(kinds);
+    let pairs = items.iter().zip(dimensions);
     let values: Vec<_> = pairs
-        .map(|(item, kind)| item.not_negative(dimension(*kind), scope))
+        .map(|(item, dimension)| item.not_negative(*dimension, scope))
         .collect();
     values.into_iter().collect()
 }

@@ -7,7 +7,7 @@ use super::model::{Leg, Platform, Spanned, actuators};
 use super::reader::{Context, Item, Table};
 use super::scope::Scope;
 use super::shape::Shape;
-use super::{controller, experiment, leg, platform, prior, settings, shape};
+use super::{controller, excitation, experiment, leg, platform, prior, settings, shape};
 use crate::cas::{Number, Ratio};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::effort::Effort;
@@ -105,7 +105,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     check_parameter_names(table, &robot);
     let (experiment, data) = (table.get("experiment"), table.get("data"));
     let (settings, loops) = (table.get("identification"), table.get("controller"));
-    let prior = table.get("prior");
+    let (prior, limits) = (table.get("prior"), table.get("excitation"));
     table.finish();
     // Names and numbers in what follows depend on all legs: a leg that failed would make every one
     // of them wrong.
@@ -114,6 +114,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         return None;
     }
     let experiment = experiment.and_then(|item| experiment::read(&item, &robot));
+    let excitation = limits.and_then(|item| excitation::read(&item, &robot));
     let data = data.and_then(|item| settings::data(&item, &robot));
     let controller = loops.and_then(|item| controller::read(&item, &robot));
     let prior = prior.and_then(|item| prior::read(&item, &robot));
@@ -129,6 +130,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         platform,
         legs,
         experiment,
+        excitation,
         data,
         controller,
         prior: prior.unwrap_or_default(),

@@ -54,6 +54,8 @@ position_gain = 1
 velocity_gain = 1
 [prior]
 zzzz17 = 1
+[excitation]
+zzzz18 = 1
 [experiment]
 zzzz11 = 1
 [experiment.drives]
@@ -66,7 +68,7 @@ terms = [{ zzzz14 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
 "#;
 
 /// Headings, in the order of the unknown keys, and what stands before the keys there.
-const SECTIONS: [(&str, &str); 18] = [
+const SECTIONS: [(&str, &str); 19] = [
     ("## The robot", ""),
     ("### `[platform]`", ""),
     ("### `[platform]`", "axis."),
@@ -88,6 +90,7 @@ const SECTIONS: [(&str, &str); 18] = [
         "",
     ),
     ("## `[prior]`: what is believed before the data speak", ""),
+    ("## `[excitation]`: limits of exciting runs", ""),
 ];
 
 fn folder(path: &str) -> PathBuf {

@@ -71,6 +71,35 @@ terms = []
 }
 
 #[test]
+fn excitation() {
+    let tables = r#"[excitation]
+fundamental = "1 s"
+harmonics = 31
+runs = 0
+position = [1, 2]
+travel = "1 m"
+velocity = "3 m/s"
+acceleration = 0
+condition = 0.5
+amplitude = 1
+"#;
+    let expected = [
+        "2:15 `fundamental`: expected a frequency (Hz), found a time (1 s)",
+        "3:13 `harmonics`: expected at most 30, found 31",
+        "4:8 `runs`: expected an integer of at least 1, found 0",
+        "5:12 `position`: expected one value or 1, one for each coordinate, found 2",
+        "6:10 `travel`: expected an angle (rad), found a length (1 m)",
+        "7:12 `velocity`: expected an angular speed (rad/s), found a speed (3 m/s)",
+        "8:16 `acceleration`: a limit of 0 leaves no motion; leave the key out where there is no limit",
+        "9:13 a condition number of 0.5 can't be; it is at least 1; 10 is far from singular",
+        "10:1 unknown key `amplitude`; known keys: fundamental, harmonics, runs, position, travel, velocity, acceleration, condition",
+    ];
+    let mut found = errors(tables);
+    found.sort_by_key(|line| line.split(':').next().and_then(|n| n.parse::<u32>().ok()));
+    assert_eq!(found, expected);
+}
+
+#[test]
 fn data() {
     let found = errors("[data]\ntime = 1\npositions = [\"a\", \"b\"]\ntorque_gain = [0]");
     let expected = [

@@ -1,0 +1,165 @@
+//! `overact excite`: runs that determine the base parameters best inside all limits.
+
+use crate::{
+    failure::Failure,
+    output::{self, counted, json, print, table},
+    progress::Progress,
+};
+use overact::{Info, Model};
+use overact_identification::significant;
+use overact_robot::{Excitation, ExcitationEffort, JudgedRuns, Limit, Robot};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
+
+/// Arguments of the command.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Description
+    #[arg(value_name = "TOML")]
+    pub(super) file: PathBuf,
+    /// Write the description with the runs that were found in the place of those to identify from; without it
+    /// the runs go to stdout
+    #[arg(short, long, value_name = "TOML")]
+    output: Option<PathBuf>,
+    /// Number of runs [default: the description's]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=20))]
+    runs: Option<u8>,
+    /// Seed of the search: the same one finds the same runs
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Stop searching after this time, s; the runs depend on the machine then
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..))]
+    time: Option<u32>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A description with errors, or limits that no motion keeps.
+pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let written = arguments.output.as_deref();
+    output::check(&[&arguments.file], written.as_slice())?;
+    let robot = Robot::from_toml(&arguments.file)?;
+    let effort = ExcitationEffort {
+        runs: arguments.runs.map(usize::from),
+        seed: arguments.seed,
+        time: arguments
+            .time
+            .map(|seconds| Duration::from_secs(seconds.into())),
+        ..ExcitationEffort::default()
+    };
+    let bar = Progress::new("exciting", as_json);
+    let found = robot.excite(&effort, &|fraction, run| bar.at(fraction, run))?;
+    drop(bar);
+    let description = robot.with_runs(&found)?;
+    if let Some(path) = written {
+        output::write(vec![(path.to_owned(), description.into_bytes())])?;
+    }
+    if as_json {
+        return print(&json(&found)?);
+    }
+    print(&text(&found, &robot.model().info(), written))
+}
+
+/// Tables of the comparison and of the limits, and the runs where no file takes them.
+fn text(found: &Excitation, info: &Info<'_>, written: Option<&Path>) -> String {
+    let heading = format!(
+        "{}: {} of {} s together, {}; all rows at this duration\n",
+        info.name,
+        counted(found.runs.len(), "run", "runs"),
+        significant(found.duration, 4),
+        counted(found.base_parameters, "base parameter", "base parameters"),
+    );
+    let mut text = format!("{heading}\n{}\n{}", comparison(found), limits(found));
+    for assumed in &found.assumed {
+        text += &format!("\nnote: {assumed}");
+    }
+    match written {
+        Some(path) => text + &format!("\nwrote {}", path.display()),
+        None => text + "\n" + &found.tables,
+    }
+}
+
+/// The sets of runs with what they are called.
+fn sets(found: &Excitation) -> impl Iterator<Item = (&'static str, &JudgedRuns)> {
+    let described = found.described.iter().map(|runs| ("described", runs));
+    described.chain([
+        ("best of 100 random", &found.random),
+        ("found", &found.found),
+    ])
+}
+
+/// How well each set of runs determines the parameters.
+fn comparison(found: &Excitation) -> String {
+    let header = [
+        "runs",
+        "model",
+        "condition number",
+        "log det",
+        "relative deviations: min",
+        "median",
+        "max",
+    ];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for (name, runs) in sets(found) {
+        for case in &runs.cases {
+            let mut row = vec![
+                name.to_owned(),
+                case.model.case().to_owned(),
+                significant(case.condition, 3),
+                format!("{:.1}", case.log_det),
+            ];
+            row.extend(match case.deviations {
+                Some(all) => all
+                    .map(|one| format!("{} %", significant(100.0 * one, 2)))
+                    .to_vec(),
+                None => vec!["-".to_owned(); 3],
+            });
+            rows.push(row);
+        }
+    }
+    table(&rows, &[true, true])
+}
+
+/// How much of each limit the sets of runs take.
+fn limits(found: &Excitation) -> String {
+    let names = sets(found).map(|(name, _)| name.to_owned());
+    let mut header = vec!["limit".to_owned(), "largest".to_owned(), String::new()];
+    header.extend(names);
+    let mut rows = vec![header];
+    for (index, limit) in found.limits.iter().enumerate() {
+        let mut row = vec![
+            limit.kind.name().to_owned(),
+            largest(limit),
+            limit.origin.words().to_owned(),
+        ];
+        let used = sets(found).map(|(_, runs)| runs.limits_used.get(index).copied());
+        row.extend(used.map(|used| used.map_or_else(|| "-".to_owned(), percent)));
+        rows.push(row);
+    }
+    table(&rows, &[true, true, true])
+}
+
+/// A part of a limit, rounded up so that what goes beyond it is seen.
+fn percent(used: f64) -> String {
+    format!("{:.1} %", (1000.0 * used).ceil() / 10.0)
+}
+
+/// The limit of each coordinate or actuator, one number where all have the same.
+fn largest(limit: &Limit) -> String {
+    let numbers = limit.values.iter().map(|value| significant(*value, 3));
+    let mut all: Vec<(String, &str)> = numbers.zip(limit.units.iter().copied()).collect();
+    if all.windows(2).all(|pair| pair[0] == pair[1]) {
+        all.truncate(1);
+    }
+    let mut text = String::new();
+    for (index, (number, unit)) in all.iter().enumerate() {
+        let last = all.get(index + 1).is_none_or(|(_, next)| next != unit);
+        let unit = if last { *unit } else { "" };
+        text += format!("{number} {unit}").trim_end();
+        text.push(' ');
+    }
+    text.trim_end().to_owned()
+}

@@ -1,0 +1,29 @@
+//! `overact excite` as its users run it.
+
+mod common;
+
+use common::Bench;
+
+#[test]
+fn runs_are_written_beside_the_description_that_they_are_for() {
+    let bench = Bench::with("serial-2r", str::to_owned);
+    let before = bench.read("my.toml");
+    let table = bench.good(&[
+        "excite", "my.toml", "-o", "new.toml", "--runs", "1", "--time", "1",
+    ]);
+    for part in [
+        "condition number",
+        "best of 100 random",
+        "found",
+        "wrote new.toml",
+    ] {
+        assert!(table.contains(part), "{part} in {table}");
+    }
+    assert_eq!(bench.read("my.toml"), before);
+    assert!(bench.read("new.toml").contains("name = \"excitation 1\""));
+    bench.good(&["check", "new.toml"]);
+    let document = bench.good(&["excite", "new.toml", "--runs", "1", "--time", "1", "--json"]);
+    for part in ["\"limits\"", "\"log_det\"", "\"tables\""] {
+        assert!(document.contains(part), "{part} in {document}");
+    }
+}

@@ -1,0 +1,259 @@
+//! A period of a run as the robot goes through it, and the peaks of everything that is limited.
+
+use super::frame::Frame;
+use super::kind::LimitKind;
+use nalgebra::DMatrix;
+use overact::{Error, Function, Info, Model, math::wrap_angle};
+use overact_simulation::{Sampled, Trajectory, sample, trajectory::Displacement};
+use std::f64::consts::{PI, TAU};
+
+/// Between two samples a smooth series rises above both by at most an eighth of its largest second
+/// difference.
+const BETWEEN_SAMPLES: f64 = 0.125;
+
+/// Second differences of what is no Fourier series may be larger between the samples than at them.
+const UNKNOWN_BETWEEN: f64 = 2.0;
+
+/// The robot whose runs are judged.
+pub(super) struct Bench<'a> {
+    pub(super) model: &'a dyn Model,
+    pub(super) info: Info<'a>,
+    pub(super) has_platform: bool,
+    /// Which coordinates are lengths.
+    pub(super) lengths: Vec<bool>,
+    /// Actuators whose rows of J_p^inv have to be regular: all, or the kept ones of a redundant robot.
+    pub(super) kept: Vec<usize>,
+    /// Inverse norms of the columns of J_p^inv at home.
+    pub(super) scales: Vec<f64>,
+    /// Parameters from which torques are predicted, the payload's last; none where they are not known.
+    pub(super) parameters: Option<Vec<f64>>,
+}
+
+/// A period of a run, one row of numbers for each sample.
+pub(super) struct Course {
+    pub(super) samples: usize,
+    pub(super) states: Sampled,
+    /// J_p^inv, n x r each.
+    pub(super) jacobian: Vec<f64>,
+    /// Displacements of the coordinates from home, m or rad.
+    displacement: Vec<f64>,
+    /// By how much each coordinate may rise between two samples, m or rad: a bound from its series.
+    rise: Vec<f64>,
+    travel: Vec<f64>,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+    torque: Vec<f64>,
+    condition: Vec<f64>,
+    actuators: usize,
+}
+
+impl<'a> Bench<'a> {
+    pub(super) fn is_length(&self, coordinate: usize) -> bool {
+        self.lengths.get(coordinate).copied().unwrap_or(false)
+    }
+
+    /// The units of what is limited, of each coordinate or actuator.
+    pub(super) fn units(&self, kind: LimitKind) -> Vec<&'static str> {
+        let unit = |is_length: &bool| kind.unit(*is_length);
+        match kind {
+            LimitKind::Position => self.lengths.iter().map(unit).collect(),
+            LimitKind::Condition => vec![kind.unit(false)],
+            _ => {
+                let revolute = self.info.actuator_is_revolute.iter();
+                revolute.map(|revolute| kind.unit(!revolute)).collect()
+            }
+        }
+    }
+
+    /// A period of a run at so many samples.
+    ///
+    /// # Errors
+    /// The model's error where the robot does not reach the motion.
+    pub(super) fn course(
+        &self,
+        frame: &Frame,
+        trajectory: &Trajectory,
+        samples: usize,
+    ) -> Result<Course, Error> {
+        let sizes = self.info.sizes;
+        let sampling = frame.fundamental * samples as f64;
+        let states = sample(self.model, trajectory, sampling, samples)?;
+        let ask = |function: Function, inputs: &[&[f64]]| -> Result<Vec<f64>, Error> {
+            let (rows, columns) = function.shape(&sizes);
+            let mut values = vec![0.0; samples * rows * columns];
+            let done = self.model.evaluate(function, inputs, &mut values);
+            done.map(|()| values).map_err(|error| error.error)
+        };
+        let motion: [&[f64]; 3] = [&states.pose, &states.twist, &states.acceleration];
+        let jacobian = ask(Function::InverseJacobian, &motion[..1])?;
+        let joints = ask(Function::JointAccelerations, &motion)?;
+        let torque = match &self.parameters {
+            None => Vec::new(),
+            Some(parameters) => {
+                let mut own = parameters.clone();
+                if !frame.payload {
+                    own[sizes.parameters..].fill(0.0);
+                }
+                ask(
+                    Function::InverseDynamics,
+                    &[motion[0], motion[1], motion[2], &own],
+                )?
+            }
+        };
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let rates = jacobian
+            .chunks_exact(n * r)
+            .zip(states.twist.chunks_exact(r));
+        let rate =
+            |row: &[f64], twist: &[f64]| row.iter().zip(twist).map(|(j, v)| j * v).sum::<f64>();
+        let velocity = rates.flat_map(|(j, v)| j.chunks_exact(r).map(move |row| rate(row, v)));
+        let actuated = self.info.actuated_joints;
+        let accelerations = joints.chunks_exact(sizes.joints);
+        let acceleration = accelerations.flat_map(|row| actuated.iter().map(|&joint| row[joint]));
+        let (displacement, rise) = self.displacement(frame, trajectory, samples);
+        Ok(Course {
+            samples,
+            displacement,
+            rise,
+            travel: self.travel(&states.positions),
+            velocity: velocity.collect(),
+            acceleration: acceleration.collect(),
+            torque,
+            condition: self.conditions(&jacobian),
+            jacobian,
+            states,
+            actuators: n,
+        })
+    }
+
+    /// Displacements of the coordinates, and by how much each may rise between two samples.
+    fn displacement(
+        &self,
+        frame: &Frame,
+        trajectory: &Trajectory,
+        samples: usize,
+    ) -> (Vec<f64>, Vec<f64>) {
+        let dof = self.info.sizes.dof;
+        let mut displacement = vec![0.0; samples * dof];
+        let (mut velocity, mut acceleration) = (vec![0.0; dof], vec![0.0; dof]);
+        for (k, position) in displacement.chunks_exact_mut(dof).enumerate() {
+            let time = k as f64 / (frame.fundamental * samples as f64);
+            let mut out = Displacement {
+                position,
+                velocity: &mut velocity,
+                acceleration: &mut acceleration,
+            };
+            trajectory.evaluate(self.info.coordinates, time, &mut out);
+        }
+        let mut rise = vec![0.0; dof];
+        if let Trajectory::Periodic { terms, .. } = trajectory {
+            for term in terms {
+                let step = TAU * f64::from(term.harmonic) / samples as f64;
+                let at = self
+                    .info
+                    .coordinates
+                    .iter()
+                    .position(|name| *name == term.coordinate);
+                if let Some(rise) = at.and_then(|at| rise.get_mut(at)) {
+                    *rise += BETWEEN_SAMPLES * term.amplitude.abs() * step * step;
+                }
+            }
+        }
+        (displacement, rise)
+    }
+
+    /// Displacements of the actuators from home; angles by less than half a turn at the start.
+    fn travel(&self, positions: &[f64]) -> Vec<f64> {
+        let n = self.info.sizes.actuators;
+        let from = |index: usize| {
+            let joint = self.info.actuated_joints.get(index);
+            let home = joint
+                .and_then(|&joint| self.info.home_joints.get(joint))
+                .copied();
+            let home = home.unwrap_or(0.0);
+            let start = positions.get(index).copied().unwrap_or(home) - home;
+            let turns =
+                self.has_platform && self.info.actuator_is_revolute[index] && start.abs() > PI;
+            if turns {
+                home + start - wrap_angle(start)
+            } else {
+                home
+            }
+        };
+        let from: Vec<f64> = (0..n).map(from).collect();
+        let rows = positions.chunks_exact(n);
+        rows.flat_map(|row| row.iter().zip(&from).map(|(at, from)| at - from))
+            .collect()
+    }
+
+    /// The condition number at each sample; infinite where the sign of the determinant differs from that at the
+    /// first one, because the motion crosses a singularity then.
+    fn conditions(&self, jacobians: &[f64]) -> Vec<f64> {
+        let (n, r) = (self.info.sizes.actuators, self.info.sizes.dof);
+        if !self.has_platform {
+            return Vec::new();
+        }
+        let mut side = 0.0;
+        let condition = |jacobian: &[f64]| {
+            let kept = DMatrix::from_fn(r, r, |row, column| {
+                jacobian[self.kept[row] * r + column] * self.scales[column]
+            });
+            let determinant = kept.determinant();
+            let crossed = side * determinant < 0.0;
+            if side == 0.0 {
+                side = determinant;
+            }
+            let values = kept.singular_values();
+            let condition = values.max() / values.min();
+            if crossed || condition.is_nan() {
+                f64::INFINITY
+            } else {
+                condition
+            }
+        };
+        jacobians.chunks_exact(n * r).map(condition).collect()
+    }
+
+    /// The condition number at a displacement from home, where the robot reaches it.
+    pub(super) fn condition_at(&self, displacement: &[f64]) -> Option<f64> {
+        let sizes = self.info.sizes;
+        let mut pose = self.info.home_pose.to_vec();
+        self.model.displace(&mut pose, displacement);
+        let mut jacobian = vec![0.0; sizes.actuators * sizes.dof];
+        self.model
+            .evaluate(Function::InverseJacobian, &[&pose], &mut jacobian)
+            .ok()?;
+        self.conditions(&jacobian).first().copied()
+    }
+}
+
+impl Course {
+    /// The largest magnitudes of what is limited, with what it may rise between the samples if asked for.
+    pub(super) fn peaks(&self, kind: LimitKind, between: bool) -> Vec<f64> {
+        let (series, width) = match kind {
+            LimitKind::Position => (&self.displacement, self.rise.len()),
+            LimitKind::Travel => (&self.travel, self.actuators),
+            LimitKind::Velocity => (&self.velocity, self.actuators),
+            LimitKind::Acceleration => (&self.acceleration, self.actuators),
+            LimitKind::Torque => (&self.torque, self.actuators),
+            LimitKind::Condition => (&self.condition, 1),
+        };
+        let rows = series.len() / width;
+        let peak = |at: usize| {
+            let value = |row: usize| series[row % rows * width + at];
+            let largest = (0..rows).map(|row| value(row).abs()).fold(0.0, f64::max);
+            if !between {
+                return largest;
+            }
+            if kind == LimitKind::Position {
+                return largest + self.rise[at];
+            }
+            let bend = |row: usize| (value(row + 2) - 2.0 * value(row + 1) + value(row)).abs();
+            // Where friction changes its sign two neighbours have the jump, which is none of the smooth parts.
+            let smooth = |row: usize| bend(row).min(bend(row + 1)).min(bend(row + 2));
+            let largest_bend = (0..rows).map(smooth).fold(0.0, f64::max);
+            largest + UNKNOWN_BETWEEN * BETWEEN_SAMPLES * largest_bend
+        };
+        (0..width).map(peak).collect()
+    }
+}

@@ -1,0 +1,317 @@
+//! What runs tell of the base parameters: the information matrix of the weighted least squares (44) that an
+//! identification from them solves, in each case.
+//!
+//! A line of the model is weighed by the variance that the torque noise has on it: of case 1 that of
+//! Γ¹ = J_p^invᵀ τ, of case 2 that of Γ² = τ_a + J_a^-T J_bᵀ τ_b, each the mean over the run.
+
+use super::course::{Bench, Course};
+use super::frame::Frame;
+use crate::error::{Error, Problem};
+use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+use overact_identification::{
+    BaseParameters, ColumnSet, ModelKind, PayloadUse, Projection, Settings, base_parameters,
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Information that is added to that of normalised parameters, so that one which no run tells of counts as known
+/// badly instead of not at all.
+const RIDGE: f64 = 1e-8;
+
+/// What is asked of the runs.
+pub(super) struct Question {
+    columns: ColumnSet,
+    base: BaseParameters,
+    projections: Vec<Projection>,
+    /// Standard deviation of the torque noise of each actuator, N m or N.
+    noise: Vec<f64>,
+    /// Frequency at which torques are measured, Hz.
+    sampling: f64,
+    /// Values of the base parameters, where they are known.
+    values: Vec<Option<f64>>,
+    /// Factors of the parameters in which information is compared.
+    pub(super) scales: Vec<DVector<f64>>,
+}
+
+/// How well runs determine the base parameters in one case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CaseOfRuns {
+    /// Which inputs the model explains.
+    pub model: ModelKind,
+    /// Logarithm of the determinant of the information matrix; parameters are normalised alike for all runs
+    /// that are compared.
+    pub log_det: f64,
+    /// Condition number of the weighted regressor with columns of unit norm.
+    pub condition: f64,
+    /// Smallest, median and largest standard deviation that the torque noise leaves, relative to the
+    /// parameters' values; none where these are not known.
+    pub deviations: Option<[f64; 3]>,
+}
+
+impl Question {
+    /// The question of runs of a robot, of which some carry the payload.
+    ///
+    /// # Errors
+    /// A robot without base parameters.
+    pub(super) fn new(
+        bench: &Bench<'_>,
+        frames: &[Frame],
+        settings: &Settings,
+        truth: Option<&BTreeMap<String, f64>>,
+        (noise, sampling): (Vec<f64>, f64),
+    ) -> Result<Self, Error> {
+        let loaded = frames.iter().filter(|frame| frame.payload).count();
+        let payload = match loaded {
+            0 => PayloadUse::Absent,
+            all if all == frames.len() => PayloadUse::Regrouped,
+            _ => PayloadUse::Separate,
+        };
+        let columns = ColumnSet::new(
+            bench.model,
+            loaded > 0,
+            settings.asymmetric_friction,
+            settings.seed,
+        )?
+        .with_reversals(bench.model, settings)?;
+        let base = base_parameters(bench.model, &columns, payload, settings.seed)?;
+        let sizes = bench.info.sizes;
+        if sizes.actuators < sizes.dof {
+            let message = "the robot has fewer actuators than coordinates";
+            let help =
+                "exciting runs are searched for robots whose actuators drive all coordinates";
+            return Err(Problem::new(message).help(help).into());
+        }
+        let projections = match sizes.actuators == sizes.dof {
+            true => vec![Projection::Joints],
+            false => vec![
+                Projection::Platform,
+                Projection::Actuators(bench.kept.clone()),
+            ],
+        };
+        let values = truth.map(|truth| base.regrouped(&columns, truth));
+        let normal = DVector::from_element(base.columns.len(), 1.0);
+        Ok(Self {
+            scales: vec![normal; projections.len()],
+            columns,
+            projections,
+            noise,
+            sampling,
+            values: values.unwrap_or_default(),
+            base,
+        })
+    }
+
+    /// Number of base parameters.
+    pub(super) fn len(&self) -> usize {
+        self.base.columns.len()
+    }
+
+    /// Information of a run, one matrix for each case; none where the model has no value or the kept actuators
+    /// do not determine the motion.
+    pub(super) fn information(
+        &self,
+        bench: &Bench<'_>,
+        frame: &Frame,
+        course: &Course,
+    ) -> Option<Vec<DMatrix<f64>>> {
+        let states = &course.states;
+        let states = [&states.pose[..], &states.twist, &states.acceleration];
+        let interval = 1.0 / (frame.fundamental * course.samples as f64);
+        let (model, picked) = (bench.model, (&self.base.columns[..], 0));
+        let lines = self
+            .columns
+            .evaluate(
+                model,
+                &states,
+                (course.samples, interval),
+                frame.payload,
+                picked,
+            )
+            .ok()?;
+        let weight = frame.duration * self.sampling / course.samples as f64;
+        let of = |projection: &Projection| match projection.kept(&bench.info) {
+            None => Some(self.sum(&lines, &self.platform_noise(bench, course), weight)),
+            Some(kept) => {
+                let (lines, variances) = self.on_actuators(bench, course, &lines, &kept)?;
+                Some(self.sum(&lines, &variances, weight))
+            }
+        };
+        self.projections.iter().map(of).collect()
+    }
+
+    /// Σ Wᵀ W / σ² over the lines, times `weight`.
+    fn sum(&self, lines: &[Vec<f64>], variances: &[f64], weight: f64) -> DMatrix<f64> {
+        let width = self.len();
+        let mut sum = DMatrix::zeros(width, width);
+        for (line, variance) in lines.iter().zip(variances) {
+            let transposed = DMatrix::from_column_slice(width, line.len() / width, line);
+            let square = &transposed * transposed.transpose();
+            sum += square * (weight / variance);
+        }
+        sum
+    }
+
+    /// Mean variances of the lines of Γ¹.
+    fn platform_noise(&self, bench: &Bench<'_>, course: &Course) -> Vec<f64> {
+        let r = bench.info.sizes.dof;
+        let mut sums = vec![0.0; r];
+        for (row, noise) in course
+            .jacobian
+            .chunks_exact(r)
+            .zip(self.noise.iter().cycle())
+        {
+            for (sum, entry) in sums.iter_mut().zip(row) {
+                *sum += (entry * noise).powi(2) / course.samples as f64;
+            }
+        }
+        sums
+    }
+
+    /// The lines of Γ² = J_a^-T Γ¹, and their mean variances.
+    fn on_actuators(
+        &self,
+        bench: &Bench<'_>,
+        course: &Course,
+        lines: &[Vec<f64>],
+        kept: &[usize],
+    ) -> Option<(Vec<Vec<f64>>, Vec<f64>)> {
+        let (n, r) = (bench.info.sizes.actuators, bench.info.sizes.dof);
+        let width = self.len();
+        let mut projected = vec![vec![0.0; course.samples * width]; r];
+        let mut variances = vec![0.0; r];
+        for (sample, jacobian) in course.jacobian.chunks_exact(n * r).enumerate() {
+            let part = DMatrix::from_fn(r, r, |row, column| jacobian[kept[row] * r + column]);
+            let inverse = part.try_inverse()?;
+            let own = sample * width..(sample + 1) * width;
+            for (a, to) in projected.iter_mut().enumerate() {
+                let to = &mut to[own.clone()];
+                for (line, from) in lines.iter().enumerate() {
+                    let factor = inverse[(line, a)];
+                    let from = &from[own.clone()];
+                    to.iter_mut()
+                        .zip(from)
+                        .for_each(|(to, from)| *to += factor * from);
+                }
+            }
+            for (a, variance) in variances.iter_mut().enumerate() {
+                for (row, noise) in jacobian.chunks_exact(r).zip(&self.noise) {
+                    let share: f64 = (0..r).map(|line| inverse[(line, a)] * row[line]).sum();
+                    *variance += (share * noise).powi(2) / course.samples as f64;
+                }
+            }
+        }
+        Some((projected, variances))
+    }
+
+    /// Takes the factors by which parameters are normalised from typical information: that of each alone is 1.
+    pub(super) fn normalise(&mut self, typical: &[DMatrix<f64>]) {
+        let factor = |value: &f64| {
+            if *value > 0.0 {
+                value.sqrt().recip()
+            } else {
+                1.0
+            }
+        };
+        let factors = |matrix: &DMatrix<f64>| {
+            DVector::from_iterator(matrix.nrows(), matrix.diagonal().iter().map(factor))
+        };
+        self.scales = typical.iter().map(factors).collect();
+    }
+
+    /// The sum over the cases of the logarithms of the determinants of normalised information.
+    pub(super) fn score(&self, information: &[DMatrix<f64>]) -> f64 {
+        let cases = information.iter().zip(&self.scales);
+        cases.map(|(matrix, scales)| log_det(matrix, scales)).sum()
+    }
+
+    /// How well runs with this information determine the parameters in each case.
+    pub(super) fn judge(&self, information: &[DMatrix<f64>]) -> Vec<CaseOfRuns> {
+        let cases = self.projections.iter().zip(information).zip(&self.scales);
+        let case =
+            |((projection, matrix), scales): ((&Projection, &DMatrix<f64>), &DVector<f64>)| {
+                CaseOfRuns {
+                    model: projection.model(),
+                    log_det: log_det(matrix, scales),
+                    condition: condition(matrix),
+                    deviations: self.deviations(matrix),
+                }
+            };
+        cases.map(case).collect()
+    }
+
+    /// Smallest, median and largest relative standard deviation of the parameters whose values are known.
+    fn deviations(&self, information: &DMatrix<f64>) -> Option<[f64; 3]> {
+        let inverse = Cholesky::new(correlation(information))?.inverse();
+        let relative = |(index, value): (usize, &Option<f64>)| {
+            let value = value.filter(|value| *value != 0.0)?;
+            let variance = inverse[(index, index)] / information[(index, index)];
+            Some(variance.sqrt() / value.abs())
+        };
+        let mut all: Vec<f64> = self
+            .values
+            .iter()
+            .enumerate()
+            .filter_map(relative)
+            .collect();
+        all.sort_by(f64::total_cmp);
+        Some([*all.first()?, *all.get(all.len() / 2)?, *all.last()?])
+    }
+}
+
+/// The logarithm of the determinant of normalised information, a little added.
+fn log_det(information: &DMatrix<f64>, scales: &DVector<f64>) -> f64 {
+    let count = information.nrows();
+    let scaled = DMatrix::from_fn(count, count, |i, j| {
+        let ridge = if i == j { RIDGE } else { 0.0 };
+        information[(i, j)] * scales[i] * scales[j] + ridge
+    });
+    let factor = Cholesky::new(scaled);
+    let sum = |l: DMatrix<f64>| {
+        l.diagonal()
+            .iter()
+            .map(|entry| 2.0 * entry.ln())
+            .sum::<f64>()
+    };
+    // Rounding may take the last digit of a matrix without information: it has the ridge alone.
+    factor.map_or(count as f64 * RIDGE.ln(), |factor| sum(factor.unpack()))
+}
+
+/// Information of parameters each of which, alone, has the information 1.
+fn correlation(information: &DMatrix<f64>) -> DMatrix<f64> {
+    let norms = information.diagonal().map(f64::sqrt);
+    DMatrix::from_fn(information.nrows(), information.ncols(), |i, j| {
+        information[(i, j)] / (norms[i] * norms[j])
+    })
+}
+
+/// The condition number of the regressor with columns of unit norm; infinite where one is zero.
+fn condition(information: &DMatrix<f64>) -> f64 {
+    let matrix = correlation(information);
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return f64::INFINITY;
+    }
+    let values = SymmetricEigen::new(matrix).eigenvalues;
+    match values.min() > 0.0 {
+        true => (values.max() / values.min()).sqrt(),
+        false => f64::INFINITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{condition, log_det};
+    use nalgebra::{DMatrix, DVector};
+
+    #[test]
+    fn condition_and_determinant_are_those_of_the_columns() {
+        // Columns of lengths 2 and 3 at 60 degrees: WᵀW is [[4, 3], [3, 9]], unit columns have 1 ± 1/2.
+        let matrix = DMatrix::from_row_slice(2, 2, &[4.0, 3.0, 3.0, 9.0]);
+        assert!((condition(&matrix) - 3.0_f64.sqrt()).abs() < 1e-12);
+        let found = log_det(&matrix, &DVector::from_element(2, 1.0));
+        assert!((found - 27.0_f64.ln()).abs() < 1e-6);
+        let halved = log_det(&matrix, &DVector::from_column_slice(&[0.5, 1.0]));
+        assert!((found - halved - 4.0_f64.ln()).abs() < 1e-6);
+        let unknown = DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0]);
+        assert_eq!(condition(&unknown), f64::INFINITY);
+    }
+}

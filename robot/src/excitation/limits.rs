@@ -1,0 +1,183 @@
+//! What exciting runs keep to: limits of coordinates, actuators and conditioning, and where they come from.
+
+use super::course::{Bench, Course};
+use super::frame::Frame;
+use super::kind::LimitKind;
+use overact_codegen::description::{self, Description};
+use overact_simulation::Trajectory;
+use serde::Serialize;
+
+/// Part of an actuator's largest torque that a desired motion may ask for: the rest is the controller's.
+const TORQUE_SHARE: f64 = 0.9;
+
+/// A condition number that is far from singular.
+const SAFE_CONDITION: f64 = 10.0;
+
+/// Samples of one period from which the limits of described runs are taken.
+const SAMPLES: usize = 1024;
+
+/// Displacement of a joint that nothing is known of, rad or m.
+const ASSUMED: [f64; 2] = [std::f64::consts::FRAC_PI_4, 0.1];
+
+/// Part of what is reached along a single coordinate that all of them may take together.
+const REACH_SHARE: f64 = 0.5;
+
+/// The first step along a coordinate when the reach is found out, m or rad, its growth and the last one.
+const REACH: [f64; 3] = [1e-3, 1.1, 1.5];
+
+/// Where a limit comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Origin {
+    /// The description gives it.
+    Described,
+    /// The runs of the description reach it.
+    Runs,
+    /// Neither: half of what is reached, or a usual value.
+    Assumed,
+}
+
+impl Origin {
+    /// In words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Described => "of the description",
+            Self::Runs => "reached by its runs",
+            Self::Assumed => "assumed",
+        }
+    }
+}
+
+/// A limit that runs keep.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Limit {
+    /// Of what.
+    pub kind: LimitKind,
+    /// The largest magnitude of each coordinate or actuator, SI; a single number for the condition.
+    pub values: Vec<f64>,
+    /// Their units, for instance `rad/s`; nothing for the condition.
+    pub units: Vec<&'static str>,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+impl Limit {
+    /// The largest part of the limit that peaks take: 1 is all of it.
+    fn used(&self, peaks: &[f64]) -> f64 {
+        let part = |(peak, limit): (&f64, &f64)| if *peak == 0.0 { 0.0 } else { peak / limit };
+        let parts = peaks.iter().zip(&self.values).map(part);
+        parts.fold(0.0, |most: f64, part| {
+            if part.is_nan() {
+                f64::INFINITY
+            } else {
+                most.max(part)
+            }
+        })
+    }
+}
+
+/// The largest part of each limit that a run takes, at the samples, or also between them.
+pub(super) fn uses(course: &Course, limits: &[Limit], between: bool) -> Vec<f64> {
+    let used = |limit: &Limit| limit.used(&course.peaks(limit.kind, between));
+    limits.iter().map(used).collect()
+}
+
+/// The limits of a description; `described` are its own runs to identify from.
+pub(super) fn limits(
+    bench: &Bench<'_>,
+    description: &Description,
+    described: &[(Frame, Trajectory)],
+) -> Vec<Limit> {
+    let reach =
+        |(frame, trajectory): &(Frame, Trajectory)| bench.course(frame, trajectory, SAMPLES);
+    // A run that the robot can't follow tells nothing; making it fails with its own error.
+    let courses: Vec<Course> = described.iter().filter_map(|run| reach(run).ok()).collect();
+    let of_runs = |kind: LimitKind| -> Option<Vec<f64>> {
+        let all = courses.iter().map(|course| course.peaks(kind, false));
+        all.reduce(|a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect())
+    };
+    let table = description.excitation.as_ref();
+    let key =
+        |get: fn(&description::Excitation) -> &Option<Vec<f64>>| table.and_then(|t| get(t).clone());
+    let mut all = Vec::new();
+    let mut add =
+        |kind, own: Option<Vec<f64>>, runs: Option<Vec<f64>>, assumed: Option<Vec<f64>>| {
+            let own = own.map(|values| (values, Origin::Described));
+            let runs = runs.map(|values| (values, Origin::Runs));
+            let assumed = assumed.map(|values| (values, Origin::Assumed));
+            if let Some((values, origin)) = own.or(runs).or(assumed) {
+                let units = bench.units(kind);
+                all.push(Limit {
+                    kind,
+                    values,
+                    units,
+                    origin,
+                });
+            }
+        };
+    let moving = of_runs(LimitKind::Position).filter(|peaks| peaks.iter().any(|peak| *peak > 0.0));
+    let own = table.and_then(|t| t.condition).map(|value| vec![value]);
+    let runs = of_runs(LimitKind::Condition)
+        .filter(|peak| peak.iter().all(|p| p.is_finite() && *p > SAFE_CONDITION));
+    let condition = own
+        .clone()
+        .or(runs.clone())
+        .map_or(SAFE_CONDITION, |values| values[0]);
+    let assumed = match moving.is_some() {
+        true => None,
+        false => Some(reached(bench, condition)),
+    };
+    add(LimitKind::Position, key(|t| &t.position), moving, assumed);
+    add(LimitKind::Travel, key(|t| &t.travel), None, None);
+    let rates = |kind| of_runs(kind).filter(|peaks| peaks.iter().all(|peak| *peak > 0.0));
+    add(
+        LimitKind::Velocity,
+        key(|t| &t.velocity),
+        rates(LimitKind::Velocity),
+        None,
+    );
+    add(
+        LimitKind::Acceleration,
+        key(|t| &t.acceleration),
+        rates(LimitKind::Acceleration),
+        None,
+    );
+    if bench.parameters.is_some() {
+        let largest = description
+            .experiment
+            .as_ref()
+            .and_then(|e| e.torque_limit.clone());
+        let share = largest.map(|all| all.iter().map(|limit| TORQUE_SHARE * limit).collect());
+        add(LimitKind::Torque, share, rates(LimitKind::Torque), None);
+    }
+    if bench.has_platform {
+        add(LimitKind::Condition, own, runs, Some(vec![SAFE_CONDITION]));
+    }
+    all
+}
+
+/// Displacements of the coordinates where no run tells of them: half of what is reached along each alone on
+/// both sides without a larger condition number; of joints of a robot without platform a usual value.
+fn reached(bench: &Bench<'_>, condition: f64) -> Vec<f64> {
+    let dof = bench.info.sizes.dof;
+    let along = |coordinate: usize, sign: f64| {
+        let [mut at, growth, last] = REACH;
+        let mut good = 0.0;
+        while at < last {
+            let mut step = vec![0.0; dof];
+            step[coordinate] = sign * at;
+            match bench.condition_at(&step) {
+                Some(found) if found <= condition => good = at,
+                _ => break,
+            }
+            at *= growth;
+        }
+        good
+    };
+    let of = |coordinate: usize| match bench.has_platform {
+        true => REACH_SHARE * along(coordinate, 1.0).min(along(coordinate, -1.0)),
+        false => ASSUMED[usize::from(bench.is_length(coordinate))],
+    };
+    (0..dof).map(of).collect()
+}

@@ -1,0 +1,401 @@
+//! Exciting runs: periodic motions that determine the base parameters best inside all limits.
+//!
+//! The measure is the determinant of the information matrix Σ Wᵀ W / σ² of the base parameters (D-optimality;
+//! Swevers, Ganseman, Tükel, De Schutter, Van Brussel 1997), whose logarithms are added over case 1 and case 2 of
+//! a redundant robot. Each coordinate moves along a finite Fourier series. From the bottom up:
+//!
+//! - `frame`: what is fixed of a run, and its series; `course`: the robot along it, and all peaks;
+//! - `kind`, `limits`: what is limited, how much, and where that comes from; `information`: what runs tell of the parameters;
+//! - `evolution`: a search without derivatives; `search`: random series, evolution, and the check of the limits
+//!   at and between the samples of a fine grid; `text`: the runs in a description.
+
+mod course;
+mod evolution;
+mod frame;
+mod information;
+mod kind;
+mod limits;
+mod search;
+mod text;
+
+pub use information::CaseOfRuns;
+pub use kind::LimitKind;
+pub use limits::{Limit, Origin};
+
+use crate::{
+    error::{Error, Problem},
+    robot::Robot,
+    settings::settings,
+};
+use course::Bench;
+use frame::Frame;
+use information::Question;
+use nalgebra::DMatrix;
+use overact::{Function, Info, Model};
+use overact_simulation::Trajectory;
+use rand_pcg::Pcg64;
+use search::{Candidate, Search, added};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+/// Torque noise where none is described, as a part of the largest torque.
+const NOISE_SHARE: f64 = 0.01;
+
+/// Samples of a period at which runs are judged, at least.
+const JUDGED_SAMPLES: usize = 256;
+
+/// Frequency at which torques are measured where none is described, Hz.
+const SAMPLING: f64 = 5000.0;
+
+/// How exciting runs are searched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExcitationEffort {
+    /// Number of runs; that of the description if absent.
+    pub runs: Option<usize>,
+    /// Seed of everything random: the same search gives the same runs.
+    pub seed: u64,
+    /// Generations of the evolution of each run, at most.
+    pub generations: usize,
+    /// Time after which nothing better is searched; the runs depend on the machine then.
+    pub time: Option<Duration>,
+}
+
+impl Default for ExcitationEffort {
+    fn default() -> Self {
+        Self {
+            runs: None,
+            seed: 1,
+            generations: 600,
+            time: None,
+        }
+    }
+}
+
+/// How well a set of runs determines the parameters, and how much of the limits it takes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JudgedRuns {
+    /// Case 1 and case 2 of a redundant robot; else one.
+    pub cases: Vec<CaseOfRuns>,
+    /// The largest part of each limit that the runs take: 1 is all of it.
+    pub limits_used: Vec<f64>,
+}
+
+/// Exciting runs and what they are compared with, all at equal duration.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Excitation {
+    /// The limits.
+    pub limits: Vec<Limit>,
+    /// Number of base parameters.
+    pub base_parameters: usize,
+    /// Duration of all runs, s.
+    pub duration: f64,
+    /// The runs of the description from which parameters are identified, if there are any.
+    pub described: Option<JudgedRuns>,
+    /// The best of a hundred random ones, run after run.
+    pub random: JudgedRuns,
+    /// Those that were found.
+    pub found: JudgedRuns,
+    /// Names of the runs that were found.
+    pub runs: Vec<String>,
+    /// The runs as tables `[[experiment.run]]`.
+    pub tables: String,
+    /// What was assumed for want of a word in the description.
+    pub assumed: Vec<String>,
+}
+
+impl Robot {
+    /// Searches exciting runs. `progress` hears the part that is done, from 0 to 1, and the name of a run.
+    ///
+    /// # Errors
+    /// A robot without base parameters, limits that no motion keeps, or a description whose runs are not written
+    /// as tables of their own.
+    pub fn excite(
+        &self,
+        effort: &ExcitationEffort,
+        progress: &dyn Fn(f64, &str),
+    ) -> Result<Excitation, Error> {
+        let start = Instant::now();
+        // A description that can't take the runs is refused before they are searched.
+        text::description(self, "")?;
+        let task = Task::new(self, effort)?;
+        let chains = task.search(self, effort, start, progress)?;
+        Ok(task.told(self, chains))
+    }
+
+    /// The description with found runs in the place of those from which parameters are identified; runs that are
+    /// held out stay.
+    ///
+    /// # Errors
+    /// Runs that are not written as tables of their own.
+    pub fn with_runs(&self, found: &Excitation) -> Result<String, Error> {
+        text::description(self, &found.tables)
+    }
+}
+
+/// What is searched.
+struct Task<'a> {
+    bench: Bench<'a>,
+    limits: Vec<Limit>,
+    frames: Vec<Frame>,
+    described: Vec<(Frame, Trajectory)>,
+    question: Question,
+    assumed: Vec<String>,
+}
+
+/// Runs that were found, and the best random ones.
+#[derive(Default)]
+struct Chains {
+    random: Vec<Trajectory>,
+    found: Vec<Trajectory>,
+}
+
+impl<'a> Task<'a> {
+    fn new(robot: &'a Robot, effort: &ExcitationEffort) -> Result<Self, Error> {
+        let description = robot.description();
+        let mut assumed = Vec::new();
+        let truth = robot
+            .true_values()
+            .filter(|all| all.values().any(|value| *value != 0.0));
+        if truth.is_none() {
+            let words = "without [experiment.parameters] torques are not predicted, and deviations are not told";
+            assumed.push(words.to_owned());
+        }
+        let bench = bench(robot, truth.as_ref())?;
+        let described = frame::described(description, bench.info.coordinates);
+        let limits = limits::limits(&bench, description, &described);
+        let frames = frame::wanted(description, &described, effort.runs);
+        let noise = noise(robot, &bench.info, &mut assumed);
+        let sampling = description
+            .experiment
+            .as_ref()
+            .map_or(SAMPLING, |e| e.sampling);
+        let own = settings(description, &bench.info, sampling);
+        let question = Question::new(&bench, &frames, &own, truth.as_ref(), (noise, sampling))?;
+        let mut task = Self {
+            bench,
+            limits,
+            frames,
+            described,
+            question,
+            assumed,
+        };
+        let typical = task.typical(robot, effort)?;
+        task.question.normalise(&typical);
+        Ok(task)
+    }
+
+    /// What is searched, with all that it stands on.
+    fn of(&self, effort: &ExcitationEffort) -> Search<'_> {
+        Search {
+            bench: &self.bench,
+            question: &self.question,
+            limits: &self.limits,
+            generations: effort.generations,
+            deadline: None,
+        }
+    }
+
+    /// Mean information of random runs with the payload and without, as far as there are such.
+    fn typical(
+        &self,
+        robot: &Robot,
+        effort: &ExcitationEffort,
+    ) -> Result<Vec<DMatrix<f64>>, Error> {
+        let search = self.of(effort);
+        let mut typical = Vec::new();
+        for payload in [false, true] {
+            let Some(frame) = self.frames.iter().find(|frame| frame.payload == payload) else {
+                continue;
+            };
+            let series = search.series(frame);
+            let all = search.random(&series, &mut stream(effort.seed, u64::MAX));
+            let count = all.len() as f64;
+            let sum = all
+                .iter()
+                .fold(Vec::new(), |sum, one| added(&sum, &one.information));
+            if sum.is_empty() {
+                return Err(self.no_motion(robot));
+            }
+            let mean: Vec<DMatrix<f64>> = sum.into_iter().map(|matrix| matrix / count).collect();
+            typical = added(&typical, &mean);
+        }
+        Ok(typical)
+    }
+
+    /// Searches run after run: each adds to what those before it tell.
+    fn search(
+        &self,
+        robot: &Robot,
+        effort: &ExcitationEffort,
+        start: Instant,
+        progress: &dyn Fn(f64, &str),
+    ) -> Result<Chains, Error> {
+        let mut search = self.of(effort);
+        let mut chains = Chains::default();
+        let (mut told_random, mut told) = (Vec::new(), Vec::new());
+        for (index, frame) in self.frames.iter().enumerate() {
+            let part = 1.0 / self.frames.len() as f64;
+            let tell = |generation: usize| {
+                let done = generation as f64 / effort.generations.max(1) as f64;
+                progress(part * (index as f64 + done), &frame.name);
+            };
+            tell(0);
+            // Each run has its share of the time.
+            let share = |time: Duration| start + time.mul_f64(part * (index + 1) as f64);
+            search.deadline = effort.time.map(share);
+            let mut random = stream(effort.seed, index as u64);
+            // A limit that holds every coordinate is refused; so each run has a series.
+            let series = search.series(frame);
+            let all = search.random(&series, &mut random);
+            let best = search
+                .best(&all, &told_random)
+                .zip(search.best(&all, &told));
+            let (of_random, start) = best.ok_or_else(|| self.no_motion(robot))?;
+            let evolved = search.evolved(&series, start, &told, &mut random, &tell);
+            let settled = search.settled(&series, &evolved);
+            let found: Candidate = settled.ok_or_else(|| self.no_motion(robot))?;
+            told_random = added(&told_random, &of_random.information);
+            told = added(&told, &found.information);
+            chains.random.push(of_random.trajectory.clone());
+            chains.found.push(found.trajectory);
+        }
+        progress(1.0, "");
+        Ok(chains)
+    }
+
+    /// Why there is nothing to search.
+    fn no_motion(&self, robot: &Robot) -> Error {
+        let limits: Vec<String> = self
+            .limits
+            .iter()
+            .map(|limit| format!("{} ({})", limit.kind.name(), limit.origin.words()))
+            .collect();
+        let message = format!(
+            "no motion about home keeps all limits: {}",
+            limits.join(", ")
+        );
+        let help = "give wider limits in the table [excitation], a smaller `position` or a slower `fundamental`";
+        let table = robot.description().excitation.as_ref();
+        let line = table.map(|table| robot.source().position(&table.span).line);
+        Problem::new(message)
+            .file(robot.file())
+            .line(line)
+            .help(help)
+            .into()
+    }
+
+    /// All runs judged at equal duration.
+    fn told(&self, robot: &Robot, chains: Chains) -> Excitation {
+        let names = self.frames.iter().map(|frame| frame.name.clone()).collect();
+        let with = |all: Vec<Trajectory>| self.frames.iter().cloned().zip(all).collect();
+        let (random, found): (Vec<_>, Vec<_>) = (with(chains.random), with(chains.found));
+        let duration =
+            |runs: &[(Frame, Trajectory)]| runs.iter().map(|(f, _)| f.duration).sum::<f64>();
+        let whole = duration(&found);
+        let mut assumed = self.assumed.clone();
+        let judged = |runs: &[(Frame, Trajectory)]| self.judged(runs, whole / duration(runs));
+        let described = judged(&self.described);
+        if described.is_none() && !self.described.is_empty() {
+            assumed.push("the robot does not reach the runs of the description".to_owned());
+        }
+        let names_in = frame::coordinates(robot.description()).into_iter();
+        let coordinates = self.bench.info.coordinates.iter().zip(names_in);
+        let coordinates: Vec<(&str, String, bool)> = coordinates
+            .map(|(model, (name, length))| (*model, name, length))
+            .collect();
+        let nothing = || JudgedRuns {
+            cases: Vec::new(),
+            limits_used: Vec::new(),
+        };
+        Excitation {
+            base_parameters: self.question.len(),
+            duration: whole,
+            described,
+            random: judged(&random).unwrap_or_else(nothing),
+            found: judged(&found).unwrap_or_else(nothing),
+            runs: names,
+            tables: text::tables(&found, &coordinates),
+            assumed,
+            limits: self.limits.clone(),
+        }
+    }
+
+    /// Runs judged together, their information times a factor; none where there is no run, or one that the robot
+    /// does not reach.
+    fn judged(&self, runs: &[(Frame, Trajectory)], factor: f64) -> Option<JudgedRuns> {
+        let (mut information, mut used) = (Vec::new(), vec![0.0; self.limits.len()]);
+        for (frame, trajectory) in runs {
+            let samples = JUDGED_SAMPLES.max(JUDGED_SAMPLES / 8 * frame.harmonics);
+            let course = self.bench.course(frame, trajectory, samples).ok()?;
+            let own = self.question.information(&self.bench, frame, &course)?;
+            information = added(&information, &own);
+            let uses = limits::uses(&course, &self.limits, false);
+            used.iter_mut()
+                .zip(uses)
+                .for_each(|(most, own): (&mut f64, f64)| *most = most.max(own));
+        }
+        information.iter_mut().for_each(|matrix| *matrix *= factor);
+        (!runs.is_empty()).then(|| JudgedRuns {
+            cases: self.question.judge(&information),
+            limits_used: used,
+        })
+    }
+}
+
+/// Random numbers of a run.
+fn stream(seed: u64, run: u64) -> Pcg64 {
+    Pcg64::new(u128::from(seed), u128::from(run))
+}
+
+/// The robot as it is judged.
+fn bench<'a>(robot: &'a Robot, truth: Option<&BTreeMap<String, f64>>) -> Result<Bench<'a>, Error> {
+    let model = robot.model();
+    let info = model.info();
+    let sizes = info.sizes;
+    let mut jacobian = vec![0.0; sizes.actuators * sizes.dof];
+    model
+        .evaluate(Function::InverseJacobian, &[info.home_pose], &mut jacobian)
+        .map_err(|error| Problem::new(format!("the home pose: {error}")).file(robot.file()))?;
+    let norm = |column: usize| {
+        let entries = jacobian.iter().skip(column).step_by(sizes.dof);
+        entries.map(|entry| entry * entry).sum::<f64>().sqrt()
+    };
+    let all = || info.parameters.iter().chain(info.payload_parameters);
+    let value = |truth: &BTreeMap<String, f64>, name: &str| truth.get(name).copied().unwrap_or(0.0);
+    Ok(Bench {
+        model,
+        has_platform: robot.description().platform.is_some(),
+        lengths: frame::coordinates(robot.description())
+            .into_iter()
+            .map(|c| c.1)
+            .collect(),
+        kept: match sizes.actuators > sizes.dof {
+            true => info.kept_actuators.to_vec(),
+            false => (0..sizes.actuators).collect(),
+        },
+        scales: (0..sizes.dof).map(|column| norm(column).recip()).collect(),
+        parameters: truth.map(|truth| all().map(|p| value(truth, p.name)).collect()),
+        info,
+    })
+}
+
+/// Standard deviations of the torque noise: those of the virtual experiment, or a part of the largest torques.
+fn noise(robot: &Robot, info: &Info<'_>, assumed: &mut Vec<String>) -> Vec<f64> {
+    let experiment = robot.description().experiment.as_ref();
+    let described = experiment.map(|e| e.torque_noise.clone());
+    if let Some(noise) = described.filter(|all| all.iter().all(|one| *one > 0.0)) {
+        return noise;
+    }
+    let limits = experiment.and_then(|e| e.torque_limit.as_ref());
+    match limits.filter(|all| all.iter().all(|one| *one > 0.0)) {
+        Some(limits) => {
+            assumed.push("the torque noise is taken for 1 % of `torque_limit`".to_owned());
+            limits.iter().map(|limit| NOISE_SHARE * limit).collect()
+        }
+        None => {
+            assumed.push("the torque noise is taken for 1 N m or 1 N".to_owned());
+            vec![1.0; info.sizes.actuators]
+        }
+    }
+}

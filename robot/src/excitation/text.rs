@@ -1,0 +1,102 @@
+//! Runs as tables of a description, and a description with them in the place of its own.
+
+use super::frame::Frame;
+use crate::error::{Error, Problem};
+use crate::robot::Robot;
+use overact_simulation::{Term, Trajectory};
+use std::fmt::Write;
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
+
+/// What stands above the runs.
+const COMMENT: &str =
+    "\n# Found by `overact excite`: they determine the base parameters best inside the limits.\n";
+
+/// The tables `[[experiment.run]]` of runs; `coordinates` are the names that the model and the description have
+/// for the coordinates, and whether each is a length.
+pub(super) fn tables(runs: &[(Frame, Trajectory)], coordinates: &[(&str, String, bool)]) -> String {
+    let mut text = COMMENT.to_owned();
+    for (frame, trajectory) in runs {
+        let mut table = format!("\n[[experiment.run]]\nname = \"{}\"\n", frame.name);
+        if frame.payload {
+            table += "payload = true\n";
+        }
+        if let Some(duration) = frame.own_duration {
+            let _ = writeln!(table, "duration = \"{duration} s\"");
+        }
+        let _ = writeln!(
+            table,
+            "fundamental = \"{} Hz\"\nterms = [",
+            frame.fundamental
+        );
+        if let Trajectory::Periodic { terms, .. } = trajectory {
+            terms
+                .iter()
+                .for_each(|own| table += &term(own, coordinates));
+        }
+        text = text + &table + "]\n";
+    }
+    text
+}
+
+/// A line of `terms`.
+fn term(term: &Term, coordinates: &[(&str, String, bool)]) -> String {
+    let known = coordinates
+        .iter()
+        .find(|(name, ..)| *name == term.coordinate);
+    let (name, is_length) = known.map_or((term.coordinate.as_str(), false), |(_, name, length)| {
+        (name, *length)
+    });
+    let amplitude = match is_length {
+        true => format!("{:.3} mm", term.amplitude * 1e3),
+        false => format!("{:.4} deg", term.amplitude.to_degrees()),
+    };
+    format!(
+        "    {{ coordinate = \"{name}\", harmonic = {}, amplitude = \"{amplitude}\", phase = \"{:.2} deg\" }},\n",
+        term.harmonic,
+        term.phase_rad.to_degrees()
+    )
+}
+
+/// The text of a description, in which the runs of `tables` stand for those from which parameters are
+/// identified; runs that are held out stay.
+///
+/// # Errors
+/// Runs that are not written as tables of their own.
+pub(super) fn description(robot: &Robot, tables: &str) -> Result<String, Error> {
+    let source = robot.source();
+    let problem = |message: String| {
+        let help = "write each run of the description as a table [[experiment.run]]";
+        Error::from(Problem::new(message).file(source.name.as_str()).help(help))
+    };
+    let read = |text: &str| {
+        let document = text.parse::<DocumentMut>();
+        document.map_err(|error| problem(format!("the runs can't be written: {}", error.message())))
+    };
+    let (mut document, found) = (read(&source.text)?, read(tables)?);
+    let place = || problem("the runs of the description are no tables of their own".to_owned());
+    let mut implied = Table::new();
+    implied.set_implicit(true);
+    let experiment = document.entry("experiment").or_insert(Item::Table(implied));
+    let experiment = experiment.as_table_mut().ok_or_else(place)?;
+    let own = experiment
+        .entry("run")
+        .or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+    let own = own.as_array_of_tables_mut().ok_or_else(place)?;
+    let first = own.iter().next().and_then(Table::position);
+    let found = found
+        .get("experiment")
+        .and_then(|table| table.get("run")?.as_array_of_tables());
+    let mut all = ArrayOfTables::new();
+    for table in found.into_iter().flatten() {
+        let mut table = table.clone();
+        table.set_position(first);
+        all.push(table);
+    }
+    let is_held_out =
+        |table: &&Table| table.get("validation").and_then(Item::as_bool) == Some(true);
+    own.iter()
+        .filter(is_held_out)
+        .for_each(|table| all.push(table.clone()));
+    *own = all;
+    Ok(document.to_string())
+}

@@ -1,0 +1,207 @@
+//! Exciting runs keep every limit, tell more than random ones and the description's, and are written so that they
+//! can be read.
+
+use overact::{Function, Model};
+use overact_robot::{Error, Excitation, ExcitationEffort, LimitKind, Robot};
+use overact_simulation::sample;
+
+/// A search that takes a second in a test.
+const EFFORT: ExcitationEffort = ExcitationEffort {
+    runs: None,
+    seed: 3,
+    generations: 30,
+    time: None,
+};
+
+fn library(name: &str) -> Robot {
+    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    Robot::from_toml(path).expect("a robot of the library")
+}
+
+fn excited(robot: &Robot) -> Excitation {
+    robot.excite(&EFFORT, &|_, _| ()).expect("exciting runs")
+}
+
+/// The robot of the description that was written.
+fn written(robot: &Robot, found: &Excitation) -> Robot {
+    let text = robot.with_runs(found).expect("a description");
+    Robot::from_text("excited.toml", &text).expect("a description without errors")
+}
+
+/// The largest magnitudes of each number in rows of `width`.
+fn peaks(rows: &[f64], width: usize) -> Vec<f64> {
+    let own = |at: usize| rows.iter().skip(at).step_by(width);
+    (0..width)
+        .map(|at| own(at).fold(0.0, |most: f64, value| most.max(value.abs())))
+        .collect()
+}
+
+/// Fails if a run of the robot goes beyond a limit anywhere on a grid much finer than that of the search. What
+/// is limited is found with the model's functions alone.
+fn keeps_limits(robot: &Robot, found: &Excitation) {
+    let model = robot.model();
+    let info = model.info();
+    let sizes = info.sizes;
+    let experiment = robot.experiment().expect("runs");
+    for run in experiment
+        .plan()
+        .runs
+        .iter()
+        .filter(|run| found.runs.contains(&run.name))
+    {
+        let overact_simulation::Trajectory::Periodic { fundamental_hz, .. } = &run.trajectory
+        else {
+            panic!("a series");
+        };
+        let samples = 20_011;
+        let motion = sample(
+            model,
+            &run.trajectory,
+            fundamental_hz * samples as f64,
+            samples,
+        );
+        let motion = motion.expect("a motion that the robot reaches");
+        let ask = |function: Function, inputs: &[&[f64]]| {
+            let (rows, columns) = function.shape(&sizes);
+            let mut values = vec![0.0; samples * rows * columns];
+            model
+                .evaluate(function, inputs, &mut values)
+                .expect("values");
+            values
+        };
+        let inputs: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
+        let actuated = |rows: Vec<f64>| -> Vec<f64> {
+            let rows = rows.chunks_exact(sizes.joints);
+            rows.flat_map(|row| info.actuated_joints.iter().map(|&joint| row[joint]))
+                .collect()
+        };
+        let mut parameters = experiment.plan().parameters.clone();
+        if !run.payload {
+            parameters[sizes.parameters..].fill(0.0);
+        }
+        for limit in &found.limits {
+            let largest = match limit.kind {
+                LimitKind::Position => {
+                    let home = info.home_pose.iter().cycle();
+                    let away: Vec<f64> = motion
+                        .pose
+                        .iter()
+                        .zip(home)
+                        .map(|(at, home)| at - home)
+                        .collect();
+                    peaks(&away, sizes.pose)
+                }
+                LimitKind::Velocity => peaks(
+                    &actuated(ask(Function::JointVelocities, &inputs[..2])),
+                    sizes.actuators,
+                ),
+                LimitKind::Acceleration => peaks(
+                    &actuated(ask(Function::JointAccelerations, &inputs)),
+                    sizes.actuators,
+                ),
+                LimitKind::Torque => {
+                    let all = [inputs[0], inputs[1], inputs[2], &parameters];
+                    peaks(&ask(Function::InverseDynamics, &all), sizes.actuators)
+                }
+                LimitKind::Travel | LimitKind::Condition => continue,
+            };
+            for (peak, most) in largest.iter().zip(&limit.values) {
+                assert!(
+                    peak <= most,
+                    "{}: {peak} beyond {most} in {}",
+                    limit.kind.name(),
+                    run.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_five_bar_is_excited_within_its_limits() {
+    let robot = library("five_bar");
+    let found = excited(&robot);
+    let again = written(&robot, &found);
+    keeps_limits(&again, &found);
+    let kinds: Vec<&str> = found.limits.iter().map(|limit| limit.kind.name()).collect();
+    assert_eq!(
+        kinds,
+        [
+            "position",
+            "velocity",
+            "acceleration",
+            "torque",
+            "condition"
+        ]
+    );
+    let described = found.described.as_ref().expect("runs of the description");
+    let best = &found.found.cases[0];
+    for other in [&described.cases[0], &found.random.cases[0]] {
+        assert!(best.log_det > other.log_det + 1.0, "{best:?} {other:?}");
+    }
+    assert!(found.found.limits_used.iter().all(|used| *used <= 1.0));
+    // The runs that are read are those that were judged.
+    let judged = again
+        .excite(
+            &ExcitationEffort {
+                generations: 0,
+                ..EFFORT
+            },
+            &|_, _| (),
+        )
+        .expect("runs");
+    let own = &judged.described.expect("the runs that were found").cases[0];
+    assert!(
+        (own.condition / best.condition - 1.0).abs() < 1e-6,
+        "{own:?} {best:?}"
+    );
+    assert_eq!(excited(&robot).tables, found.tables);
+}
+
+#[test]
+fn limits_of_the_table_are_kept_and_runs_that_are_held_out_stay() {
+    let robot = library("emps");
+    let table = "\n[excitation]\nfundamental = \"0.5 Hz\"\nharmonics = 4\nruns = 2\nposition = \"50 mm\"\nvelocity = \"0.2 m/s\"\nacceleration = \"1 m/s^2\"\n";
+    let text = format!("{}{table}", robot.source().text).replace(
+        "\nname = \"validation\"",
+        "\nname = \"excitation 1\"\nvalidation = true",
+    );
+    let robot = Robot::from_text("emps.toml", &text).expect("a robot");
+    let found = excited(&robot);
+    assert_eq!(found.runs, ["excitation 2", "excitation 3"]);
+    let values: Vec<f64> = found.limits.iter().map(|limit| limit.values[0]).collect();
+    assert_eq!(values[..3], [0.05, 0.2, 1.0]);
+    let again = written(&robot, &found);
+    keeps_limits(&again, &found);
+    let names: Vec<String> = again
+        .experiment()
+        .expect("runs")
+        .plan()
+        .runs
+        .iter()
+        .map(|run| run.name.clone())
+        .collect();
+    assert_eq!(names, ["excitation 2", "excitation 3", "excitation 1"]);
+    assert_eq!(again.held_out(), ["excitation 1"]);
+}
+
+#[test]
+fn limits_that_no_motion_keeps_are_told_at_their_line() {
+    let robot = library("five_bar");
+    let text = format!("{}\n[excitation]\ncondition = 1\n", robot.source().text);
+    let line = text
+        .lines()
+        .position(|line| line == "[excitation]")
+        .map(|at| at + 1);
+    let robot = Robot::from_text("five_bar.toml", &text).expect("a robot");
+    let error: Error = robot.excite(&EFFORT, &|_, _| ()).expect_err("no motion");
+    let problems = error.problems();
+    assert_eq!(problems[0].line, line, "{error}");
+    assert!(
+        problems[0]
+            .message
+            .contains("condition (of the description)"),
+        "{error}"
+    );
+    assert!(problems[0].help.is_some());
+}
