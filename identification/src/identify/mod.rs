@@ -64,7 +64,7 @@ pub fn identify(
     let prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
     let mut warnings = prepared_warnings(&prepared, dataset.validation);
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
-    let (errors_in_regressor, others) = regressor_errors(&outcomes);
+    let (errors_in_regressor, beside) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
     let consistent = consistent_all(&prepared, &estimates, &settings.prior, &mut warnings);
     let least_squares = estimates.iter().map(Predictor::of_estimate);
@@ -132,7 +132,7 @@ pub fn identify(
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,
-        estimates: estimates.into_iter().chain(others).collect(),
+        estimates: estimates.into_iter().chain(beside).collect(),
         consistent: consistent.into_iter().map(|(_, own)| own).collect(),
         cross_validation,
         errors_in_regressor,

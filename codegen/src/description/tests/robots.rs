@@ -100,7 +100,7 @@ fn the_dualv_has_an_experiment() {
 #[test]
 fn the_emps_slides_horizontally() {
     let robot = good(EMPS);
-    assert!(robot.platform.is_none() && robot.is_single_leg());
+    assert!(robot.platform.is_none() && robot.legs.len() == 1);
     let joint = &robot.legs[0].joints[0];
     assert_eq!(joint.kind.value, JointKind::Prismatic);
     assert_eq!(joint.alpha.value, degrees("90"));

@@ -115,7 +115,11 @@ fn defaults() {
     assert_eq!((joint.name.value.as_str(), joint.antecedent), ("1", None));
     assert_eq!(joint.variable, [(0, Ratio::ONE)]);
     assert_eq!(joint.parameters.len(), 14);
-    assert_eq!(robot.legs[0].base, Placement::IDENTITY);
+    let base = &robot.legs[0].base;
+    assert_eq!(
+        (base.at, base.rotation),
+        ([Number::ZERO; 3], [Angle::ZERO; 3])
+    );
     assert!(robot.experiment.is_none() && robot.data.is_none());
 }
 
