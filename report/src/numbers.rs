@@ -36,15 +36,7 @@ pub fn numbers(identification: &Identification) -> Result<String, Error> {
             rows.add("base_parameter", &base.name, "true_value", value);
         }
     }
-    for gain in &identification.gains {
-        let name = gain.actuator.as_str();
-        rows.add("gain", name, "factor", gain.factor);
-        rows.add("gain", name, "deviation", gain.deviation);
-    }
-    for one in &identification.gain_parameters {
-        rows.add("gain_parameter", &one.name, "value", one.value);
-        rows.add("gain_parameter", &one.name, "deviation", one.deviation);
-    }
+    add_gains(&mut rows, identification);
     for estimate in identification.by_least_squares() {
         (rows.model, rows.stage) = (estimate.model.name(), estimate.stage.name());
         add_estimate(&mut rows, estimate);
@@ -91,6 +83,19 @@ pub fn numbers(identification: &Identification) -> Result<String, Error> {
         }
     }
     rows.csv()
+}
+
+/// The gains of the drives and what was estimated together with them.
+fn add_gains<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
+    for gain in &identification.gains {
+        let name = gain.actuator.as_str();
+        rows.add("gain", name, "factor", gain.factor);
+        rows.add("gain", name, "deviation", gain.deviation);
+    }
+    for one in &identification.gain_parameters {
+        rows.add("gain_parameter", &one.name, "value", one.value);
+        rows.add("gain_parameter", &one.name, "deviation", one.deviation);
+    }
 }
 
 /// The numbers of one estimate.
