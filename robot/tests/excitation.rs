@@ -9,7 +9,7 @@ use overact_simulation::sample;
 const EFFORT: ExcitationEffort = ExcitationEffort {
     runs: None,
     seed: 3,
-    generations: 30,
+    generations: 15,
     time: None,
 };
 
@@ -53,7 +53,7 @@ fn keeps_limits(robot: &Robot, found: &Excitation) {
         else {
             panic!("a series");
         };
-        let samples = 20_011;
+        let samples = 10_007;
         let motion = sample(
             model,
             &run.trajectory,
@@ -155,7 +155,6 @@ fn a_five_bar_is_excited_within_its_limits() {
         (own.condition / best.condition - 1.0).abs() < 1e-6,
         "{own:?} {best:?}"
     );
-    assert_eq!(excited(&robot).tables, found.tables);
 }
 
 #[test]
@@ -183,6 +182,8 @@ fn limits_of_the_table_are_kept_and_runs_that_are_held_out_stay() {
         .collect();
     assert_eq!(names, ["excitation 2", "excitation 3", "excitation 1"]);
     assert_eq!(again.held_out(), ["excitation 1"]);
+    // The same seed finds the same runs.
+    assert_eq!(excited(&robot).tables, found.tables);
 }
 
 #[test]
