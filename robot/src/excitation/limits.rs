@@ -98,21 +98,7 @@ pub(super) fn limits(
     let key =
         |get: fn(&description::Excitation) -> &Option<Vec<f64>>| table.and_then(|t| get(t).clone());
     let mut all = Vec::new();
-    let mut add =
-        |kind, own: Option<Vec<f64>>, runs: Option<Vec<f64>>, assumed: Option<Vec<f64>>| {
-            let own = own.map(|values| (values, Origin::Described));
-            let runs = runs.map(|values| (values, Origin::Runs));
-            let assumed = assumed.map(|values| (values, Origin::Assumed));
-            if let Some((values, origin)) = own.or(runs).or(assumed) {
-                let units = bench.units(kind);
-                all.push(Limit {
-                    kind,
-                    values,
-                    units,
-                    origin,
-                });
-            }
-        };
+    let mut add = |kind, own, runs, assumed| all.extend(chosen(bench, kind, own, runs, assumed));
     let moving = of_runs(LimitKind::Position).filter(|peaks| peaks.iter().any(|peak| *peak > 0.0));
     let own = table.and_then(|t| t.condition).map(|value| vec![value]);
     let runs = of_runs(LimitKind::Condition)
@@ -148,6 +134,26 @@ pub(super) fn limits(
         add(LimitKind::Condition, own, runs, Some(vec![SAFE_CONDITION]));
     }
     all
+}
+
+/// A limit of what the description says, of what its runs reach or of what is assumed, the first that there is.
+fn chosen(
+    bench: &Bench<'_>,
+    kind: LimitKind,
+    own: Option<Vec<f64>>,
+    runs: Option<Vec<f64>>,
+    assumed: Option<Vec<f64>>,
+) -> Option<Limit> {
+    let own = own.map(|values| (values, Origin::Described));
+    let runs = runs.map(|values| (values, Origin::Runs));
+    let assumed = assumed.map(|values| (values, Origin::Assumed));
+    let (values, origin) = own.or(runs).or(assumed)?;
+    Some(Limit {
+        kind,
+        values,
+        units: bench.units(kind),
+        origin,
+    })
 }
 
 /// The largest magnitudes in any of the runs; none without runs.
