@@ -93,29 +93,12 @@ pub(super) fn limits(
         |(frame, trajectory): &(Frame, Trajectory)| bench.course(frame, trajectory, SAMPLES);
     // A run that the robot can't follow tells nothing; making it fails with its own error.
     let courses: Vec<Course> = described.iter().filter_map(|run| reach(run).ok()).collect();
-    let of_runs = |kind: LimitKind| -> Option<Vec<f64>> {
-        let all = courses.iter().map(|course| course.peaks(kind, false));
-        all.reduce(|a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect())
-    };
+    let of_runs = |kind| reached_by(&courses, kind);
     let table = description.excitation.as_ref();
     let key =
         |get: fn(&description::Excitation) -> &Option<Vec<f64>>| table.and_then(|t| get(t).clone());
     let mut all = Vec::new();
-    let mut add =
-        |kind, own: Option<Vec<f64>>, runs: Option<Vec<f64>>, assumed: Option<Vec<f64>>| {
-            let own = own.map(|values| (values, Origin::Described));
-            let runs = runs.map(|values| (values, Origin::Runs));
-            let assumed = assumed.map(|values| (values, Origin::Assumed));
-            if let Some((values, origin)) = own.or(runs).or(assumed) {
-                let units = bench.units(kind);
-                all.push(Limit {
-                    kind,
-                    values,
-                    units,
-                    origin,
-                });
-            }
-        };
+    let mut add = |kind, own, runs, assumed| all.extend(chosen(bench, kind, own, runs, assumed));
     let moving = of_runs(LimitKind::Position).filter(|peaks| peaks.iter().any(|peak| *peak > 0.0));
     let own = table.and_then(|t| t.condition).map(|value| vec![value]);
     let runs = of_runs(LimitKind::Condition)
@@ -144,17 +127,45 @@ pub(super) fn limits(
         None,
     );
     if bench.parameters.is_some() {
-        let largest = description
-            .experiment
-            .as_ref()
-            .and_then(|e| e.torque_limit.clone());
-        let share = largest.map(|all| all.iter().map(|limit| TORQUE_SHARE * limit).collect());
+        let share = torque_share(description);
         add(LimitKind::Torque, share, rates(LimitKind::Torque), None);
     }
     if bench.has_platform {
         add(LimitKind::Condition, own, runs, Some(vec![SAFE_CONDITION]));
     }
     all
+}
+
+/// A limit of what the description says, of what its runs reach or of what is assumed, the first that there is.
+fn chosen(
+    bench: &Bench<'_>,
+    kind: LimitKind,
+    own: Option<Vec<f64>>,
+    runs: Option<Vec<f64>>,
+    assumed: Option<Vec<f64>>,
+) -> Option<Limit> {
+    let own = own.map(|values| (values, Origin::Described));
+    let runs = runs.map(|values| (values, Origin::Runs));
+    let assumed = assumed.map(|values| (values, Origin::Assumed));
+    let (values, origin) = own.or(runs).or(assumed)?;
+    Some(Limit {
+        kind,
+        values,
+        units: bench.units(kind),
+        origin,
+    })
+}
+
+/// The largest magnitudes in any of the runs; none without runs.
+fn reached_by(courses: &[Course], kind: LimitKind) -> Option<Vec<f64>> {
+    let all = courses.iter().map(|course| course.peaks(kind, false));
+    all.reduce(|a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect())
+}
+
+/// What a desired motion may ask of the largest torques of the virtual experiment.
+fn torque_share(description: &Description) -> Option<Vec<f64>> {
+    let largest = description.experiment.as_ref()?.torque_limit.as_ref()?;
+    Some(largest.iter().map(|limit| TORQUE_SHARE * limit).collect())
 }
 
 /// Displacements of the coordinates where no run tells of them: half of what is reached along each alone on

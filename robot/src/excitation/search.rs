@@ -105,7 +105,8 @@ impl<'a> Search<'a> {
             let drawn: Vec<Vec<f64>> = (0..RANDOM).map(draw).collect();
             let fitted = drawn.par_iter().map(|numbers| self.fitted(series, numbers));
             found.extend(fitted.collect::<Vec<_>>().into_iter().flatten());
-            if found.len() >= RANDOM {
+            // Where none of so many keeps the limits, more would hardly.
+            if found.is_empty() || found.len() >= RANDOM {
                 break;
             }
         }

@@ -84,15 +84,15 @@ condition = 0.5
 amplitude = 1
 "#;
     let expected = [
-        "2:15 `fundamental`: expected a frequency (Hz), found a time (1 s)",
-        "3:13 `harmonics`: expected at most 30, found 31",
-        "4:8 `runs`: expected an integer of at least 1, found 0",
-        "5:12 `position`: expected one value or 1, one for each coordinate, found 2",
-        "6:10 `travel`: expected an angle (rad), found a length (1 m)",
-        "7:12 `velocity`: expected an angular speed (rad/s), found a speed (3 m/s)",
-        "8:16 `acceleration`: a limit of 0 leaves no motion; leave the key out where there is no limit",
-        "9:13 a condition number of 0.5 can't be; it is at least 1; 10 is far from singular",
-        "10:1 unknown key `amplitude`; known keys: fundamental, harmonics, runs, position, travel, velocity, acceleration, condition",
+        "3:15 `fundamental`: expected a frequency (Hz), found a time (1 s)",
+        "4:13 `harmonics`: expected at most 30, found 31",
+        "5:8 `runs`: expected an integer of at least 1, found 0",
+        "6:12 `position`: expected one value or 1, one for each coordinate, found 2",
+        "7:10 `travel`: expected an angle (rad), found a length (1 m)",
+        "8:12 `velocity`: expected an angular speed (rad/s), found a speed (3 m/s)",
+        "9:16 `acceleration`: a limit of 0 leaves no motion; leave the key out where there is no limit",
+        "10:13 a condition number of 0.5 can't be; it is at least 1; 10 is far from singular",
+        "11:1 unknown key `amplitude`; known keys: position, condition, fundamental, harmonics, runs, travel, velocity, acceleration",
     ];
     let mut found = errors(tables);
     found.sort_by_key(|line| line.split(':').next().and_then(|n| n.parse::<u32>().ok()));
