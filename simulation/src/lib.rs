@@ -22,8 +22,7 @@
 //! - `plant`: the robot's motion under torques that are held between samples;
 //! - `sensors`: encoder delay and quantisation, torque noise;
 //! - [`run`]: the loop, over all runs; [`log`]: the record as CSV;
-//! - [`cascade`]: the loops of an industrial drive along a recorded reference;
-//! - [`excitation`]: search of trajectories that excite the parameters well.
+//! - [`cascade`]: the loops of an industrial drive along a recorded reference.
 //!
 //! ```
 //! use overact_simulation::{Error, Experiment, Run, Term, Trajectory, simulate, write_csv};
@@ -47,12 +46,9 @@
 //! the order in which threads finish.
 
 pub mod cascade;
-mod conditioning;
 mod controller;
 pub mod drives;
 pub mod error;
-
-pub mod excitation;
 pub mod experiment;
 pub mod log;
 mod plant;
@@ -70,8 +66,6 @@ mod support;
 pub use cascade::{Cascade, Recorded, follow_recorded};
 pub use drives::Drives;
 pub use error::{Cause, Error, Problem, RunError, Stage};
-
-pub use excitation::{Found, Search, search};
 pub use experiment::{Experiment, Run};
 pub use log::write_csv;
 pub use reference::{Sampled, sample};

@@ -65,7 +65,6 @@ const HOUSES: [House; 6] = [
         folder: "simulation",
         order: &[
             "error",
-            "conditioning",
             "trajectory",
             "drives",
             "experiment",
@@ -78,7 +77,6 @@ const HOUSES: [House; 6] = [
             "run",
             "cascade",
             "log",
-            "excitation",
         ],
     },
     House {
