@@ -96,7 +96,18 @@ fn the_document_has_its_keys() {
         .filter_map(|e| Some((e["model"].as_str()?, e["stage"].as_str()?)))
         .collect();
     let all = |model| ["base", "recommended", "essential"].map(|stage| (model, stage));
-    assert_eq!(models, [all("platform"), all("actuators")].concat());
+    let weighted = [all("platform"), all("actuators")].concat();
+    assert_eq!(models[..6], weighted);
+    // Ordinary least squares stand behind the weighted ones.
+    assert_eq!(models[6..], [("platform", "base"), ("actuators", "base")]);
+    for (place, one) in estimates.iter().enumerate() {
+        let is_weighted = place < 6;
+        let how = ["ordinary-least-squares", "least-squares"][usize::from(is_weighted)];
+        assert_eq!(
+            (&one["estimator"], &one["weighted"]),
+            (&how.into(), &is_weighted.into())
+        );
+    }
     assert_eq!(
         estimates[3]["kept_actuators"],
         serde_json::json!(["leg1", "leg2", "leg3"])
