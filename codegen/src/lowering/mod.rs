@@ -8,7 +8,7 @@
 //! | `schedule` | that graph | the [`Program`], operands first |
 //!
 //! What nothing needs is never seen. How far the passes go is said by [`SearchLimits`]. What must hold of a
-//! program is checked once at the end ([`Program::verify`]), and of the graph after every pass in builds
+//! program is checked once at the end (`Program::verify`), and of the graph after every pass in builds
 //! for development: what does not hold is an [`InternalError`], a bug of the generator. The
 //! [`Cost`] of a program is counted by one rule, which the generated documentation and the snapshots quote.
 //!
