@@ -170,14 +170,7 @@ impl<'a> Identifier<'a> {
         if !self.gains {
             return self.estimated();
         }
-        let gains = self.drive_gains()?;
-        let [runs, validation] = self.scaled(&gains);
-        let own = Identifier {
-            runs: &runs,
-            validation: &validation,
-            ..self.clone()
-        };
-        let mut result = own.estimated()?;
+        let (mut result, gains) = self.with_gains(|own| own.estimated())?;
         let others = std::mem::take(&mut result.warnings);
         result.warnings = [gains.warnings(), others].concat();
         result.gains = gains.drives;
@@ -200,13 +193,24 @@ impl<'a> Identifier<'a> {
         Ok(drive_gains(model, runs, &settings, &tell)?)
     }
 
-    /// The runs, and those to validate with, with torques multiplied by gains.
-    fn scaled(&self, gains: &Gains) -> [Vec<Log>; 2] {
+    /// What is made of all runs with their torques multiplied by the gains of the drives, and the gains.
+    fn with_gains<T>(
+        &self,
+        make: impl FnOnce(&Identifier<'_>) -> Result<T, Error>,
+    ) -> Result<(T, Gains), Error> {
+        let gains = self.drive_gains()?;
         let factors = gains.factors();
-        [self.runs, self.validation].map(|logs| {
+        let scaled = |logs: &[Log]| -> Vec<Log> {
             let logs = logs.iter().cloned();
             logs.map(|log| log.with_torque_factors(&factors)).collect()
-        })
+        };
+        let (runs, validation) = (scaled(self.runs), scaled(self.validation));
+        let own = Identifier {
+            runs: &runs,
+            validation: &validation,
+            ..self.clone()
+        };
+        Ok((make(&own)?, gains))
     }
 
     /// The identification with the torques as they are.
@@ -242,14 +246,7 @@ impl<'a> Identifier<'a> {
         if !self.gains {
             return self.studied();
         }
-        let gains = self.drive_gains()?;
-        let [runs, validation] = self.scaled(&gains);
-        let own = Identifier {
-            runs: &runs,
-            validation: &validation,
-            ..self.clone()
-        };
-        let mut study = own.studied()?;
+        let (mut study, gains) = self.with_gains(|own| own.studied())?;
         study.warnings.splice(0..0, gains.warnings());
         Ok(study)
     }
