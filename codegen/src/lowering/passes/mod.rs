@@ -20,6 +20,7 @@ mod angles;
 mod come_home;
 mod conditions;
 mod guards;
+mod own_pairs;
 mod reciprocals;
 mod repair;
 mod replacements;

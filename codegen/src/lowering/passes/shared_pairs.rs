@@ -5,6 +5,7 @@
 //! This is done heading by heading, each with the nodes that its own are made of, because a leg's nodes
 //! have little to do with another leg's; a small function is searched as a whole.
 
+use super::own_pairs::{Kind, OwnPairs};
 use super::single_replacements::{LOSS, fits};
 use crate::cas::field::{ByValue, Element, canonical};
 use crate::cas::filter::Filter;
@@ -17,7 +18,7 @@ const MOST: usize = 2500;
 
 /// How a target is made of a node that is there and the value it asks for.
 #[derive(Debug, Clone, Copy)]
-enum Form {
+pub(super) enum Form {
     Plus,
     Times,
     Over,
@@ -25,14 +26,14 @@ enum Form {
 
 /// A target that asks for a value.
 #[derive(Debug, Clone, Copy)]
-struct Request {
-    target: u32,
-    with: Edge,
-    form: Form,
+pub(super) struct Request {
+    pub(super) target: u32,
+    pub(super) with: Edge,
+    pub(super) form: Form,
     /// Whether the negative of the value is asked for.
     negative: bool,
     /// The request for the same value before this one.
-    next: Option<u32>,
+    pub(super) next: Option<u32>,
 }
 
 /// A new node and the bound of what it can save.
@@ -91,8 +92,9 @@ fn improve_group(dag: &mut Dag, (own, all): &(Vec<usize>, Vec<usize>)) -> i32 {
     let targets: Vec<usize> = own.iter().copied().filter(is_target).collect();
     let (requests, heads) = requests(dag, &tree, &targets, all);
     let filter = Filter::new(heads.keys(), heads.len());
+    let own_pairs = OwnPairs::new(all, &requests, heads.values().copied());
     let mut hits = Vec::new();
-    for_each_pair(dag, all, |definition, value| {
+    for_each_pair(dag, all, &own_pairs, |definition, value| {
         let ([key], negative) = canonical([value]);
         if !filter.may_hold(&key) {
             return;
@@ -183,18 +185,27 @@ fn bound(requests: &[Request], head: u32, tree: &Dominators, definition: Definit
     bound
 }
 
-/// All sums, differences and products of two nodes.
-fn for_each_pair(dag: &Dag, all: &[usize], mut visit: impl FnMut(Definition, Element)) {
-    let live: Vec<usize> = all.iter().copied().filter(|&n| dag.is_live(n)).collect();
-    for (i, &first) in live.iter().enumerate() {
+/// All sums, differences and products of two nodes, but for values that only these two ask for.
+fn for_each_pair(
+    dag: &Dag,
+    all: &[usize],
+    own: &OwnPairs,
+    mut visit: impl FnMut(Definition, Element),
+) {
+    for (place, &first) in all.iter().enumerate().filter(|(_, n)| dag.is_live(**n)) {
         let a = Edge::to(first);
         let left = dag.value(a);
-        for &second in &live[i..] {
+        let others = all[place..].iter().zip(own.with_later(place));
+        for (&second, &own) in others.filter(|(n, _)| dag.is_live(**n)) {
             let b = Edge::to(second);
             let right = dag.value(b);
-            visit(Definition::Sum(a, b), left + right);
-            visit(Definition::Product(a, b), left * right);
-            if first != second {
+            if own & Kind::Sum as u8 == 0 {
+                visit(Definition::Sum(a, b), left + right);
+            }
+            if own & Kind::Product as u8 == 0 {
+                visit(Definition::Product(a, b), left * right);
+            }
+            if own & Kind::Difference as u8 == 0 && first != second {
                 visit(Definition::Sum(a, b.times(true)), left + -right);
             }
         }
