@@ -31,6 +31,9 @@ pub enum Error {
         /// How many times smaller the determinant is than at the home configuration.
         condition: f64,
     },
+    /// The mass matrix of the given parameters is not positive definite: there is motion without kinetic
+    /// energy, or with a negative one.
+    MassMatrix,
     /// Other actuators than those of the description are kept in case 2, and they do not determine the
     /// platform's motion.
     SingularPartition {
@@ -116,6 +119,10 @@ impl fmt::Display for Error {
                 f,
                 "the {actuators} do not determine the platform's motion here: their determinant is {}",
                 Smaller(condition)
+            ),
+            Self::MassMatrix => write!(
+                f,
+                "the mass matrix is not positive definite: with these parameters there is a motion without kinetic energy, or with a negative one"
             ),
             Self::SingularPartition { kept, condition } => write!(
                 f,

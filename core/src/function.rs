@@ -77,6 +77,7 @@ pub enum Function {
     InverseDynamics,
     MassMatrix,
     Bias,
+    ForwardDynamics,
     InverseDynamicsPreloaded,
     ProjectTorques,
     NullSpace,
@@ -95,7 +96,7 @@ struct Entry {
 
 impl Function {
     /// All functions of all robots.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 29] = [
         Self::PoseInClosedForm,
         Self::Joints,
         Self::ActuatorPositions,
@@ -121,6 +122,7 @@ impl Function {
         Self::InverseDynamics,
         Self::MassMatrix,
         Self::Bias,
+        Self::ForwardDynamics,
         Self::InverseDynamicsPreloaded,
         Self::ProjectTorques,
         Self::NullSpace,
@@ -312,6 +314,14 @@ impl Function {
                 name: "bias",
                 summary: "Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.",
                 inputs: &[Pose, Twist, Parameters],
+                rows: Extent::Dof,
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::ForwardDynamics => Entry {
+                name: "forward_dynamics",
+                summary: "Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.",
+                inputs: &[Pose, Twist, Torques, Parameters],
                 rows: Extent::Dof,
                 columns: None,
                 condition: Condition::Any,

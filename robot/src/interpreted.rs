@@ -130,6 +130,7 @@ impl InterpretedRobot {
             | Function::IdmRedActuators(_)
             | Function::IdmRedPayloadActuators
             | Function::ProjectActuators
+            | Function::Bias
             | Function::InverseDynamicsPreloaded => false,
             _ => from == plain,
         }
@@ -277,6 +278,7 @@ impl InterpretedRobot {
                 actuators: *actuators,
                 condition: times(*home),
             },
+            Some(Condition::Mass) => Error::MassMatrix,
             None => Error::Overflow,
         };
         SampleError {

@@ -143,6 +143,19 @@ pub fn platform(determinant: f64, home: f64, actuators: ActuatorGroup) -> Result
     }
 }
 
+/// A pivot of the mass matrix must be positive.
+///
+/// # Errors
+/// [`Error::MassMatrix`]; also for NaN.
+#[inline]
+pub fn mass(pivot: f64) -> Result<(), Error> {
+    if pivot > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::MassMatrix)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{finite, unit_quaternion};

@@ -1,5 +1,6 @@
 //! The robot under given torques: v̇ = M(x)^-1 (Γ¹(τ) - h(x, v)), with Γ¹ = (J_p^inv)ᵀ τ of eq. (30)
-//! and h the bias (Coriolis, gravity, friction, offsets), all with the true parameters.
+//! and h the bias (Coriolis, gravity, friction, offsets), all with the true parameters: the model's
+//! forward dynamics.
 //!
 //! Torques are held between samples and the state advances by the classical Runge-Kutta method of
 //! fourth order with a fixed step. Where the platform coordinates add, ẋ = v and the method is of
@@ -11,7 +12,7 @@
 //! decelerated across zero within a step and back in the next: its velocity chatters within about
 //! (friction force / inertia) h around zero, and the mean of the friction force is that of sticking.
 
-use overact::{Error as ModelError, Function, Model, forward::solve_positive_definite};
+use overact::{Error as ModelError, Function, Model};
 
 use crate::error::Cause;
 
@@ -31,8 +32,6 @@ pub(crate) struct Plant<'a> {
     acceleration_sum: Vec<f64>,
     acceleration: Vec<f64>,
     step: Vec<f64>,
-    bias: Vec<f64>,
-    mass: Vec<f64>,
 }
 
 impl<'a> Plant<'a> {
@@ -53,9 +52,7 @@ impl<'a> Plant<'a> {
             twist_sum: zeros.clone(),
             acceleration_sum: zeros.clone(),
             acceleration: zeros.clone(),
-            step: zeros.clone(),
-            bias: zeros,
-            mass: vec![0.0; twist.len() * twist.len()],
+            step: zeros,
         }
     }
 
@@ -117,31 +114,19 @@ impl<'a> Plant<'a> {
 
     /// Writes the acceleration of the stage's state.
     fn accelerate(&mut self, torques: &[f64]) -> Result<(), Cause> {
-        let (model, pose) = (self.model, self.stage_pose.as_slice());
-        let failed = |e: overact::SampleError| Cause::Model(e.error);
-        model
-            .evaluate(
-                Function::ProjectPlatform,
-                &[pose, torques],
-                &mut self.acceleration,
-            )
-            .map_err(failed)?;
-        let state: [&[f64]; 3] = [pose, &self.stage_twist, self.parameters];
-        model
-            .evaluate(Function::Bias, &state, &mut self.bias)
-            .map_err(failed)?;
-        model
-            .evaluate(
-                Function::MassMatrix,
-                &[pose, self.parameters],
-                &mut self.mass,
-            )
-            .map_err(failed)?;
-        for (force, bias) in self.acceleration.iter_mut().zip(&self.bias) {
-            *force -= bias;
-        }
-        solve_positive_definite(&mut self.mass, &mut self.acceleration)
-            .map_err(|_| Cause::MassMatrix)
+        let state = [
+            &self.stage_pose,
+            &self.stage_twist,
+            torques,
+            self.parameters,
+        ];
+        let found = self
+            .model
+            .evaluate(Function::ForwardDynamics, &state, &mut self.acceleration);
+        found.map_err(|failed| match failed.error {
+            ModelError::MassMatrix => Cause::MassMatrix,
+            error => Cause::Model(error),
+        })
     }
 }
 

@@ -165,6 +165,7 @@ impl<'a> Sheet<'a, '_> {
                 let still = self.zeros();
                 column(self.projected_dynamics(&twist, &still))
             }
+            Function::ForwardDynamics => column(self.forward_dynamics(n)),
             Function::ProjectTorques => column(self.project_torques(n)),
             Function::NullSpace => self.null_space(),
         })

@@ -29,6 +29,8 @@ pub enum GuardKind {
         /// Which actuators they are.
         actuators: ActuatorGroup,
     },
+    /// Not positive: the mass matrix is not positive definite.
+    Mass,
 }
 
 impl GuardKind {
@@ -36,7 +38,7 @@ impl GuardKind {
     #[must_use]
     pub const fn home(&self) -> Option<f64> {
         match self {
-            Self::Reach => None,
+            Self::Reach | Self::Mass => None,
             Self::Leg(home) | Self::Platform { home, .. } => Some(*home),
         }
     }

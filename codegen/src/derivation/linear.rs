@@ -53,12 +53,18 @@ impl<'a> Factored<'a> {
     #[must_use]
     pub fn normal(jacobian: &Rows<'a>) -> Self {
         let columns = transposed(jacobian);
-        let n = columns.len();
-        let mut s: Rows<'a> = columns
+        let s: Rows<'a> = columns
             .iter()
             .map(|a| columns.iter().map(|b| dot(a, b)).collect())
             .collect();
         name_matrix(&s, "s");
+        Self::of(s)
+    }
+
+    /// Factors a symmetric matrix.
+    #[must_use]
+    pub fn of(mut s: Rows<'a>) -> Self {
+        let n = s.len();
         let mut reciprocals = Vec::new();
         let mut pivots = Vec::new();
         let mut lower = s.clone();

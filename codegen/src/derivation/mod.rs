@@ -25,6 +25,7 @@ mod derivable;
 mod divisors;
 mod dynamics;
 mod elimination;
+mod forward_dynamics;
 mod forward_kinematics;
 mod frames;
 mod functions;

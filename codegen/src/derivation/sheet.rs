@@ -48,9 +48,11 @@ impl<'a, 's> Sheet<'a, 's> {
         })
     }
 
-    /// A further input of the function.
+    /// An input of the function, a further one or one that is there.
     pub(super) fn input(&mut self, name: &'static str, count: usize) -> Vec<Expr<'a>> {
-        self.inputs.push((name, count));
+        if !self.inputs.contains(&(name, count)) {
+            self.inputs.push((name, count));
+        }
         self.robot.inputs(name, count)
     }
 

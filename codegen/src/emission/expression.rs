@@ -223,6 +223,7 @@ impl<'p> Body<'p> {
                     let home = number(*home);
                     quote!(::overact::guard::leg(#value, #home, #leg)?;)
                 }
+                Condition::Mass => quote!(::overact::guard::mass(#value)?;),
                 Condition::Platform { actuators, home } => {
                     let home = number(*home);
                     let actuators = match actuators {

@@ -88,6 +88,11 @@ impl Condition {
                     hold &= *value >= 0.0;
                 }
             }
+            Self::Mass => {
+                for value in values {
+                    hold &= *value > 0.0;
+                }
+            }
             Self::Leg { home, .. } | Self::Platform { home, .. } => {
                 let least = SINGULAR * home;
                 for value in values {

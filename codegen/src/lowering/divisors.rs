@@ -22,17 +22,23 @@ pub(super) fn guard(
     open.retain(|&node| !is_never_zero(dag, node));
     for GuardedExpr { value, condition } in conditions {
         let wanted = arena.fingerprint_at(value.handle().index());
-        let is_meant = |node: &usize| {
-            let found = dag.fingerprint(Edge::to(*node));
-            found.agrees(&wanted) || (-found).agrees(&wanted)
+        // The value itself, or its negative.
+        let meant = |&node: &usize| {
+            let edges = [false, true].map(|negative| Edge::new(node, negative));
+            let agrees = |edge: &Edge| dag.fingerprint(*edge).agrees(&wanted);
+            edges.into_iter().find(agrees)
         };
-        let Some(at) = open.iter().position(is_meant) else {
+        let Some((at, value)) = open
+            .iter()
+            .enumerate()
+            .find_map(|(at, node)| Some((at, meant(node)?)))
+        else {
             continue;
         };
         let node = open.remove(at);
         let place = place(dag, node, condition);
         let guard = GuardedEdge {
-            value: Edge::to(node),
+            value,
             condition: condition.clone(),
         };
         dag.insert_guard(place, guard);
@@ -80,6 +86,6 @@ fn place(dag: &Dag, node: usize, condition: &Condition) -> usize {
 fn leg(condition: &Condition) -> Option<&str> {
     match condition {
         Condition::Reach { leg } | Condition::Leg { leg, .. } => Some(leg),
-        Condition::Platform { .. } => None,
+        Condition::Platform { .. } | Condition::Mass => None,
     }
 }

@@ -192,13 +192,13 @@ impl<'d> Schedule<'d> {
         Ok(Operand::Input { array, index })
     }
 
-    /// The guards, of which only what may not be negative depends on the sign.
+    /// The guards, of which only what may not be negative, or has to be positive, depends on the sign.
     fn guards(&mut self) -> Result<Vec<Guard>, InternalError> {
         let guards = self.dag.guards().iter();
         guards
             .map(|guard| {
                 let value = match guard.condition {
-                    Condition::Reach { .. } => guard.value,
+                    Condition::Reach { .. } | Condition::Mass => guard.value,
                     Condition::Leg { .. } | Condition::Platform { .. } => guard.value.positive(),
                 };
                 Ok(Guard {

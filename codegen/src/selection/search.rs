@@ -121,6 +121,7 @@ fn guards<'a>(guards: &[Guard<'a>]) -> Vec<GuardedExpr<'a>> {
     let condition = |kind: GuardKind, leg: String| match kind {
         GuardKind::Reach => Condition::Reach { leg },
         GuardKind::Leg(home) => Condition::Leg { leg, home },
+        GuardKind::Mass => Condition::Mass,
         GuardKind::Platform { home, actuators } => Condition::Platform { actuators, home },
     };
     let guarded = guards.iter().map(|guard| GuardedExpr {

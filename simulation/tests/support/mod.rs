@@ -207,6 +207,17 @@ impl<K: Kinematics> Robot<K> {
                 self.force(&moving, [input[1], &zero[..r]], input[2], out);
                 Ok(())
             }
+            Function::ForwardDynamics => {
+                let mut mass = vec![0.0; r * r];
+                let mut bias = vec![0.0; r];
+                self.sample(Function::MassMatrix, &[x, input[3]], &mut mass)?;
+                self.sample(Function::Bias, &[x, input[1], input[3]], &mut bias)?;
+                project(input[2], out)?;
+                for (force, bias) in out.iter_mut().zip(&bias) {
+                    *force -= bias;
+                }
+                solve_positive_definite(&mut mass, out).map_err(|_| Error::MassMatrix)
+            }
             Function::MassMatrix => {
                 let moving = self.moving(x, &zero[..r])?;
                 columns(r, r, out, |k, column| {

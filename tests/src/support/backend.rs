@@ -174,6 +174,7 @@ macro_rules! redundant_backend {
             inverse_dynamics_from_actuators(actuators, actuator_velocities, actuator_accelerations, parameters, start);
             mass_matrix(pose, parameters);
             bias(pose, twist, parameters);
+            forward_dynamics(pose, twist, torques, parameters);
             inverse_dynamics_preloaded(pose, twist, acceleration, parameters, preload);
             project_torques(pose, torques);
             null_space(pose);

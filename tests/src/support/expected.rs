@@ -248,6 +248,12 @@ impl Truth<'_> {
             }
             Function::MassMatrix => dynamics.mass_matrix_and_bias(chi)?.0,
             Function::Bias => vector(&dynamics.mass_matrix_and_bias(chi)?.1),
+            Function::ForwardDynamics => {
+                let (mass, bias) = dynamics.mass_matrix_and_bias(chi)?;
+                let forces = dynamics.jacobians.inverse.transpose() * &torques - bias;
+                let solved = mass.lu().solve(&forces);
+                vector(&solved.ok_or("the mass matrix is singular")?)
+            }
             Function::ProjectTorques => vector(&dynamics.project_torques(&torques)),
             Function::NullSpace => expected.null_space(dynamics),
             other => return Err(format!("the reference has no {other:?}").into()),

@@ -152,6 +152,7 @@ fn dynamics_agree() -> Result<(), Failure> {
                 | Function::InverseDynamics
                 | Function::MassMatrix
                 | Function::Bias
+                | Function::ForwardDynamics
                 | Function::ProjectTorques
         )
     })

@@ -163,6 +163,7 @@ fn trait_and_functions_give_the_same_numbers() -> Result<(), Failure> {
         Function::InverseDynamics,
         Function::MassMatrix,
         Function::Bias,
+        Function::ForwardDynamics,
         Function::ProjectTorques,
         Function::NullSpace,
     ];

@@ -150,6 +150,10 @@ impl<'a> Robot<'a> {
                     what: leg.clone(),
                     condition: home / failed.value.abs(),
                 },
+                Condition::Mass => Refusal {
+                    what: "mass matrix".to_owned(),
+                    condition: 0.0,
+                },
                 Condition::Platform { actuators, home } => Refusal {
                     what: actuators.to_string(),
                     condition: home / failed.value.abs(),

@@ -155,6 +155,8 @@ pub enum Condition {
         /// The value's magnitude at the home configuration.
         home: f64,
     },
+    /// The value is positive, else the mass matrix is not positive definite.
+    Mass,
 }
 
 /// A condition on a value.

@@ -1,0 +1,42 @@
+//! The motion that torques produce: M v̇ = Γ¹(τ) - h, solved for v̇.
+//!
+//! M is symmetric, and positive definite for parameters of real bodies; it is factored as L D Lᵀ, as in the
+//! methods that sum composite bodies (M. W. Walker, D. E. Orin, 1982). One function has the legs' geometry,
+//! M and h together, which would be computed three times otherwise. A pivot that is not positive means that
+//! the parameters are of no real robot.
+
+use super::guard::{Guard, GuardKind};
+use super::linear::Factored;
+use super::names::name_matrix;
+use super::sheet::Sheet;
+use crate::cas::Expr;
+
+impl<'a> Sheet<'a, '_> {
+    /// v̇ = M⁻¹ (Γ¹(τ) - h).
+    pub(super) fn forward_dynamics(&mut self, n: usize) -> Vec<Expr<'a>> {
+        let twist = self.twist();
+        let torques = self.input("torques", n);
+        let still = self.zeros();
+        let bias = self.projected_dynamics(&twist, &still);
+        let mass = self.mass_matrix();
+        name_matrix(&mass, "mass");
+        let forces = self.robot.projected_torques(&torques);
+        let accelerating: Vec<Expr<'a>> = forces
+            .iter()
+            .zip(&bias)
+            .map(|(force, bias)| *force - *bias)
+            .collect();
+        let factored = Factored::of(mass);
+        self.guard_mass(&factored.pivots);
+        factored.solve(&accelerating)
+    }
+
+    /// The pivots of the mass matrix, which are positive.
+    fn guard_mass(&mut self, pivots: &[Expr<'a>]) {
+        self.guards.extend(pivots.iter().map(|&value| Guard {
+            value,
+            kind: GuardKind::Mass,
+            leg: String::new(),
+        }));
+    }
+}
