@@ -9590,6 +9590,520 @@ impl DualV {
                 + tau_3_leg4,
         ])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 3.
+    ///
+    /// 866 operations (364 additions, 491 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 881 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 68],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("torques", torques), ("parameters", parameters),
+            ],
+        )?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
+        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1
+            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+        let tau_1_leg1 = parameters[2] * rate_1_leg1
+            - parameters[1] * minus_bias_rate_dot_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let minus_moment1_z_leg1 = parameters[0] * minus_bias_rate_dot_1_leg1;
+        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
+            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_bias_rate_dot_2_leg1 = k1_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
+        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 - parameters[8] * minus_bias_a2_x_leg1;
+        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
+        let bias_a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
+            - minus_bias_rate_dot_1_leg1 * v2_by_1_y_leg1;
+        let force2_y_leg1 = parameters[8] * bias_a2_y_leg1
+            - (parameters[6] * minus_bias_rate_dot_2_leg1
+                + parameters[7] * rate_2_squared_leg1);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = parameters[11]
+            - (parameters[9] * minus_qd_2_leg1
+                + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            - tau_2_leg1;
+        let moment2_z_leg1 = parameters[6] * bias_a2_y_leg1
+            - parameters[5] * minus_bias_rate_dot_2_leg1
+            + parameters[7] * minus_bias_a2_x_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let tau_3_leg1 = parameters[12] * qd_3_leg1
+            + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
+        // --- leg2
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let bias_a_on_f2_leg2 = l1_x_leg2 * bias_a_end_x_leg1
+            - l1_y_leg2 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let t2_leg2 = 0.5 * t1_leg2;
+        let bias_rate_dot_2_leg2 = k1_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2
+            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
+        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
+        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
+        let bias_a2_y_leg2 = bias_rate_dot_1_leg2 * v2_by_1_y_leg2
+            - rate_1_squared_leg2 * minus_v2_by_1_x_leg2;
+        let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
+        let moment2_z_leg2 = parameters[20] * bias_rate_dot_2_leg2
+            + parameters[21] * bias_a2_y_leg2 + parameters[22] * minus_bias_a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let tau_2_leg2 = parameters[24] * qd_2_leg2
+            + ::overact::math::signed(parameters[25], qd_2_leg2) + parameters[26];
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let tau_3_leg2 = parameters[27] * qd_3_leg2
+            + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let moment1_z_leg2 = parameters[15] * bias_rate_dot_1_leg2;
+        let tau_1_leg2 = parameters[16] * bias_rate_dot_1_leg2
+            - parameters[17] * minus_rate_1_leg2
+            - ::overact::math::signed(parameters[18], minus_rate_1_leg2)
+            + parameters[19];
+        let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
+            + parameters[22] * bias_rate_dot_2_leg2
+            + parameters[23] * minus_bias_a2_x_leg2;
+        let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
+            - parameters[22] * rate_2_squared_leg2 + parameters[23] * bias_a2_y_leg2;
+        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
+            + minus_v2_by_1_x_leg2 * minus_force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        // --- leg3
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3
+            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
+        let tau_1_leg3 = parameters[32] * rate_1_leg3
+            - parameters[31] * minus_bias_rate_dot_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
+        let minus_moment1_z_leg3 = parameters[30] * minus_bias_rate_dot_1_leg3;
+        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
+            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_bias_rate_dot_2_leg3 = k1_leg3
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
+        let force2_x_leg3 = parameters[37] * minus_bias_rate_dot_2_leg3
+            - parameters[36] * rate_2_squared_leg3
+            - parameters[38] * minus_bias_a2_x_leg3;
+        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
+        let bias_a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
+            - minus_bias_rate_dot_1_leg3 * v2_by_1_y_leg3;
+        let force2_y_leg3 = parameters[38] * bias_a2_y_leg3
+            - (parameters[36] * minus_bias_rate_dot_2_leg3
+                + parameters[37] * rate_2_squared_leg3);
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = parameters[41]
+            - (parameters[39] * minus_qd_2_leg3
+                + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
+        let force_on_u1_leg3 = tau_1_leg3 - minus_moment1_z_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let moment2_z_leg3 = parameters[36] * bias_a2_y_leg3
+            - parameters[35] * minus_bias_rate_dot_2_leg3
+            + parameters[37] * minus_bias_a2_x_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let tau_3_leg3 = parameters[42] * qd_3_leg3
+            + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
+        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let bias_a_on_f2_leg4 = l1_y_leg4 * bias_a_end_y_leg3
+            - l1_x_leg4 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let t2_leg4 = 0.5 * t1_leg4;
+        let bias_rate_dot_2_leg4 = k1_leg4
+            * (bias_a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4
+            * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t2_leg4);
+        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
+        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
+        let bias_a2_y_leg4 = bias_rate_dot_1_leg4 * v2_by_1_y_leg4
+            - rate_1_squared_leg4 * minus_v2_by_1_x_leg4;
+        let minus_bias_a2_x_leg4 = INV_L_AB * bias_a_on_f1_leg4;
+        let moment2_z_leg4 = parameters[50] * bias_rate_dot_2_leg4
+            + parameters[51] * bias_a2_y_leg4 + parameters[52] * minus_bias_a2_x_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let tau_2_leg4 = parameters[54] * qd_2_leg4
+            + ::overact::math::signed(parameters[55], qd_2_leg4) + parameters[56];
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let tau_3_leg4 = parameters[57] * qd_3_leg4
+            + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let moment1_z_leg4 = parameters[45] * bias_rate_dot_1_leg4;
+        let tau_1_leg4 = parameters[46] * bias_rate_dot_1_leg4
+            - parameters[47] * minus_rate_1_leg4
+            - ::overact::math::signed(parameters[48], minus_rate_1_leg4)
+            + parameters[49];
+        let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
+            + parameters[52] * bias_rate_dot_2_leg4
+            + parameters[53] * minus_bias_a2_x_leg4;
+        let force2_y_leg4 = parameters[51] * bias_rate_dot_2_leg4
+            - parameters[52] * rate_2_squared_leg4 + parameters[53] * bias_a2_y_leg4;
+        let force_on_u1_leg4 = moment1_z_leg4 + tau_1_leg4
+            + minus_v2_by_1_x_leg4 * minus_force2_x_leg4 + v2_by_1_y_leg4 * force2_y_leg4
+            - tau_2_leg4;
+        let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
+        let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
+        let force_x_platform = parameters[62] * inv_r_p_bias_a_end_x_leg1
+            - parameters[61] * inv_r_p_bias_a_end_y_leg3
+            - parameters[65] * inv_r_p_bias_a_end_y_leg3
+            + parameters[66] * inv_r_p_bias_a_end_x_leg1;
+        let t2 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+            + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3]
+            - (t1 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+                + force_x_platform);
+        let c12_leg1 = INV_L_AB * l2_x_leg1;
+        let g1_vx_v2_by_1_y_leg1 = g1_vx_leg1 * v2_by_1_y_leg1;
+        let t3 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
+            + v2_by_1_x_leg1
+                * (minus_g2_vx_leg1 * parameters[7] + c12_leg1 * parameters[8])
+            + v2_by_1_y_leg1
+                * (parameters[8] * g1_vx_v2_by_1_y_leg1
+                    - minus_g2_vx_leg1 * parameters[6]);
+        let minus_g1_vx_v2_by_1_y_leg2 = minus_g1_vx_leg2 * v2_by_1_y_leg2;
+        let c12_leg2 = INV_L_AB * l2_x_leg2;
+        let t4 = v2_by_1_y_leg2
+            * (g2_vx_leg2 * parameters[21] - parameters[23] * minus_g1_vx_v2_by_1_y_leg2)
+            - minus_v2_by_1_x_leg2
+                * (c12_leg2 * parameters[23] - g2_vx_leg2 * parameters[22])
+            - (minus_g1_vx_leg2 * parameters[16] + minus_g1_vx_leg2 * parameters[15]);
+        let t5 = g1_vx_leg1 * t3
+            - minus_g2_vx_leg1
+                * (parameters[6] * g1_vx_v2_by_1_y_leg1
+                    - minus_g2_vx_leg1 * parameters[5] - c12_leg1 * parameters[7])
+            + g2_vx_leg2
+                * (g2_vx_leg2 * parameters[20]
+                    - parameters[21] * minus_g1_vx_v2_by_1_y_leg2
+                    - c12_leg2 * parameters[22]) - minus_g1_vx_leg2 * t4;
+        let c12_leg3 = INV_L_AB * l2_x_leg3;
+        let g1_vx_v2_by_1_y_leg3 = g1_vx_leg3 * v2_by_1_y_leg3;
+        let t6 = g1_vx_leg3 * parameters[30] + g1_vx_leg3 * parameters[31]
+            + v2_by_1_x_leg3
+                * (minus_g2_vx_leg3 * parameters[37] + c12_leg3 * parameters[38])
+            + v2_by_1_y_leg3
+                * (parameters[38] * g1_vx_v2_by_1_y_leg3
+                    - minus_g2_vx_leg3 * parameters[36]);
+        let minus_g1_vx_v2_by_1_y_leg4 = minus_g1_vx_leg4 * v2_by_1_y_leg4;
+        let c12_leg4 = INV_L_AB * l2_x_leg4;
+        let t7 = v2_by_1_y_leg4
+            * (g2_vx_leg4 * parameters[51] - parameters[53] * minus_g1_vx_v2_by_1_y_leg4)
+            - minus_v2_by_1_x_leg4
+                * (c12_leg4 * parameters[53] - g2_vx_leg4 * parameters[52])
+            - (minus_g1_vx_leg4 * parameters[46] + minus_g1_vx_leg4 * parameters[45]);
+        let t8 = t5 + g1_vx_leg3 * t6
+            - minus_g2_vx_leg3
+                * (parameters[36] * g1_vx_v2_by_1_y_leg3
+                    - minus_g2_vx_leg3 * parameters[35] - c12_leg3 * parameters[37])
+            + g2_vx_leg4
+                * (g2_vx_leg4 * parameters[50]
+                    - parameters[51] * minus_g1_vx_v2_by_1_y_leg4
+                    - c12_leg4 * parameters[52]) - minus_g1_vx_leg4 * t7;
+        let m_platform_plus_m_payload = parameters[63] + parameters[67];
+        let mass_1_1 = t8 + m_platform_plus_m_payload;
+        ::overact::guard::mass(mass_1_1)?;
+        let inv_pivot_1 = 1.0 / mass_1_1;
+        let s12_leg1 = INV_L_AB * l2_y_leg1;
+        let g1_vy_v2_by_1_y_leg1 = g1_vy_leg1 * v2_by_1_y_leg1;
+        let t9 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
+            + v2_by_1_x_leg1
+                * (minus_g2_vy_leg1 * parameters[7] + s12_leg1 * parameters[8])
+            + v2_by_1_y_leg1
+                * (parameters[8] * g1_vy_v2_by_1_y_leg1
+                    - minus_g2_vy_leg1 * parameters[6]);
+        let t10 = parameters[6] * g1_vy_v2_by_1_y_leg1 - minus_g2_vy_leg1 * parameters[5]
+            - s12_leg1 * parameters[7];
+        let minus_g1_vy_v2_by_1_y_leg2 = minus_g1_vy_leg2 * v2_by_1_y_leg2;
+        let s12_leg2 = INV_L_AB * l2_y_leg2;
+        let t11 = g2_vy_leg2 * parameters[20]
+            - parameters[21] * minus_g1_vy_v2_by_1_y_leg2 - s12_leg2 * parameters[22];
+        let t12 = v2_by_1_y_leg2
+            * (g2_vy_leg2 * parameters[21] - parameters[23] * minus_g1_vy_v2_by_1_y_leg2)
+            - minus_v2_by_1_x_leg2
+                * (s12_leg2 * parameters[23] - g2_vy_leg2 * parameters[22])
+            - (minus_g1_vy_leg2 * parameters[16] + minus_g1_vy_leg2 * parameters[15]);
+        let s12_leg3 = INV_L_AB * l2_y_leg3;
+        let g1_vy_v2_by_1_y_leg3 = g1_vy_leg3 * v2_by_1_y_leg3;
+        let t13 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
+            + v2_by_1_x_leg3
+                * (minus_g2_vy_leg3 * parameters[37] + s12_leg3 * parameters[38])
+            + v2_by_1_y_leg3
+                * (parameters[38] * g1_vy_v2_by_1_y_leg3
+                    - minus_g2_vy_leg3 * parameters[36]);
+        let t14 = parameters[36] * g1_vy_v2_by_1_y_leg3
+            - minus_g2_vy_leg3 * parameters[35] - s12_leg3 * parameters[37];
+        let t15 = g1_vx_leg1 * t9 - minus_g2_vx_leg1 * t10 + g2_vx_leg2 * t11
+            - minus_g1_vx_leg2 * t12 + g1_vx_leg3 * t13 - minus_g2_vx_leg3 * t14;
+        let minus_g1_vy_v2_by_1_y_leg4 = minus_g1_vy_leg4 * v2_by_1_y_leg4;
+        let s12_leg4 = INV_L_AB * l2_y_leg4;
+        let t16 = g2_vy_leg4 * parameters[50]
+            - parameters[51] * minus_g1_vy_v2_by_1_y_leg4 - s12_leg4 * parameters[52];
+        let t17 = v2_by_1_y_leg4
+            * (g2_vy_leg4 * parameters[51] - parameters[53] * minus_g1_vy_v2_by_1_y_leg4)
+            - minus_v2_by_1_x_leg4
+                * (s12_leg4 * parameters[53] - g2_vy_leg4 * parameters[52])
+            - (minus_g1_vy_leg4 * parameters[46] + minus_g1_vy_leg4 * parameters[45]);
+        let mass_1_2 = t15 + g2_vx_leg4 * t16 - minus_g1_vx_leg4 * t17;
+        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let t18 = g1_vy_leg1 * t9 - minus_g2_vy_leg1 * t10 + g2_vy_leg2 * t11
+            - minus_g1_vy_leg2 * t12 + g1_vy_leg3 * t13 - minus_g2_vy_leg3 * t14;
+        let mass_2_2 = t18 + g2_vy_leg4 * t16 - minus_g1_vy_leg4 * t17
+            + m_platform_plus_m_payload;
+        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+        ::overact::guard::mass(pivot_2)?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t19 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let minus_force_y_platform = parameters[61] * inv_r_p_bias_a_end_x_leg1
+            + parameters[62] * inv_r_p_bias_a_end_y_leg3
+            + parameters[65] * inv_r_p_bias_a_end_x_leg1
+            + parameters[66] * inv_r_p_bias_a_end_y_leg3;
+        let t20 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
+            - (t19 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+                - minus_force_y_platform);
+        let t21 = t20 - t2 * l_2_1;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let minus_v2_by_1_y_g1_wz_leg1 = v2_by_1_y_leg1 * minus_g1_wz_leg1;
+        let minus_v2_by_1_x_g1_wz_leg1 = v2_by_1_x_leg1 * minus_g1_wz_leg1;
+        let t22 = v2_by_1_y_leg1
+            * (g2_wz_leg1 * parameters[6] - parameters[8] * minus_v2_by_1_y_g1_wz_leg1)
+            - v2_by_1_x_leg1
+                * (g2_wz_leg1 * parameters[7]
+                    + parameters[8] * minus_v2_by_1_x_g1_wz_leg1)
+            - (minus_g1_wz_leg1 * parameters[0] + minus_g1_wz_leg1 * parameters[1]);
+        let t23 = g2_wz_leg1 * parameters[5] - parameters[6] * minus_v2_by_1_y_g1_wz_leg1
+            + parameters[7] * minus_v2_by_1_x_g1_wz_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let v2_by_1_y_g1_wz_leg2 = v2_by_1_y_leg2 * g1_wz_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_v2_by_1_x_g1_wz_leg2 = minus_v2_by_1_x_leg2 * g1_wz_leg2;
+        let t24 = parameters[21] * v2_by_1_y_g1_wz_leg2
+            - minus_g2_wz_leg2 * parameters[20]
+            + parameters[22] * minus_v2_by_1_x_g1_wz_leg2;
+        let t25 = g1_wz_leg2 * parameters[16] + g1_wz_leg2 * parameters[15]
+            + v2_by_1_y_leg2
+                * (parameters[23] * v2_by_1_y_g1_wz_leg2
+                    - minus_g2_wz_leg2 * parameters[21])
+            - minus_v2_by_1_x_leg2
+                * (minus_g2_wz_leg2 * parameters[22]
+                    - parameters[23] * minus_v2_by_1_x_g1_wz_leg2);
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let v2_by_1_x_g1_wz_leg3 = v2_by_1_x_leg3 * g1_wz_leg3;
+        let v2_by_1_y_g1_wz_leg3 = v2_by_1_y_leg3 * g1_wz_leg3;
+        let t26 = g1_wz_leg3 * parameters[30] + g1_wz_leg3 * parameters[31]
+            + v2_by_1_x_leg3
+                * (minus_g2_wz_leg3 * parameters[37]
+                    + parameters[38] * v2_by_1_x_g1_wz_leg3)
+            + v2_by_1_y_leg3
+                * (parameters[38] * v2_by_1_y_g1_wz_leg3
+                    - minus_g2_wz_leg3 * parameters[36]);
+        let t27 = parameters[36] * v2_by_1_y_g1_wz_leg3
+            - minus_g2_wz_leg3 * parameters[35] - parameters[37] * v2_by_1_x_g1_wz_leg3;
+        let t28 = g1_vy_leg1 * t22 - minus_g2_vy_leg1 * t23 + g2_vy_leg2 * t24
+            - minus_g1_vy_leg2 * t25 + g1_vy_leg3 * t26 - minus_g2_vy_leg3 * t27;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let minus_v2_by_1_y_g1_wz_leg4 = v2_by_1_y_leg4 * minus_g1_wz_leg4;
+        let v2_by_1_x_g1_wz_leg4 = minus_v2_by_1_x_leg4 * minus_g1_wz_leg4;
+        let t29 = g2_wz_leg4 * parameters[50]
+            - parameters[51] * minus_v2_by_1_y_g1_wz_leg4
+            - parameters[52] * v2_by_1_x_g1_wz_leg4;
+        let t30 = v2_by_1_y_leg4
+            * (g2_wz_leg4 * parameters[51] - parameters[53] * minus_v2_by_1_y_g1_wz_leg4)
+            - minus_v2_by_1_x_leg4
+                * (parameters[53] * v2_by_1_x_g1_wz_leg4 - g2_wz_leg4 * parameters[52])
+            - (minus_g1_wz_leg4 * parameters[46] + minus_g1_wz_leg4 * parameters[45]);
+        let t31 = 9.81 * s_phi;
+        let t32 = 9.81 * c_phi;
+        let moment_y_platform = parameters[62] * t31 - parameters[61] * t32
+            - parameters[65] * t32 + parameters[66] * t31;
+        let mass_2_3 = t28 + g2_vy_leg4 * t29 - minus_g1_vy_leg4 * t30
+            - 0.1019367991845056 * moment_y_platform;
+        let t33 = g1_vx_leg1 * t22 - minus_g2_vx_leg1 * t23 + g2_vx_leg2 * t24
+            - minus_g1_vx_leg2 * t25 + g1_vx_leg3 * t26 - minus_g2_vx_leg3 * t27;
+        let moment_x_platform = parameters[61] * t31 + parameters[62] * t32
+            + parameters[65] * t31 + parameters[66] * t32;
+        let mass_1_3 = t33 + g2_vx_leg4 * t29 - minus_g1_vx_leg4 * t30
+            - 0.1019367991845056 * moment_x_platform;
+        let l_3_1 = mass_1_3 * inv_pivot_1;
+        let schur_2_3 = mass_2_3 - mass_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let t34 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
+            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let t35 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
+            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3]
+            - (t34 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+                + tau_3_leg4);
+        let t36 = g2_wz_leg1 * t23 - minus_g1_wz_leg1 * t22 + g1_wz_leg2 * t25
+            - minus_g2_wz_leg2 * t24 + g1_wz_leg3 * t26 - minus_g2_wz_leg3 * t27;
+        let mass_3_3 = t36 + g2_wz_leg4 * t29 - minus_g1_wz_leg4 * t30 + parameters[60]
+            + parameters[64];
+        let pivot_3 = mass_3_3 - mass_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::mass(pivot_3)?;
+        let t37 = (t35 - t2 * l_3_1 - l_3_2 * t21) / pivot_3;
+        let t38 = inv_pivot_2 * t21 - l_3_2 * t37;
+        ::core::result::Result::Ok([
+            t2 * inv_pivot_1 - l_2_1 * t38 - l_3_1 * t37, t38, t37,
+        ])
+    }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
@@ -10526,6 +11040,15 @@ impl ::overact::Model for DualV {
             ::overact::Function::Bias => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::InverseDynamicsPreloaded => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?

@@ -396,6 +396,39 @@ impl Emps {
             + parameters[4];
         ::core::result::Result::Ok([tau_1_axis])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `joint_velocities`: velocities of the joints (m/s, rad/s)
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 1.
+    ///
+    /// 6 operations (4 additions, 1 multiplications, 1 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 6 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics(
+        joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 5],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities), ("torques", torques),
+                ("parameters", parameters),
+            ],
+        )?;
+        let tau_1_axis = joint_velocities[0] * parameters[2]
+            + ::overact::math::signed(parameters[3], joint_velocities[0])
+            + parameters[4];
+        let mass_1_1 = parameters[0] + parameters[1];
+        ::overact::guard::mass(mass_1_1)?;
+        ::core::result::Result::Ok([(torques[0] - tau_1_axis) / mass_1_1])
+    }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
     /// From the joints' positions and rates.
@@ -534,6 +567,15 @@ impl ::overact::Model for Emps {
             ::overact::Function::Bias => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::ProjectTorques => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?

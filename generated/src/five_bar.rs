@@ -4379,6 +4379,241 @@ impl FiveBar {
                 + force_y_platform,
         ])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 318 operations (121 additions, 191 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 322 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 25],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("torques", torques), ("parameters", parameters),
+            ],
+        )?;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half
+        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let minus_rate_1_left = minus_g1_vx_left * twist[0]
+            + minus_g1_vy_left * twist[1];
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let bias_rate_dot_2_left = k_left
+            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let t4_left = bias_a1_x_left - L_1 * rate_1_squared_left;
+        let c2_left = INV_HALF * t2_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let t5_left = bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left;
+        let bias_a2_y_left = minus_s2_left * t4_left + c2_left * t5_left;
+        let bias_a2_x_left = c2_left * t4_left - minus_s2_left * t5_left;
+        let moment2_z_left = parameters[7] * bias_rate_dot_2_left
+            + parameters[8] * bias_a2_y_left - parameters[9] * bias_a2_x_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let moment1_z_left = parameters[1] * bias_a1_y_left
+            - parameters[0] * minus_bias_rate_dot_1_left
+            - parameters[2] * bias_a1_x_left;
+        let tau_1_left = parameters[6]
+            - (parameters[3] * minus_bias_rate_dot_1_left
+                + parameters[4] * minus_rate_1_left
+                + ::overact::math::signed(parameters[5], minus_rate_1_left));
+        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
+        let force2_y_left = parameters[8] * bias_rate_dot_2_left
+            - parameters[9] * rate_2_squared_left + parameters[10] * bias_a2_y_left;
+        let minus_v2_by_1_x_left = INV_L_2 * det_left;
+        let force2_x_left = parameters[10] * bias_a2_x_left
+            - (parameters[8] * rate_2_squared_left
+                + parameters[9] * bias_rate_dot_2_left);
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
+            - tau_2_left;
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let moment1_z_right = parameters[12] * bias_rate_dot_1_right
+            + parameters[13] * bias_a1_y_right - parameters[14] * bias_a1_x_right;
+        let tau_1_right = parameters[15] * bias_rate_dot_1_right
+            + parameters[16] * rate_1_right
+            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
+        let v2_by_1_x_right = INV_L_2 * det_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
+        let t4_right = bias_a1_x_right - L_1 * rate_1_squared_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let t5_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
+        let bias_a2_x_right = c2_right * t4_right + s2_right * t5_right;
+        let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
+            - parameters[20] * rate_2_squared_right + parameters[22] * bias_a2_x_right;
+        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
+        let bias_a2_y_right = c2_right * t5_right - s2_right * t4_right;
+        let force2_y_right = parameters[22] * bias_a2_y_right
+            - (parameters[20] * minus_bias_rate_dot_2_right
+                + parameters[21] * rate_2_squared_right);
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            parameters[23],
+            minus_qd_2_right,
+        );
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
+            + minus_tau_2_right;
+        let moment2_z_right = parameters[20] * bias_a2_y_right
+            - parameters[19] * minus_bias_rate_dot_2_right
+            - parameters[21] * bias_a2_x_right;
+        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
+        let t1 = g1_vx_right * torques[1] - minus_g1_vx_left * torques[0]
+            - (g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
+                + g1_vx_right * force_on_u1_right
+                - minus_g2_vx_right * force_on_u2_right);
+        let minus_g1_vx_v2_by_1_y_left = minus_g1_vx_left * v2_by_1_y_left;
+        let c12_left = INV_L_2 * l2_x_left;
+        let t2 = v2_by_1_y_left
+            * (g2_vx_left * parameters[8] - parameters[10] * minus_g1_vx_v2_by_1_y_left)
+            - minus_v2_by_1_x_left
+                * (c12_left * parameters[10] - g2_vx_left * parameters[9])
+            - (minus_g1_vx_left * parameters[0] + minus_g1_vx_left * parameters[3]);
+        let c12_right = INV_L_2 * l2_x_right;
+        let g1_vx_v2_by_1_y_right = g1_vx_right * v2_by_1_y_right;
+        let t3 = g1_vx_right * parameters[12] + g1_vx_right * parameters[15]
+            + v2_by_1_x_right
+                * (minus_g2_vx_right * parameters[21] + c12_right * parameters[22])
+            + v2_by_1_y_right
+                * (parameters[22] * g1_vx_v2_by_1_y_right
+                    - minus_g2_vx_right * parameters[20]);
+        let t4 = g2_vx_left
+            * (g2_vx_left * parameters[7] - parameters[8] * minus_g1_vx_v2_by_1_y_left
+                - c12_left * parameters[9]) - minus_g1_vx_left * t2 + g1_vx_right * t3
+            - minus_g2_vx_right
+                * (parameters[20] * g1_vx_v2_by_1_y_right
+                    - minus_g2_vx_right * parameters[19] - c12_right * parameters[21]);
+        let mass_1_1 = t4 + parameters[24];
+        ::overact::guard::mass(mass_1_1)?;
+        let inv_pivot_1 = 1.0 / mass_1_1;
+        let minus_g1_vy_v2_by_1_y_left = minus_g1_vy_left * v2_by_1_y_left;
+        let s12_left = INV_L_2 * l2_y_left;
+        let t5 = g2_vy_left * parameters[7] - parameters[8] * minus_g1_vy_v2_by_1_y_left
+            - s12_left * parameters[9];
+        let t6 = v2_by_1_y_left
+            * (g2_vy_left * parameters[8] - parameters[10] * minus_g1_vy_v2_by_1_y_left)
+            - minus_v2_by_1_x_left
+                * (s12_left * parameters[10] - g2_vy_left * parameters[9])
+            - (minus_g1_vy_left * parameters[0] + minus_g1_vy_left * parameters[3]);
+        let s12_right = INV_L_2 * l2_y_right;
+        let g1_vy_v2_by_1_y_right = g1_vy_right * v2_by_1_y_right;
+        let t7 = g1_vy_right * parameters[12] + g1_vy_right * parameters[15]
+            + v2_by_1_x_right
+                * (minus_g2_vy_right * parameters[21] + s12_right * parameters[22])
+            + v2_by_1_y_right
+                * (parameters[22] * g1_vy_v2_by_1_y_right
+                    - minus_g2_vy_right * parameters[20]);
+        let t8 = parameters[20] * g1_vy_v2_by_1_y_right
+            - minus_g2_vy_right * parameters[19] - s12_right * parameters[21];
+        let mass_1_2 = g2_vx_left * t5 - minus_g1_vx_left * t6 + g1_vx_right * t7
+            - minus_g2_vx_right * t8;
+        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let force_y_platform = 9.81 * parameters[24];
+        let t9 = g1_vy_right * torques[1] - minus_g1_vy_left * torques[0]
+            - (g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+                + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
+                + force_y_platform);
+        let mass_2_2 = g2_vy_left * t5 - minus_g1_vy_left * t6 + g1_vy_right * t7
+            - minus_g2_vy_right * t8 + parameters[24];
+        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+        ::overact::guard::mass(pivot_2)?;
+        let t10 = (t9 - t1 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t10, t10])
+    }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
     /// From the platform's pose and motion.
@@ -4597,6 +4832,15 @@ impl ::overact::Model for FiveBar {
             ::overact::Function::Bias => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::ProjectTorques => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?

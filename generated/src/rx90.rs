@@ -25,6 +25,10 @@
 /// | `bias_wd2_x_arm` | ω̇_j at v̇ = 0 | angular acceleration of body j without the independent accelerations |
 /// | `bias_a2_x_arm` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
 /// | `bias_u2_xy_arm` | U_j at v̇ = 0 | S(ω̇_j) + S(ω_j) S(ω_j) without the independent accelerations |
+/// | `schur_5_6` | S' | S after elimination of the columns before |
+/// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
+/// | `inv_pivot_1` | 1/d_k | its reciprocal |
+/// | `l_2_1` | L | entry of L |
 ///
 /// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
 /// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
@@ -2389,6 +2393,669 @@ impl Rx90 {
             force_on_u6_arm,
         ])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `joint_velocities`: velocities of the joints (m/s, rad/s)
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 6.
+    ///
+    /// 1469 operations (672 additions, 791 multiplications, 6 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 1479 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics(
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        torques: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 73],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities), ("torques", torques),
+                ("parameters", parameters),
+            ],
+        )?;
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        /// 2 d3
+        const TWICE_D3: ::core::primitive::f64 = 0.9;
+        // --- sines and cosines
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
+        let tau_1_arm = joint_velocities[0] * parameters[2]
+            + ::overact::math::signed(parameters[3], joint_velocities[0])
+            + parameters[4];
+        // --- arm
+        let w2_y_arm = c2_arm * joint_velocities[0];
+        let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+        let w2_x_arm = s2_arm * joint_velocities[0];
+        let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
+        let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+        let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+        let t1 = parameters[5] * bias_wd2_x_arm - parameters[6] * bias_u2_zx_arm
+            + parameters[7] * bias_u2_xy_arm - parameters[8] * bias_wd2_x_arm
+            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
+        let moment2_x_arm = t1 + parameters[10] * bias_wd2_x_arm;
+        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let t2 = parameters[5] * minus_bias_wd2_y_arm + parameters[6] * bias_u2_zy_arm
+            + parameters[7] * (rate_2_squared_arm - w2_x_squared_arm)
+            - parameters[8] * minus_bias_wd2_y_arm - parameters[9] * bias_u2_xy_arm;
+        let moment2_y_arm = t2 - parameters[10] * minus_bias_wd2_y_arm;
+        let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
+        let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
+        let w3_y_arm = joint_velocities[0] * c23_arm;
+        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+        let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
+        let w3_x_arm = joint_velocities[0] * s23_arm;
+        let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
+        let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+        let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+        let t3 = parameters[17] * bias_wd3_x_arm - parameters[18] * bias_u3_zx_arm
+            + parameters[19] * bias_u3_xy_arm - parameters[20] * bias_wd3_x_arm
+            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
+        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+        let bias_a2_y_arm = 9.81 * c2_arm;
+        let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
+        let bias_a2_x_arm = 9.81 * s2_arm;
+        let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+        let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
+        let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
+            - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
+        let moment3_x_arm = t3 + parameters[22] * bias_wd3_x_arm
+            + parameters[24] * bias_a3_z_arm - parameters[25] * bias_a3_y_arm;
+        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let t4 = parameters[17] * minus_bias_wd3_y_arm + parameters[18] * bias_u3_zy_arm
+            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
+            - parameters[20] * minus_bias_wd3_y_arm - parameters[21] * bias_u3_xy_arm;
+        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+        let moment3_y_arm = t4 - parameters[22] * minus_bias_wd3_y_arm
+            - parameters[23] * bias_a3_z_arm + parameters[25] * bias_a3_x_arm;
+        let minus_v3_by_1_z_arm = D3 * c2_arm;
+        let rate_1_squared_arm = joint_velocities[0] * joint_velocities[0];
+        let force3_z_arm = parameters[23] * bias_u3_zx_arm
+            + parameters[24] * bias_u3_zy_arm - parameters[25] * rate_1_squared_arm
+            + parameters[26] * bias_a3_z_arm;
+        let t5 = tau_1_arm + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm
+            + s23_arm * moment3_x_arm + c23_arm * moment3_y_arm
+            - minus_v3_by_1_z_arm * force3_z_arm;
+        let t1_arm = D3 * (s23_arm - c2_arm);
+        let v5_by_1_z_arm = c4_arm * t1_arm;
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
+        let t2_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t2_arm;
+        let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
+            + parameters[38] * minus_bias_u4_yy_arm
+            + parameters[39] * minus_bias_u4_yz_arm + parameters[40] * bias_a5_z_arm;
+        let minus_v4_by_1_x_arm = s4_arm * t1_arm;
+        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
+        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t2_arm;
+        let force4_x_arm = parameters[38] * bias_u4_xy_arm
+            - parameters[37] * minus_bias_u4_xx_arm + parameters[39] * bias_u4_xz_arm
+            + parameters[40] * bias_a4_x_arm;
+        let w4_by_1_x_arm = s23_arm * c4_arm;
+        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+        let t6 = parameters[31] * bias_wd4_x_arm - parameters[32] * bias_u4_zx_arm
+            - parameters[33] * minus_bias_u4_yx_arm
+            + parameters[34] * minus_w4_y_w4_z_arm
+            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
+        let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+        let moment4_x_arm = t6 - parameters[36] * minus_w4_y_w4_z_arm
+            + parameters[38] * bias_a4_z_arm + parameters[39] * bias_a5_z_arm;
+        let w5_by_1_z_arm = s23_arm * s4_arm;
+        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+        let t7 = parameters[31] * w4_x_w4_z_arm + parameters[32] * bias_u4_zy_arm
+            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
+            - parameters[34] * bias_wd5_z_arm - parameters[35] * bias_u4_xy_arm;
+        let moment4_y_arm = t7 - parameters[36] * w4_x_w4_z_arm
+            - parameters[37] * bias_a4_z_arm + parameters[39] * bias_a4_x_arm;
+        let t8 = parameters[31] * minus_w4_x_w4_y_arm
+            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
+            + parameters[33] * minus_bias_u4_yz_arm
+            - parameters[34] * minus_w4_x_w4_y_arm + parameters[35] * bias_u4_xz_arm;
+        let moment4_z_arm = t8 - parameters[36] * minus_bias_wd3_y_arm
+            - parameters[37] * bias_a5_z_arm - parameters[38] * bias_a4_x_arm;
+        let t9 = t5 + v5_by_1_z_arm * minus_force4_y_arm
+            - minus_v4_by_1_x_arm * force4_x_arm + w4_by_1_x_arm * moment4_x_arm
+            - w5_by_1_z_arm * moment4_y_arm + c23_arm * moment4_z_arm;
+        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
+            + joint_velocities[4] * w5_y_arm;
+        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+        let force5_y_arm = parameters[51] * bias_u5_yx_arm
+            - parameters[52] * minus_bias_u5_yy_arm + parameters[53] * bias_u5_yz_arm
+            + parameters[54] * bias_a5_y_arm;
+        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
+        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+        let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
+            + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
+        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+        let force5_x_arm = parameters[52] * bias_u5_xy_arm
+            - parameters[51] * minus_bias_u5_xx_arm + parameters[53] * bias_u5_xz_arm
+            + parameters[54] * bias_a5_x_arm;
+        let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+        let force5_z_arm = parameters[51] * bias_u5_zx_arm
+            + parameters[52] * bias_u5_zy_arm - parameters[53] * minus_bias_u4_yy_arm
+            + parameters[54] * bias_a5_z_arm;
+        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
+        let t10 = parameters[45] * bias_wd5_x_arm - parameters[46] * bias_u5_zx_arm
+            + parameters[47] * bias_u5_yx_arm - parameters[48] * w5_y_w5_z_arm
+            + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
+        let moment5_x_arm = t10 + parameters[50] * w5_y_w5_z_arm
+            + parameters[52] * bias_a5_z_arm - parameters[53] * bias_a5_y_arm;
+        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
+        let t11 = parameters[45] * w5_x_w5_z_arm + parameters[46] * bias_u5_zy_arm
+            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
+            - parameters[48] * minus_bias_wd5_y_arm - parameters[49] * bias_u5_xy_arm;
+        let moment5_y_arm = t11 - parameters[50] * w5_x_w5_z_arm
+            - parameters[51] * bias_a5_z_arm + parameters[53] * bias_a5_x_arm;
+        let t12 = parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
+            - parameters[45] * w5_x_w5_y_arm - parameters[47] * bias_u5_yz_arm
+            + parameters[48] * w5_x_w5_y_arm + parameters[49] * bias_u5_xz_arm;
+        let moment5_z_arm = t12 + parameters[50] * bias_wd5_z_arm
+            + parameters[51] * bias_a5_y_arm - parameters[52] * bias_a5_x_arm;
+        let t13 = v5_by_1_y_arm * force5_y_arm - minus_v5_by_1_x_arm * force5_x_arm
+            + v5_by_1_z_arm * force5_z_arm + w5_by_1_x_arm * moment5_x_arm
+            + w5_by_1_y_arm * moment5_y_arm + w5_by_1_z_arm * moment5_z_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+        let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
+            + joint_velocities[5] * w6_x_arm;
+        let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+        let force6_z_arm = parameters[65] * bias_u6_zx_arm
+            + parameters[66] * bias_u6_zy_arm - parameters[67] * minus_bias_u5_yy_arm
+            + parameters[68] * bias_a5_y_arm;
+        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
+        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
+        let minus_v6_by_1_x_arm = t1_arm * minus_w6_by_2_x_arm;
+        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+        let force6_x_arm = parameters[66] * bias_u6_xy_arm
+            - parameters[65] * minus_bias_u6_xx_arm + parameters[67] * bias_u6_xz_arm
+            + parameters[68] * bias_a6_x_arm;
+        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
+        let v6_by_1_y_arm = t1_arm * w6_by_2_y_arm;
+        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
+        let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
+            + parameters[66] * minus_bias_u6_yy_arm
+            + parameters[67] * minus_bias_u6_yz_arm
+            + parameters[68] * minus_bias_a6_y_arm;
+        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
+        let t14 = parameters[59] * bias_wd6_x_arm - parameters[60] * bias_u6_zx_arm
+            - parameters[61] * minus_bias_u6_yx_arm
+            + parameters[62] * minus_w6_y_w6_z_arm
+            + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
+        let moment6_x_arm = t14 - parameters[64] * minus_w6_y_w6_z_arm
+            + parameters[66] * bias_a5_y_arm + parameters[67] * minus_bias_a6_y_arm;
+        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
+        let t15 = parameters[59] * w6_x_w6_z_arm + parameters[60] * bias_u6_zy_arm
+            + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
+            - parameters[62] * minus_bias_wd6_y_arm - parameters[63] * bias_u6_xy_arm;
+        let moment6_y_arm = t15 - parameters[64] * w6_x_w6_z_arm
+            - parameters[65] * bias_a5_y_arm + parameters[67] * bias_a6_x_arm;
+        let t16 = parameters[59] * minus_w6_x_w6_y_arm
+            + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
+            + parameters[61] * minus_bias_u6_yz_arm
+            - parameters[62] * minus_w6_x_w6_y_arm + parameters[63] * bias_u6_xz_arm;
+        let moment6_z_arm = t16 - parameters[64] * minus_bias_wd5_y_arm
+            - parameters[65] * minus_bias_a6_y_arm - parameters[66] * bias_a6_x_arm;
+        let t17 = v5_by_1_y_arm * force6_z_arm
+            - (minus_v6_by_1_x_arm * force6_x_arm + v6_by_1_y_arm * minus_force6_y_arm)
+            + w6_by_1_x_arm * moment6_x_arm - minus_w6_by_1_y_arm * moment6_y_arm
+            + w5_by_1_y_arm * moment6_z_arm;
+        let force_on_u1_arm = t9 + t13 + t17;
+        let tau1_minus_force_on_u1_arm = torques[0] - force_on_u1_arm;
+        let t18 = parameters[0] + parameters[1]
+            + s2_arm * (s2_arm * parameters[5] + c2_arm * parameters[6])
+            + c2_arm * (s2_arm * parameters[6] + c2_arm * parameters[8]);
+        let t19 = s23_arm
+            * (s23_arm * parameters[17] + c23_arm * parameters[18]
+                - parameters[24] * minus_v3_by_1_z_arm)
+            + c23_arm
+                * (s23_arm * parameters[18] + c23_arm * parameters[20]
+                    + parameters[23] * minus_v3_by_1_z_arm);
+        let t20 = w4_by_1_x_arm
+            * (w4_by_1_x_arm * parameters[31] - w5_by_1_z_arm * parameters[32]
+                + c23_arm * parameters[33] + parameters[39] * v5_by_1_z_arm)
+            - w5_by_1_z_arm
+                * (w4_by_1_x_arm * parameters[32] - w5_by_1_z_arm * parameters[34]
+                    + c23_arm * parameters[35] - parameters[39] * minus_v4_by_1_x_arm);
+        let t21 = w4_by_1_x_arm * parameters[33] - w5_by_1_z_arm * parameters[35]
+            + c23_arm * parameters[36] - parameters[37] * v5_by_1_z_arm
+            + parameters[38] * minus_v4_by_1_x_arm;
+        let t22 = v5_by_1_z_arm
+            * (c23_arm * parameters[37] - w4_by_1_x_arm * parameters[39]
+                - parameters[40] * v5_by_1_z_arm)
+            - minus_v4_by_1_x_arm
+                * (parameters[40] * minus_v4_by_1_x_arm + c23_arm * parameters[38]
+                    + w5_by_1_z_arm * parameters[39]);
+        let t23 = t18 + t19
+            - minus_v3_by_1_z_arm
+                * (s23_arm * parameters[24] - c23_arm * parameters[23]
+                    - parameters[26] * minus_v3_by_1_z_arm) + t20 + c23_arm * t21 - t22;
+        let t24 = v5_by_1_y_arm
+            * (w5_by_1_z_arm * parameters[51] - w5_by_1_x_arm * parameters[53]
+                + parameters[54] * v5_by_1_y_arm)
+            - minus_v5_by_1_x_arm
+                * (w5_by_1_y_arm * parameters[53] - w5_by_1_z_arm * parameters[52]
+                    - parameters[54] * minus_v5_by_1_x_arm);
+        let t25 = w5_by_1_x_arm
+            * (w5_by_1_x_arm * parameters[45] + w5_by_1_y_arm * parameters[46]
+                + w5_by_1_z_arm * parameters[47] + parameters[52] * v5_by_1_z_arm
+                - parameters[53] * v5_by_1_y_arm);
+        let t26 = w5_by_1_y_arm
+            * (w5_by_1_x_arm * parameters[46] + w5_by_1_y_arm * parameters[48]
+                + w5_by_1_z_arm * parameters[49] - parameters[51] * v5_by_1_z_arm
+                - parameters[53] * minus_v5_by_1_x_arm);
+        let t27 = w5_by_1_x_arm * parameters[47] + w5_by_1_y_arm * parameters[49]
+            + w5_by_1_z_arm * parameters[50] + parameters[51] * v5_by_1_y_arm
+            + parameters[52] * minus_v5_by_1_x_arm;
+        let t28 = t24
+            + v5_by_1_z_arm
+                * (w5_by_1_x_arm * parameters[52] - w5_by_1_y_arm * parameters[51]
+                    + parameters[54] * v5_by_1_z_arm) + t25 + t26 + w5_by_1_z_arm * t27;
+        let t29 = v6_by_1_y_arm
+            * (w5_by_1_y_arm * parameters[65] - w6_by_1_x_arm * parameters[67]
+                + parameters[68] * v6_by_1_y_arm)
+            + minus_v6_by_1_x_arm
+                * (parameters[68] * minus_v6_by_1_x_arm + w5_by_1_y_arm * parameters[66]
+                    + minus_w6_by_1_y_arm * parameters[67]);
+        let t30 = w6_by_1_x_arm
+            * (w6_by_1_x_arm * parameters[59] - minus_w6_by_1_y_arm * parameters[60]
+                + w5_by_1_y_arm * parameters[61] + parameters[66] * v5_by_1_y_arm
+                - parameters[67] * v6_by_1_y_arm);
+        let t31 = minus_w6_by_1_y_arm
+            * (w6_by_1_x_arm * parameters[60] - minus_w6_by_1_y_arm * parameters[62]
+                + w5_by_1_y_arm * parameters[63] - parameters[65] * v5_by_1_y_arm
+                - parameters[67] * minus_v6_by_1_x_arm);
+        let mass_1_6 = w6_by_1_x_arm * parameters[61]
+            - minus_w6_by_1_y_arm * parameters[63] + w5_by_1_y_arm * parameters[64]
+            + parameters[65] * v6_by_1_y_arm + parameters[66] * minus_v6_by_1_x_arm;
+        let t32 = t29
+            + v5_by_1_y_arm
+                * (minus_w6_by_1_y_arm * parameters[65] + w6_by_1_x_arm * parameters[66]
+                    + parameters[68] * v5_by_1_y_arm) + t30 - t31
+            + w5_by_1_y_arm * mass_1_6;
+        let mass_1_1 = t23 + t28 + t32;
+        ::overact::guard::mass(mass_1_1)?;
+        let inv_pivot_1 = 1.0 / mass_1_1;
+        let v3_by_2_y_arm = D3 * c3_arm;
+        let v3_by_2_x_arm = D3 * s3_arm;
+        let t33 = s2_arm * parameters[7] + c2_arm * parameters[9]
+            + s23_arm * (parameters[19] - parameters[25] * v3_by_2_y_arm)
+            + c23_arm * (parameters[21] + parameters[25] * v3_by_2_x_arm);
+        let s4_xx_4_plus_c4_xy_4_arm = s4_arm * parameters[31] + c4_arm * parameters[32];
+        let v3_by_2_x_minus_d3_arm = v3_by_2_x_arm - D3;
+        let v5_by_2_z_arm = s4_arm * v3_by_2_x_minus_d3_arm;
+        let t34 = parameters[38] * v3_by_2_y_arm - s4_xx_4_plus_c4_xy_4_arm
+            + parameters[39] * v5_by_2_z_arm;
+        let v4_by_2_x_arm = c4_arm * v3_by_2_x_minus_d3_arm;
+        let s4_xy_4_plus_c4_yy_4_arm = s4_arm * parameters[32] + c4_arm * parameters[34];
+        let t35 = parameters[39] * v4_by_2_x_arm
+            - (s4_xy_4_plus_c4_yy_4_arm + parameters[37] * v3_by_2_y_arm);
+        let s4_xz_4_plus_c4_yz_4_arm = s4_arm * parameters[33] + c4_arm * parameters[35];
+        let t36 = s4_xz_4_plus_c4_yz_4_arm + parameters[37] * v5_by_2_z_arm
+            + parameters[38] * v4_by_2_x_arm;
+        let w5_by_2_y_arm = s4_arm * s5_arm;
+        let t37 = parameters[46] * w5_by_2_y_arm - parameters[45] * minus_w5_by_2_x_arm
+            + c4_arm * parameters[47];
+        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm - s5_arm * v4_by_2_x_arm;
+        let t38 = t37 + parameters[52] * v5_by_2_z_arm - parameters[53] * v5_by_2_y_arm;
+        let t39 = parameters[48] * w5_by_2_y_arm - parameters[46] * minus_w5_by_2_x_arm
+            + c4_arm * parameters[49];
+        let v5_by_2_x_arm = c5_arm * v4_by_2_x_arm + s5_arm * v3_by_2_y_arm;
+        let t40 = t39 - parameters[51] * v5_by_2_z_arm + parameters[53] * v5_by_2_x_arm;
+        let t41 = parameters[49] * w5_by_2_y_arm - parameters[47] * minus_w5_by_2_x_arm
+            + c4_arm * parameters[50];
+        let t42 = t41 + parameters[51] * v5_by_2_y_arm - parameters[52] * v5_by_2_x_arm;
+        let t43 = t33 + w4_by_1_x_arm * t34 - w5_by_1_z_arm * t35 - c23_arm * t36
+            + w5_by_1_x_arm * t38 + w5_by_1_y_arm * t40 + w5_by_1_z_arm * t42;
+        let t44 = parameters[60] * w6_by_2_y_arm - parameters[59] * minus_w6_by_2_x_arm
+            + parameters[61] * w5_by_2_y_arm;
+        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm + c6_arm * v5_by_2_z_arm;
+        let t45 = t44 + parameters[66] * v5_by_2_y_arm
+            + parameters[67] * minus_v6_by_2_y_arm;
+        let t46 = parameters[62] * w6_by_2_y_arm - parameters[60] * minus_w6_by_2_x_arm
+            + parameters[63] * w5_by_2_y_arm;
+        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm - s6_arm * v5_by_2_z_arm;
+        let t47 = t46 - parameters[65] * v5_by_2_y_arm + parameters[67] * v6_by_2_x_arm;
+        let t48 = parameters[63] * w6_by_2_y_arm - parameters[61] * minus_w6_by_2_x_arm
+            + parameters[64] * w5_by_2_y_arm;
+        let mass_2_6 = t48 - parameters[65] * minus_v6_by_2_y_arm
+            - parameters[66] * v6_by_2_x_arm;
+        let mass_1_2 = t43 + w6_by_1_x_arm * t45 - minus_w6_by_1_y_arm * t47
+            + w5_by_1_y_arm * mass_2_6;
+        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let t49 = parameters[22] + parameters[23] * v3_by_2_y_arm
+            - parameters[24] * v3_by_2_x_arm;
+        let t50 = parameters[10] + parameters[13]
+            + v3_by_2_x_arm * (parameters[26] * v3_by_2_x_arm - parameters[24])
+            + v3_by_2_y_arm * (parameters[23] + parameters[26] * v3_by_2_y_arm) + t49;
+        let c4_mz_4_arm = c4_arm * parameters[39];
+        let s4_mz_4_arm = s4_arm * parameters[39];
+        let c4_mx_4_minus_s4_my_4_arm = c4_arm * parameters[37]
+            - s4_arm * parameters[38];
+        let t51 = v4_by_2_x_arm * (parameters[40] * v4_by_2_x_arm - c4_mz_4_arm)
+            - v5_by_2_z_arm * (s4_mz_4_arm - parameters[40] * v5_by_2_z_arm)
+            + v3_by_2_y_arm
+                * (c4_mx_4_minus_s4_my_4_arm + parameters[40] * v3_by_2_y_arm);
+        let mz_5_w5_by_2_y_minus_c4_my_5_arm = parameters[53] * w5_by_2_y_arm
+            - c4_arm * parameters[52];
+        let c4_mx_5_minus_mz_5_w5_by_2_x_arm = c4_arm * parameters[51]
+            + parameters[53] * minus_w5_by_2_x_arm;
+        let t52 = parameters[52] * minus_w5_by_2_x_arm + parameters[51] * w5_by_2_y_arm;
+        let t53 = v5_by_2_x_arm
+            * (mz_5_w5_by_2_y_minus_c4_my_5_arm + parameters[54] * v5_by_2_x_arm)
+            + v5_by_2_y_arm
+                * (c4_mx_5_minus_mz_5_w5_by_2_x_arm + parameters[54] * v5_by_2_y_arm)
+            + v5_by_2_z_arm * (parameters[54] * v5_by_2_z_arm - t52);
+        let t54 = t50 + t51 - (s4_arm * t34 + c4_arm * t35) + t53 + w5_by_2_y_arm * t40
+            - minus_w5_by_2_x_arm * t38 + c4_arm * t42;
+        let t55 = parameters[66] * w5_by_2_y_arm - parameters[67] * w6_by_2_y_arm;
+        let t56 = parameters[65] * w5_by_2_y_arm + parameters[67] * minus_w6_by_2_x_arm;
+        let t57 = parameters[65] * w6_by_2_y_arm + parameters[66] * minus_w6_by_2_x_arm;
+        let t58 = v6_by_2_x_arm * (parameters[68] * v6_by_2_x_arm - t55)
+            - minus_v6_by_2_y_arm * (t56 - parameters[68] * minus_v6_by_2_y_arm)
+            + v5_by_2_y_arm * (parameters[68] * v5_by_2_y_arm - t57);
+        let mass_2_2 = t54 + t58 + w6_by_2_y_arm * t47 - minus_w6_by_2_x_arm * t45
+            + w5_by_2_y_arm * mass_2_6;
+        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+        ::overact::guard::mass(pivot_2)?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let moment2_z_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+            - parameters[5] * bias_u2_xy_arm + parameters[8] * bias_u2_xy_arm
+            + parameters[11] * bias_a2_y_arm - parameters[12] * bias_a2_x_arm;
+        let tau_2_arm = joint_velocities[1] * parameters[14]
+            + ::overact::math::signed(parameters[15], joint_velocities[1])
+            + parameters[16];
+        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let force3_x_arm = parameters[24] * bias_u3_xy_arm
+            - parameters[23] * minus_bias_u3_xx_arm + parameters[26] * bias_a3_x_arm;
+        let force3_y_arm = parameters[23] * bias_u3_xy_arm
+            - parameters[24] * minus_bias_u3_yy_arm + parameters[26] * bias_a3_y_arm;
+        let moment3_z_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+            - parameters[17] * bias_u3_xy_arm + parameters[20] * bias_u3_xy_arm
+            + parameters[23] * bias_a3_y_arm - parameters[24] * bias_a3_x_arm;
+        let force4_z_arm = parameters[37] * bias_u4_zx_arm
+            + parameters[38] * bias_u4_zy_arm - parameters[39] * minus_bias_u3_yy_arm
+            + parameters[40] * bias_a4_z_arm;
+        let s4_moment4_x_plus_c4_moment4_y_arm = s4_arm * moment4_x_arm
+            + c4_arm * moment4_y_arm;
+        let t59 = moment2_z_arm + tau_2_arm + v3_by_2_x_arm * force3_x_arm
+            + v3_by_2_y_arm * force3_y_arm + moment3_z_arm + v4_by_2_x_arm * force4_x_arm
+            + v5_by_2_z_arm * minus_force4_y_arm + v3_by_2_y_arm * force4_z_arm
+            - s4_moment4_x_plus_c4_moment4_y_arm;
+        let t60 = w5_by_2_y_arm * moment5_y_arm - minus_w5_by_2_x_arm * moment5_x_arm
+            + c4_arm * moment5_z_arm;
+        let t61 = w6_by_2_y_arm * moment6_y_arm - minus_w6_by_2_x_arm * moment6_x_arm
+            + w5_by_2_y_arm * moment6_z_arm;
+        let force_on_u2_arm = t59 + v5_by_2_x_arm * force5_x_arm
+            + v5_by_2_y_arm * force5_y_arm + v5_by_2_z_arm * force5_z_arm + t60
+            + v6_by_2_x_arm * force6_x_arm + minus_v6_by_2_y_arm * minus_force6_y_arm
+            + v5_by_2_y_arm * force6_z_arm + t61;
+        let t62 = torques[1] - force_on_u2_arm - tau1_minus_force_on_u1_arm * l_2_1;
+        let minus_v4_by_3_x_arm = D3 * c4_arm;
+        let c4_mz_4_minus_m_4_v4_by_3_x_arm = parameters[40] * minus_v4_by_3_x_arm
+            + c4_mz_4_arm;
+        let v4_by_3_y_arm = D3 * s4_arm;
+        let s4_mz_4_plus_m_4_v4_by_3_y_arm = s4_mz_4_arm
+            + parameters[40] * v4_by_3_y_arm;
+        let t63 = s4_xx_4_plus_c4_xy_4_arm + D3 * s4_mz_4_arm;
+        let t64 = s4_xy_4_plus_c4_yy_4_arm + D3 * c4_mz_4_arm;
+        let t65 = s4_arm * t63 + c4_arm * t64;
+        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
+        let t66 = mz_5_w5_by_2_y_minus_c4_my_5_arm
+            - parameters[54] * minus_v5_by_3_x_arm;
+        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
+        let t67 = c4_mx_5_minus_mz_5_w5_by_2_x_arm + parameters[54] * v5_by_3_y_arm;
+        let t68 = t52 + parameters[54] * v4_by_3_y_arm;
+        let t69 = t39 + parameters[51] * v4_by_3_y_arm
+            - parameters[53] * minus_v5_by_3_x_arm;
+        let t70 = t37 - parameters[52] * v4_by_3_y_arm - parameters[53] * v5_by_3_y_arm;
+        let t71 = t41 + parameters[51] * v5_by_3_y_arm
+            + parameters[52] * minus_v5_by_3_x_arm;
+        let t72 = w5_by_2_y_arm * t69 - minus_w5_by_2_x_arm * t70 + c4_arm * t71;
+        let t73 = t49 + v3_by_2_y_arm * c4_mx_4_minus_s4_my_4_arm
+            - (v4_by_2_x_arm * c4_mz_4_minus_m_4_v4_by_3_x_arm
+                + v5_by_2_z_arm * s4_mz_4_plus_m_4_v4_by_3_y_arm) + t65
+            + v5_by_2_x_arm * t66 + v5_by_2_y_arm * t67 - v5_by_2_z_arm * t68 + t72;
+        let v6_by_3_x_arm = s6_arm * v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
+        let t74 = parameters[68] * v6_by_3_x_arm - t55;
+        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_arm * v4_by_3_y_arm;
+        let t75 = t56 + parameters[68] * v6_by_3_y_arm;
+        let t76 = parameters[68] * v5_by_3_y_arm - t57;
+        let t77 = t46 - parameters[65] * v5_by_3_y_arm + parameters[67] * v6_by_3_x_arm;
+        let t78 = t44 + parameters[66] * v5_by_3_y_arm - parameters[67] * v6_by_3_y_arm;
+        let mass_3_6 = t48 + parameters[65] * v6_by_3_y_arm
+            - parameters[66] * v6_by_3_x_arm;
+        let t79 = w6_by_2_y_arm * t77 - minus_w6_by_2_x_arm * t78
+            + w5_by_2_y_arm * mass_3_6;
+        let mass_2_3 = t73 + v6_by_2_x_arm * t74 - minus_v6_by_2_y_arm * t75
+            + v5_by_2_y_arm * t76 + t79;
+        let t80 = parameters[37] * v4_by_3_y_arm - s4_xz_4_plus_c4_yz_4_arm
+            + parameters[38] * minus_v4_by_3_x_arm;
+        let t81 = s23_arm * parameters[19] + c23_arm * parameters[21]
+            + w5_by_1_z_arm * t64 - w4_by_1_x_arm * t63 + c23_arm * t80
+            + w5_by_1_x_arm * t70 + w5_by_1_y_arm * t69 + w5_by_1_z_arm * t71;
+        let mass_1_3 = t81 + w6_by_1_x_arm * t78 - minus_w6_by_1_y_arm * t77
+            + w5_by_1_y_arm * mass_3_6;
+        let l_3_1 = mass_1_3 * inv_pivot_1;
+        let schur_2_3 = mass_2_3 - mass_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let t82 = parameters[22] + parameters[27]
+            + v4_by_3_y_arm * s4_mz_4_plus_m_4_v4_by_3_y_arm
+            + minus_v4_by_3_x_arm * c4_mz_4_minus_m_4_v4_by_3_x_arm + t65
+            + v5_by_3_y_arm * t67 - minus_v5_by_3_x_arm * t66 + v4_by_3_y_arm * t68
+            + t72;
+        let mass_3_3 = t82 + v6_by_3_x_arm * t74 + v6_by_3_y_arm * t75
+            + v5_by_3_y_arm * t76 + t79;
+        let pivot_3 = mass_3_3 - mass_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::mass(pivot_3)?;
+        let inv_pivot_3 = 1.0 / pivot_3;
+        let tau_3_arm = joint_velocities[2] * parameters[28]
+            + ::overact::math::signed(parameters[29], joint_velocities[2])
+            + parameters[30];
+        let t83 = moment3_z_arm + tau_3_arm
+            - (minus_v4_by_3_x_arm * force4_x_arm + v4_by_3_y_arm * minus_force4_y_arm
+                + s4_moment4_x_plus_c4_moment4_y_arm) + v5_by_3_y_arm * force5_y_arm
+            - minus_v5_by_3_x_arm * force5_x_arm - v4_by_3_y_arm * force5_z_arm + t60;
+        let force_on_u3_arm = t83 + v6_by_3_x_arm * force6_x_arm
+            - v6_by_3_y_arm * minus_force6_y_arm + v5_by_3_y_arm * force6_z_arm + t61;
+        let t84 = torques[2] - force_on_u3_arm - tau1_minus_force_on_u1_arm * l_3_1
+            - l_3_2 * t62;
+        let s5_xy_5_plus_c5_yy_5_arm = s5_arm * parameters[46] + c5_arm * parameters[48];
+        let s5_xx_5_plus_c5_xy_5_arm = s5_arm * parameters[45] + c5_arm * parameters[46];
+        let s5_xz_5_plus_c5_yz_5_arm = s5_arm * parameters[47] + c5_arm * parameters[49];
+        let t85 = w5_by_2_y_arm * s5_xy_5_plus_c5_yy_5_arm
+            - minus_w5_by_2_x_arm * s5_xx_5_plus_c5_xy_5_arm
+            + c4_arm * s5_xz_5_plus_c5_yz_5_arm;
+        let s5_my_5_minus_c5_mx_5_arm = s5_arm * parameters[52]
+            - c5_arm * parameters[51];
+        let w6_by_4_x_arm = s5_arm * c6_arm;
+        let c5_mx_6_minus_mz_6_w6_by_4_x_arm = c5_arm * parameters[65]
+            - parameters[67] * w6_by_4_x_arm;
+        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
+        let c5_my_6_minus_mz_6_w6_by_4_y_arm = c5_arm * parameters[66]
+            + parameters[67] * minus_w6_by_4_y_arm;
+        let t86 = parameters[65] * minus_w6_by_4_y_arm + parameters[66] * w6_by_4_x_arm;
+        let t87 = parameters[60] * w6_by_4_x_arm - parameters[62] * minus_w6_by_4_y_arm
+            + c5_arm * parameters[63];
+        let t88 = parameters[59] * w6_by_4_x_arm - parameters[60] * minus_w6_by_4_y_arm
+            + c5_arm * parameters[61];
+        let mass_4_6 = parameters[61] * w6_by_4_x_arm
+            - parameters[63] * minus_w6_by_4_y_arm + c5_arm * parameters[64];
+        let t89 = w6_by_2_y_arm * t87 - minus_w6_by_2_x_arm * t88
+            + w5_by_2_y_arm * mass_4_6;
+        let mass_3_4 = t80 + t85
+            - (parameters[53] * minus_v4_by_3_x_arm
+                + v4_by_3_y_arm * s5_my_5_minus_c5_mx_5_arm)
+            + v6_by_3_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm
+            - v6_by_3_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm + v5_by_3_y_arm * t86
+            + t89;
+        let t90 = t21 + v5_by_1_z_arm * s5_my_5_minus_c5_mx_5_arm
+            - minus_v4_by_1_x_arm * parameters[53]
+            + w5_by_1_x_arm * s5_xx_5_plus_c5_xy_5_arm
+            + w5_by_1_y_arm * s5_xy_5_plus_c5_yy_5_arm
+            + w5_by_1_z_arm * s5_xz_5_plus_c5_yz_5_arm;
+        let t91 = v6_by_1_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm
+            + minus_v6_by_1_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm
+            + v5_by_1_y_arm * t86 + w6_by_1_x_arm * t88 - minus_w6_by_1_y_arm * t87
+            + w5_by_1_y_arm * mass_4_6;
+        let mass_1_4 = t90 + t91;
+        let l_4_1 = mass_1_4 * inv_pivot_1;
+        let mass_2_4 = parameters[53] * v4_by_2_x_arm
+            + v5_by_2_z_arm * s5_my_5_minus_c5_mx_5_arm + t85 - t36 + v5_by_2_y_arm * t86
+            - (v6_by_2_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm
+                + minus_v6_by_2_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm) + t89;
+        let schur_2_4 = mass_2_4 - mass_1_2 * l_4_1;
+        let l_4_2 = schur_2_4 * inv_pivot_2;
+        let schur_3_4 = mass_3_4 - mass_1_3 * l_4_1 - schur_2_3 * l_4_2;
+        let l_4_3 = schur_3_4 * inv_pivot_3;
+        let mass_4_4 = parameters[36] + parameters[41]
+            + s5_arm * s5_xx_5_plus_c5_xy_5_arm + c5_arm * s5_xy_5_plus_c5_yy_5_arm
+            + w6_by_4_x_arm * t88 - minus_w6_by_4_y_arm * t87 + c5_arm * mass_4_6;
+        let pivot_4 = mass_4_4 - mass_1_4 * l_4_1 - schur_2_4 * l_4_2
+            - schur_3_4 * l_4_3;
+        ::overact::guard::mass(pivot_4)?;
+        let inv_pivot_4 = 1.0 / pivot_4;
+        let tau_4_arm = joint_velocities[3] * parameters[42]
+            + ::overact::math::signed(parameters[43], joint_velocities[3])
+            + parameters[44];
+        let force_on_u4_arm = moment4_z_arm + tau_4_arm + s5_arm * moment5_x_arm
+            + c5_arm * moment5_y_arm + w6_by_4_x_arm * moment6_x_arm
+            - minus_w6_by_4_y_arm * moment6_y_arm + c5_arm * moment6_z_arm;
+        let t92 = torques[3] - force_on_u4_arm - tau1_minus_force_on_u1_arm * l_4_1
+            - l_4_2 * t62 - l_4_3 * t84;
+        let s6_xy_6_plus_c6_yy_6_arm = s6_arm * parameters[60] + c6_arm * parameters[62];
+        let s6_xx_6_plus_c6_xy_6_arm = s6_arm * parameters[59] + c6_arm * parameters[60];
+        let minus_mass_5_6 = s6_arm * parameters[61] + c6_arm * parameters[63];
+        let mass_4_5 = s5_xz_5_plus_c5_yz_5_arm
+            + minus_w6_by_4_y_arm * s6_xy_6_plus_c6_yy_6_arm
+            - w6_by_4_x_arm * s6_xx_6_plus_c6_xy_6_arm - c5_arm * minus_mass_5_6;
+        let c6_mx_6_minus_s6_my_6_arm = c6_arm * parameters[65]
+            - s6_arm * parameters[66];
+        let mass_1_5 = t27 + minus_v5_by_1_x_arm * parameters[67]
+            + v5_by_1_y_arm * c6_mx_6_minus_s6_my_6_arm
+            + minus_w6_by_1_y_arm * s6_xy_6_plus_c6_yy_6_arm
+            - w6_by_1_x_arm * s6_xx_6_plus_c6_xy_6_arm - w5_by_1_y_arm * minus_mass_5_6;
+        let l_5_1 = mass_1_5 * inv_pivot_1;
+        let t93 = minus_w6_by_2_x_arm * s6_xx_6_plus_c6_xy_6_arm
+            - w6_by_2_y_arm * s6_xy_6_plus_c6_yy_6_arm - w5_by_2_y_arm * minus_mass_5_6;
+        let mass_2_5 = t42 + v5_by_2_y_arm * c6_mx_6_minus_s6_my_6_arm
+            - parameters[67] * v5_by_2_x_arm + t93;
+        let schur_2_5 = mass_2_5 - mass_1_2 * l_5_1;
+        let l_5_2 = schur_2_5 * inv_pivot_2;
+        let mass_3_5 = t71 + parameters[67] * minus_v5_by_3_x_arm
+            + v5_by_3_y_arm * c6_mx_6_minus_s6_my_6_arm + t93;
+        let schur_3_5 = mass_3_5 - mass_1_3 * l_5_1 - schur_2_3 * l_5_2;
+        let l_5_3 = schur_3_5 * inv_pivot_3;
+        let schur_4_5 = mass_4_5 - mass_1_4 * l_5_1 - schur_2_4 * l_5_2
+            - schur_3_4 * l_5_3;
+        let l_5_4 = schur_4_5 * inv_pivot_4;
+        let mass_5_5 = parameters[50] + parameters[55]
+            + s6_arm * s6_xx_6_plus_c6_xy_6_arm + c6_arm * s6_xy_6_plus_c6_yy_6_arm;
+        let pivot_5 = mass_5_5 - mass_1_5 * l_5_1 - schur_2_5 * l_5_2 - schur_3_5 * l_5_3
+            - schur_4_5 * l_5_4;
+        ::overact::guard::mass(pivot_5)?;
+        let inv_pivot_5 = 1.0 / pivot_5;
+        let tau_5_arm = joint_velocities[4] * parameters[56]
+            + ::overact::math::signed(parameters[57], joint_velocities[4])
+            + parameters[58];
+        let force_on_u5_arm = moment5_z_arm + tau_5_arm
+            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let t94 = torques[4] - force_on_u5_arm - tau1_minus_force_on_u1_arm * l_5_1
+            - l_5_2 * t62 - l_5_3 * t84 - l_5_4 * t92;
+        let l_6_1 = mass_1_6 * inv_pivot_1;
+        let schur_2_6 = mass_2_6 - mass_1_2 * l_6_1;
+        let l_6_2 = schur_2_6 * inv_pivot_2;
+        let schur_3_6 = mass_3_6 - mass_1_3 * l_6_1 - schur_2_3 * l_6_2;
+        let l_6_3 = schur_3_6 * inv_pivot_3;
+        let schur_4_6 = mass_4_6 - mass_1_4 * l_6_1 - schur_2_4 * l_6_2
+            - schur_3_4 * l_6_3;
+        let l_6_4 = schur_4_6 * inv_pivot_4;
+        let minus_schur_5_6 = minus_mass_5_6 + mass_1_5 * l_6_1 + schur_2_5 * l_6_2
+            + schur_3_5 * l_6_3 + schur_4_5 * l_6_4;
+        let minus_l_6_5 = minus_schur_5_6 * inv_pivot_5;
+        let tau_6_arm = joint_velocities[5] * parameters[70]
+            + ::overact::math::signed(parameters[71], joint_velocities[5])
+            + parameters[72];
+        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+        let t95 = torques[5] - force_on_u6_arm - tau1_minus_force_on_u1_arm * l_6_1
+            - l_6_2 * t62 - l_6_3 * t84 - l_6_4 * t92 + minus_l_6_5 * t94;
+        let mass_6_6 = parameters[64] + parameters[69];
+        let pivot_6 = mass_6_6 - mass_1_6 * l_6_1 - schur_2_6 * l_6_2 - schur_3_6 * l_6_3
+            - schur_4_6 * l_6_4 - minus_schur_5_6 * minus_l_6_5;
+        ::overact::guard::mass(pivot_6)?;
+        let t96 = t95 / pivot_6;
+        let t97 = inv_pivot_5 * t94 + minus_l_6_5 * t96;
+        let t98 = inv_pivot_4 * t92 - l_5_4 * t97 - l_6_4 * t96;
+        let t99 = inv_pivot_3 * t84 - l_4_3 * t98 - l_5_3 * t97 - l_6_3 * t96;
+        let t100 = inv_pivot_2 * t62 - l_3_2 * t99 - l_4_2 * t98 - l_5_2 * t97
+            - l_6_2 * t96;
+        let t101 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t100 - l_3_1 * t99
+            - l_4_1 * t98 - l_5_1 * t97 - l_6_1 * t96;
+        ::core::result::Result::Ok([t101, t100, t99, t98, t97, t96])
+    }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
     /// From the joints' positions and rates.
@@ -2529,6 +3196,15 @@ impl ::overact::Model for Rx90 {
             ::overact::Function::Bias => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::ProjectTorques => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?

@@ -5362,6 +5362,305 @@ impl ThreeLegPoint {
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
         ::core::result::Result::Ok([t4, t5])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 438 operations (172 additions, 258 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 445 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 31],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("torques", torques), ("parameters", parameters),
+            ],
+        )?;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg2
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        // --- leg2
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let moment1_z_leg2 = parameters[10] * bias_rate_dot_1_leg2;
+        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
+            + parameters[12] * rate_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
+        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let minus_bias_rate_dot_2_leg2 = k_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
+            - parameters[16] * rate_2_squared_leg2
+            + parameters[18] * minus_bias_a_on_f1_leg2;
+        let bias_a2_y_leg2 = L_1 * minus_bias_rate_dot_2_leg2;
+        let t1 = parameters[16] * minus_bias_rate_dot_2_leg2;
+        let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
+        let force2_y_leg2 = parameters[18] * bias_a2_y_leg2
+            - (t1 + my_2_leg2_rate_2_squared_leg2);
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
+            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        let moment2_z_leg2 = L_1 * t1 - parameters[15] * minus_bias_rate_dot_2_leg2
+            - L_1 * my_2_leg2_rate_2_squared_leg2;
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+            + minus_g2_vy_leg1 * twist[1];
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1
+            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+        let moment1_z_leg1 = parameters[0] * bias_rate_dot_1_leg1;
+        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
+            + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let minus_bias_rate_dot_2_leg1 = k_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let bias_a2_x_leg1 = L_1 * rate_2_squared_leg1;
+        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1 + parameters[8] * bias_a2_x_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
+        let bias_a2_y_leg1 = L_1 * minus_bias_rate_dot_2_leg1;
+        let t2 = parameters[6] * minus_bias_rate_dot_2_leg1;
+        let my_2_leg1_rate_2_squared_leg1 = parameters[7] * rate_2_squared_leg1;
+        let force2_y_leg1 = parameters[8] * bias_a2_y_leg1
+            - (t2 + my_2_leg1_rate_2_squared_leg1);
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
+            + minus_tau_2_leg1;
+        let moment2_z_leg1 = L_1 * t2 - parameters[5] * minus_bias_rate_dot_2_leg1
+            - L_1 * my_2_leg1_rate_2_squared_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+        // --- leg3
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let moment1_z_leg3 = parameters[20] * bias_rate_dot_1_leg3;
+        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
+            + parameters[22] * rate_1_leg3
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
+        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let minus_bias_rate_dot_2_leg3 = k_leg3
+            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
+            - parameters[26] * rate_2_squared_leg3 + parameters[28] * bias_a_on_f1_leg3;
+        let bias_a2_y_leg3 = L_1 * minus_bias_rate_dot_2_leg3;
+        let t3 = parameters[26] * minus_bias_rate_dot_2_leg3;
+        let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
+        let force2_y_leg3 = parameters[28] * bias_a2_y_leg3
+            - (t3 + my_2_leg3_rate_2_squared_leg3);
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+            - tau_2_leg3;
+        let moment2_z_leg3 = L_1 * t3 - parameters[25] * minus_bias_rate_dot_2_leg3
+            - L_1 * my_2_leg3_rate_2_squared_leg3;
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let t5 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
+            + g1_vx_leg3 * torques[2] - t4;
+        let g1_vx_v2_by_1_y_leg2 = g1_vx_leg2 * v2_by_1_y_leg2;
+        let t6 = g1_vx_leg2 * parameters[11] + g1_vx_leg2 * parameters[10]
+            + v2_by_1_x_leg2
+                * (minus_g2_vx_leg2 * parameters[17] + minus_fk1_x_leg2 * parameters[18])
+            - v2_by_1_y_leg2
+                * (minus_g2_vx_leg2 * parameters[16]
+                    - parameters[18] * g1_vx_v2_by_1_y_leg2);
+        let s12_leg1 = INV_L_1 * l2_y_leg1;
+        let minus_g1_vx_v2_by_1_y_leg1 = minus_g1_vx_leg1 * v2_by_1_y_leg1;
+        let t7 = v2_by_1_x_leg1
+            * (minus_g2_vx_leg1 * parameters[7] - s12_leg1 * parameters[8])
+            - v2_by_1_y_leg1
+                * (minus_g2_vx_leg1 * parameters[6]
+                    + parameters[8] * minus_g1_vx_v2_by_1_y_leg1)
+            - (minus_g1_vx_leg1 * parameters[1] + minus_g1_vx_leg1 * parameters[0]);
+        let t8 = g1_vx_leg2 * t6
+            + minus_g2_vx_leg2
+                * (minus_fk1_x_leg2 * parameters[17] + minus_g2_vx_leg2 * parameters[15]
+                    - parameters[16] * g1_vx_v2_by_1_y_leg2)
+            - (minus_g1_vx_leg1 * t7
+                + minus_g2_vx_leg1
+                    * (s12_leg1 * parameters[7]
+                        - (minus_g2_vx_leg1 * parameters[5]
+                            + parameters[6] * minus_g1_vx_v2_by_1_y_leg1)));
+        let g1_vx_v2_by_1_y_leg3 = g1_vx_leg3 * v2_by_1_y_leg3;
+        let t9 = g1_vx_leg3 * parameters[20] + g1_vx_leg3 * parameters[21]
+            + v2_by_1_x_leg3
+                * (fk1_x_leg3 * parameters[28] + minus_g2_vx_leg3 * parameters[27])
+            + v2_by_1_y_leg3
+                * (parameters[28] * g1_vx_v2_by_1_y_leg3
+                    - minus_g2_vx_leg3 * parameters[26]);
+        let mass_1_1 = t8 + g1_vx_leg3 * t9
+            - minus_g2_vx_leg3
+                * (parameters[26] * g1_vx_v2_by_1_y_leg3
+                    - minus_g2_vx_leg3 * parameters[25] - fk1_x_leg3 * parameters[27])
+            + parameters[30];
+        ::overact::guard::mass(mass_1_1)?;
+        let inv_pivot_1 = 1.0 / mass_1_1;
+        let minus_g1_vy_v2_by_1_y_leg3 = minus_g1_vy_leg3 * v2_by_1_y_leg3;
+        let t10 = v2_by_1_y_leg3
+            * (g2_vy_leg3 * parameters[26] - parameters[28] * minus_g1_vy_v2_by_1_y_leg3)
+            - v2_by_1_x_leg3
+                * (minus_fk1_y_leg3 * parameters[28] + g2_vy_leg3 * parameters[27])
+            - (minus_g1_vy_leg3 * parameters[20] + minus_g1_vy_leg3 * parameters[21]);
+        let t11 = g2_vy_leg3 * parameters[25]
+            - parameters[26] * minus_g1_vy_v2_by_1_y_leg3
+            + minus_fk1_y_leg3 * parameters[27];
+        let minus_g1_vy_v2_by_1_y_leg2 = minus_g1_vy_leg2 * v2_by_1_y_leg2;
+        let t12 = minus_g1_vy_leg2 * parameters[11] + minus_g1_vy_leg2 * parameters[10]
+            + v2_by_1_x_leg2
+                * (g2_vy_leg2 * parameters[17] + fk1_y_leg2 * parameters[18])
+            + v2_by_1_y_leg2
+                * (parameters[18] * minus_g1_vy_v2_by_1_y_leg2
+                    - g2_vy_leg2 * parameters[16]);
+        let t13 = fk1_y_leg2 * parameters[17]
+            - (parameters[16] * minus_g1_vy_v2_by_1_y_leg2
+                - g2_vy_leg2 * parameters[15]);
+        let c12_leg1 = INV_L_1 * l2_x_leg1;
+        let g1_vy_v2_by_1_y_leg1 = g1_vy_leg1 * v2_by_1_y_leg1;
+        let t14 = g1_vy_leg1 * parameters[1] + g1_vy_leg1 * parameters[0]
+            + v2_by_1_x_leg1
+                * (minus_g2_vy_leg1 * parameters[7] + c12_leg1 * parameters[8])
+            - v2_by_1_y_leg1
+                * (minus_g2_vy_leg1 * parameters[6]
+                    - parameters[8] * g1_vy_v2_by_1_y_leg1);
+        let t15 = c12_leg1 * parameters[7] + minus_g2_vy_leg1 * parameters[5]
+            - parameters[6] * g1_vy_v2_by_1_y_leg1;
+        let mass_1_2 = g1_vx_leg3 * t10 - minus_g2_vx_leg3 * t11
+            - (g1_vx_leg2 * t12 + minus_g2_vx_leg2 * t13 + minus_g1_vx_leg1 * t14
+                - minus_g2_vx_leg1 * t15);
+        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let t16 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let t17 = g1_vy_leg1 * t14 + minus_g2_vy_leg1 * t15 + g2_vy_leg2 * t13
+            + minus_g1_vy_leg2 * t12 + g2_vy_leg3 * t11 - minus_g1_vy_leg3 * t10;
+        let mass_2_2 = t17 + parameters[30];
+        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+        ::overact::guard::mass(pivot_2)?;
+        let t18 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            - minus_g1_vy_leg3 * torques[2] - t16 - t5 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t5 * inv_pivot_1 - l_2_1 * t18, t18])
+    }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
@@ -6074,6 +6373,15 @@ impl ::overact::Model for ThreeLegPoint {
             ::overact::Function::Bias => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
             }
             ::overact::Function::InverseDynamicsPreloaded => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
