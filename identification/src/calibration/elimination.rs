@@ -202,15 +202,7 @@ impl Normal {
         // Chunks of fixed length in their order: the same sums on every machine.
         let parts: Vec<Self> = equations
             .par_chunks(CHUNK)
-            .map(|samples| {
-                let mut sum = zero();
-                for one in samples {
-                    sum.matrix.gemm_tr(1.0, &one.columns, &one.columns, 1.0);
-                    sum.right.gemv_tr(1.0, &one.columns, &one.residual, 1.0);
-                    sum.square += one.residual.norm_squared();
-                }
-                sum
-            })
+            .map(|samples| Self::of_chunk(samples, parameters))
             .collect();
         parts.into_iter().fold(zero(), |mut sum, part| {
             sum.matrix += part.matrix;
@@ -218,6 +210,26 @@ impl Normal {
             sum.square += part.square;
             sum
         })
+    }
+
+    /// Those of some samples, whose equations stand side by side: one product of two large matrices is faster
+    /// than many of small ones.
+    fn of_chunk(samples: &[Eliminated], parameters: usize) -> Self {
+        let count = samples.iter().map(|one| one.residual.len()).sum();
+        let mut transposed = DMatrix::zeros(parameters, count);
+        let mut residual = DVector::zeros(count);
+        let mut at = 0;
+        for one in samples {
+            let n = one.residual.len();
+            one.columns.transpose_to(&mut transposed.columns_mut(at, n));
+            residual.rows_mut(at, n).copy_from(&one.residual);
+            at += n;
+        }
+        Self {
+            matrix: &transposed * transposed.transpose(),
+            right: &transposed * &residual,
+            square: residual.norm_squared(),
+        }
     }
 }
 

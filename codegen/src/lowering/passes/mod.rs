@@ -24,6 +24,7 @@ mod own_pairs;
 mod reciprocals;
 mod repair;
 mod replacements;
+mod requests;
 mod selections;
 mod shared_pairs;
 mod signs;

@@ -3,7 +3,7 @@
 //! t = c + m asks for m = t - c, and the pair of t and c has that value. Nothing is saved by it, but a third
 //! of all pairs are such ones: they are known before a value is looked up.
 
-use super::shared_pairs::{Form, Request};
+use super::requests::{Form, Request};
 
 /// What is done with a pair, as a bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

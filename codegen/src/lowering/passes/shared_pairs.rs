@@ -6,8 +6,9 @@
 //! have little to do with another leg's; a small function is searched as a whole.
 
 use super::own_pairs::{Kind, OwnPairs};
+use super::requests::{Form, Request, requests};
 use super::single_replacements::{LOSS, fits};
-use crate::cas::field::{ByValue, Element, canonical};
+use crate::cas::field::{Element, canonical};
 use crate::cas::filter::Filter;
 #[cfg(test)]
 use crate::lowering::SearchLimits;
@@ -15,26 +16,6 @@ use crate::lowering::dag::{Dag, Definition, Dominators, Edge};
 
 /// More nodes than this are searched without pairs: the table of pairs grows with the square.
 const MOST: usize = 2500;
-
-/// How a target is made of a node that is there and the value it asks for.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Form {
-    Plus,
-    Times,
-    Over,
-}
-
-/// A target that asks for a value.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Request {
-    pub(super) target: u32,
-    pub(super) with: Edge,
-    pub(super) form: Form,
-    /// Whether the negative of the value is asked for.
-    negative: bool,
-    /// The request for the same value before this one.
-    pub(super) next: Option<u32>,
-}
 
 /// A new node and the bound of what it can save.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -115,50 +96,6 @@ fn improve_group(dag: &mut Dag, (own, all): &(Vec<usize>, Vec<usize>)) -> i32 {
     hits.iter()
         .map(|hit| apply(dag, &requests, hit).unwrap_or(0))
         .sum()
-}
-
-/// What the targets ask for, but for what could save them nothing.
-fn requests(
-    dag: &Dag,
-    tree: &Dominators,
-    targets: &[usize],
-    all: &[usize],
-) -> (Vec<Request>, ByValue<u32>) {
-    let divisors = dag.divisors();
-    let inverse = |&node: &usize| dag.value(Edge::to(node)).inverse();
-    let inverses: Vec<Element> = all.iter().map(inverse).collect();
-    let mut requests: Vec<Request> = Vec::new();
-    let mut heads: ByValue<u32> = ByValue::default();
-    for &target in targets {
-        let value = dag.value(Edge::to(target));
-        let mut ask = |wanted, with, form| {
-            let ([key], negative) = canonical([wanted]);
-            let number = requests.len() as u32;
-            let next = heads.insert(key, number);
-            requests.push(Request {
-                target: target as u32,
-                with,
-                form,
-                negative,
-                next,
-            });
-        };
-        let others = all.iter().zip(&inverses);
-        for (&node, &inverse) in others.filter(|(n, _)| **n != target && dag.is_live(**n)) {
-            if tree.cone(target) - tree.shared(target, node) <= 1 {
-                continue;
-            }
-            let with = Edge::to(node);
-            let of = dag.value(with);
-            ask(value + -of, with, Form::Plus);
-            ask(value + of, with.times(true), Form::Plus);
-            ask(value * inverse, with, Form::Times);
-            if divisors.binary_search(&node).is_ok() {
-                ask(value * of, with, Form::Over);
-            }
-        }
-    }
-    (requests, heads)
 }
 
 /// What the value could save at most: of each target's cone what the new form does not need itself, but
