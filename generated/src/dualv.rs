@@ -14,7 +14,7 @@
 /// | `c_phi` | cos φ | of the platform's angle |
 /// | `s_phi` | sin φ | of the platform's angle |
 /// | `c12_leg1` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
-/// | `s12_leg1` | sin q | sine of a joint angle, named as its cosine is |
+/// | `s2_leg2` | sin q | sine of a joint angle, named as its cosine is |
 /// | `p_x_leg3` | p | from the platform's origin to the leg's end, base axes, m |
 /// | `d_x_leg1` | D | from the leg's first joint to its end, in the leg's plane, m |
 /// | `rho_squared_leg1` | ρ² | D · D, m² |
@@ -41,9 +41,9 @@
 /// | `bias_a_on_f1_leg1` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
 /// | `a_x_platform` | Rᵀ a | acceleration of the platform's origin in its own axes |
 /// | `a2_x_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
-/// | `v2_by_1_x_leg2` | ∂V_j/∂u_i | partial velocity of the origin of body j |
+/// | `v2_by_1_y_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
-/// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
+/// | `moment2_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_1_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `bias_a2_y_leg1` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
@@ -7763,7 +7763,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 583 operations (257 additions, 315 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 597 intermediates.
+    /// 573 operations (248 additions, 314 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 587 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7781,8 +7781,12 @@ impl DualV {
         )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -7833,32 +7837,31 @@ impl DualV {
         let t2_leg1 = 0.5 * t1_leg1;
         let rate_dot_1_leg1 = k1_leg1
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let moment1_z_leg1 = parameters[0] * rate_dot_1_leg1;
-        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
         let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 + parameters[8] * a2_x_leg1;
-        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
-        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
-            + rate_dot_1_leg1 * v2_by_1_y_leg1;
-        let force2_y_leg1 = parameters[8] * a2_y_leg1
-            - (parameters[6] * minus_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1);
+            - parameters[6] * rate_2_squared_leg1;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
+            + parameters[7] * rate_2_squared_leg1;
+        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (parameters[9] * minus_qd_2_leg1
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            - tau_2_leg1;
-        let moment2_z_leg1 = parameters[6] * a2_y_leg1
-            - parameters[5] * minus_rate_dot_2_leg1 - parameters[7] * a2_x_leg1;
+        let force_on_u1_leg1 = rate_dot_1_leg1
+            * (parameters[0] + L_AB_SQUARED * parameters[8])
+            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + tau_1_leg1 - tau_2_leg1;
+        let a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
+            + 1.7857142857142858 * (t1_leg1 * rate_dot_1_leg1);
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1 - parameters[7] * a2_x_leg1
+            - parameters[5] * minus_rate_dot_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         let tau_3_leg1 = parameters[12] * qd_3_leg1
             + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
@@ -7891,17 +7894,15 @@ impl DualV {
         let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
         let t2_leg2 = 0.5 * t1_leg2;
         let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
-        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg2;
         let minus_rate_dot_1_leg2 = k1_leg2
             * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t2_leg2);
-        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
-        let minus_a2_y_leg2 = rate_1_squared_leg2 * minus_v2_by_1_x_leg2
-            + minus_rate_dot_1_leg2 * v2_by_1_y_leg2;
+        let minus_a2_y_leg2 = INV_L_AB * (det_leg2 * rate_1_squared_leg2)
+            + 1.7857142857142858 * (t1_leg2 * minus_rate_dot_1_leg2);
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
         let moment2_z_leg2 = parameters[20] * rate_dot_2_leg2
-            - parameters[21] * minus_a2_y_leg2 - parameters[22] * a2_x_leg2;
+            - (parameters[21] * minus_a2_y_leg2 + parameters[22] * a2_x_leg2);
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         let tau_2_leg2 = parameters[24] * qd_2_leg2
             + ::overact::math::signed(parameters[25], qd_2_leg2) + parameters[26];
@@ -7909,18 +7910,20 @@ impl DualV {
         let tau_3_leg2 = parameters[27] * qd_3_leg2
             + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
+            + parameters[22] * rate_dot_2_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
+            - parameters[22] * rate_2_squared_leg2;
         let tau_1_leg2 = parameters[19]
             - (parameters[16] * minus_rate_dot_1_leg2
                 + parameters[17] * minus_rate_1_leg2
                 + ::overact::math::signed(parameters[18], minus_rate_1_leg2));
-        let minus_moment1_z_leg2 = parameters[15] * minus_rate_dot_1_leg2;
-        let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
-            - parameters[22] * rate_2_squared_leg2 - parameters[23] * minus_a2_y_leg2;
-        let force2_x_leg2 = parameters[23] * a2_x_leg2
-            - (parameters[21] * rate_2_squared_leg2 + parameters[22] * rate_dot_2_leg2);
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + v2_by_1_y_leg2 * force2_y_leg2 - minus_v2_by_1_x_leg2 * force2_x_leg2
-            - tau_2_leg2;
+        let force_on_u1_leg2 = L_AB
+            * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
+            - minus_rate_dot_1_leg2 * (parameters[15] + L_AB_SQUARED * parameters[23])
+            + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
@@ -7958,37 +7961,36 @@ impl DualV {
         let t2_leg3 = 0.5 * t1_leg3;
         let rate_dot_1_leg3 = k1_leg3
             * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
-        let moment1_z_leg3 = parameters[30] * rate_dot_1_leg3;
-        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
-        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
             * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
         let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
-            - parameters[36] * rate_2_squared_leg3 + parameters[38] * a2_x_leg3;
-        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
-        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
-            + rate_dot_1_leg3 * v2_by_1_y_leg3;
-        let force2_y_leg3 = parameters[38] * a2_y_leg3
-            - (parameters[36] * minus_rate_dot_2_leg3
-                + parameters[37] * rate_2_squared_leg3);
+            - parameters[36] * rate_2_squared_leg3;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
+            + parameters[37] * rate_2_squared_leg3;
+        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (parameters[39] * minus_qd_2_leg3
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
-        let moment2_z_leg3 = parameters[36] * a2_y_leg3
-            - parameters[35] * minus_rate_dot_2_leg3 - parameters[37] * a2_x_leg3;
+        let force_on_u1_leg3 = rate_dot_1_leg3
+            * (parameters[30] + L_AB_SQUARED * parameters[38])
+            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + tau_1_leg3 - tau_2_leg3;
+        let a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
+            + 1.7857142857142858 * (t1_leg3 * rate_dot_1_leg3);
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let moment2_z_leg3 = parameters[36] * a2_y_leg3 - parameters[37] * a2_x_leg3
+            - parameters[35] * minus_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -8019,17 +8021,15 @@ impl DualV {
         let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
         let t2_leg4 = 0.5 * t1_leg4;
         let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
-        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
             + L_AB_SQUARED * rate_2_squared_leg4;
         let minus_rate_dot_1_leg4 = k1_leg4
             * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t2_leg4);
-        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
-        let minus_a2_y_leg4 = rate_1_squared_leg4 * minus_v2_by_1_x_leg4
-            + minus_rate_dot_1_leg4 * v2_by_1_y_leg4;
+        let minus_a2_y_leg4 = INV_L_AB * (det_leg4 * rate_1_squared_leg4)
+            + 1.7857142857142858 * (t1_leg4 * minus_rate_dot_1_leg4);
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
         let moment2_z_leg4 = parameters[50] * rate_dot_2_leg4
-            - parameters[51] * minus_a2_y_leg4 - parameters[52] * a2_x_leg4;
+            - (parameters[51] * minus_a2_y_leg4 + parameters[52] * a2_x_leg4);
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let tau_2_leg4 = parameters[54] * qd_2_leg4
             + ::overact::math::signed(parameters[55], qd_2_leg4) + parameters[56];
@@ -8037,26 +8037,30 @@ impl DualV {
         let tau_3_leg4 = parameters[57] * qd_3_leg4
             + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
+            + parameters[52] * rate_dot_2_leg4;
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
+            - parameters[52] * rate_2_squared_leg4;
         let tau_1_leg4 = parameters[49]
             - (parameters[46] * minus_rate_dot_1_leg4
                 + parameters[47] * minus_rate_1_leg4
                 + ::overact::math::signed(parameters[48], minus_rate_1_leg4));
-        let minus_moment1_z_leg4 = parameters[45] * minus_rate_dot_1_leg4;
-        let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
-            - parameters[52] * rate_2_squared_leg4 - parameters[53] * minus_a2_y_leg4;
-        let force2_x_leg4 = parameters[53] * a2_x_leg4
-            - (parameters[51] * rate_2_squared_leg4 + parameters[52] * rate_dot_2_leg4);
-        let force_on_u1_leg4 = tau_1_leg4 - minus_moment1_z_leg4
-            + v2_by_1_y_leg4 * force2_y_leg4 - minus_v2_by_1_x_leg4 * force2_x_leg4
-            - tau_2_leg4;
+        let force_on_u1_leg4 = L_AB
+            * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
+            - minus_rate_dot_1_leg4 * (parameters[45] + L_AB_SQUARED * parameters[53])
+            + tau_1_leg4 - tau_2_leg4;
+        let mass_platform = parameters[63] + parameters[67];
         let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let first_y_platform = parameters[62] + parameters[66];
         let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-        let force_x_platform = parameters[62] * inv_r_p_a_arm_x_leg1
-            - parameters[61] * inv_r_p_a_arm_y_leg3 + acceleration[0] * parameters[63]
-            - parameters[65] * inv_r_p_a_arm_y_leg3
-            + parameters[66] * inv_r_p_a_arm_x_leg1 + acceleration[0] * parameters[67];
-        let t2 = t1 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
-            + force_x_platform;
+        let first_x_platform = parameters[61] + parameters[65];
+        let force_x_platform = acceleration[0] * mass_platform
+            + inv_r_p_a_arm_x_leg1 * first_y_platform
+            - inv_r_p_a_arm_y_leg3 * first_x_platform;
+        let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
+            - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
         ::overact::guard::platform(
@@ -8077,16 +8081,15 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let inv_pivot_2 = 1.0 / pivot_2;
-        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = acceleration[1] * parameters[63]
-            - (parameters[61] * inv_r_p_a_arm_x_leg1
-                + parameters[62] * inv_r_p_a_arm_y_leg3)
-            - parameters[65] * inv_r_p_a_arm_x_leg1
-            - parameters[66] * inv_r_p_a_arm_y_leg3 + acceleration[1] * parameters[67];
-        let t4 = t3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
-            + force_y_platform - t2 * l_2_1;
+        let force_y_platform = acceleration[1] * mass_platform
+            - (inv_r_p_a_arm_x_leg1 * first_x_platform
+                + inv_r_p_a_arm_y_leg3 * first_y_platform);
+        let t1 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
+            - t1_platform * l_2_1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -8103,20 +8106,20 @@ impl DualV {
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
             + tau_3_leg3;
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let moment_z_platform = acceleration[2] * parameters[60]
-            + parameters[61] * a_y_platform - parameters[62] * a_x_platform
-            + acceleration[2] * parameters[64] + parameters[65] * a_y_platform
-            - parameters[66] * a_x_platform;
-        let t6 = t5 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
-            + tau_3_leg4 + moment_z_platform - t2 * l_3_1 - l_3_2 * t4;
+        let inertia_zz_platform = parameters[60] + parameters[64];
+        let moment_z_platform = acceleration[1]
+            * (c_phi * first_x_platform - s_phi * first_y_platform)
+            - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
+            + acceleration[2] * inertia_zz_platform;
+        let t2 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
+            - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
+            - t1_platform * l_3_1 - l_3_2 * t1;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
@@ -8125,14 +8128,14 @@ impl DualV {
             0.3076928490286828,
             ::overact::ActuatorGroup::All,
         )?;
-        let t7 = t6 / pivot_3;
-        let t8 = inv_pivot_2 * t4 - l_3_2 * t7;
-        let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
+        let t3 = t2 / pivot_3;
+        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
+        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t9 + g1_vy_leg1 * t8 - minus_g1_wz_leg1 * t7,
-            g1_wz_leg2 * t7 - (minus_g1_vx_leg2 * t9 + minus_g1_vy_leg2 * t8),
-            g1_vx_leg3 * t9 + g1_vy_leg3 * t8 + g1_wz_leg3 * t7,
-            -(minus_g1_vx_leg4 * t9 + minus_g1_vy_leg4 * t8 + minus_g1_wz_leg4 * t7),
+            g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
+            g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
+            g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
+            -(minus_g1_vx_leg4 * t5 + minus_g1_vy_leg4 * t4 + minus_g1_wz_leg4 * t3),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -8146,7 +8149,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 533 operations (227 additions, 299 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 12 signs, 559 intermediates.
+    /// 511 operations (218 additions, 286 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 12 signs, 537 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8169,6 +8172,8 @@ impl DualV {
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
         /// l_ab = l_bc
         const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
         const R_P: ::core::primitive::f64 = 0.11;
         // --- sines and cosines
@@ -8210,31 +8215,29 @@ impl DualV {
         let v2_by_1_y_leg1 = L_AB * c2_leg1;
         let rate_dot_1_leg1 = k1_leg1
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
-        let moment1_z_leg1 = parameters[0] * rate_dot_1_leg1;
-        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let v2_by_1_x_leg1 = L_AB * s2_leg1;
         let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
         let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
             + l_ab_rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
         let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 + parameters[8] * minus_a_on_f1_leg1;
-        let a2_y_leg1 = s2_leg1 * l_ab_rate_1_squared_leg1
-            + v2_by_1_y_leg1 * rate_dot_1_leg1;
-        let force2_y_leg1 = parameters[8] * a2_y_leg1
-            - (parameters[6] * minus_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1);
+            - parameters[6] * rate_2_squared_leg1;
+        let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
+            + parameters[7] * rate_2_squared_leg1;
+        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (parameters[9] * minus_qd_2_leg1
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            - tau_2_leg1;
+        let force_on_u1_leg1 = rate_dot_1_leg1
+            * (parameters[0] + L_AB_SQUARED * parameters[8])
+            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + tau_1_leg1 - tau_2_leg1;
+        let a2_y_leg1 = s2_leg1 * l_ab_rate_1_squared_leg1
+            + v2_by_1_y_leg1 * rate_dot_1_leg1;
         let moment2_z_leg1 = parameters[6] * a2_y_leg1
-            - parameters[5] * minus_rate_dot_2_leg1 - parameters[7] * minus_a_on_f1_leg1;
+            - parameters[7] * minus_a_on_f1_leg1 - parameters[5] * minus_rate_dot_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         let tau_3_leg1 = parameters[12] * qd_3_leg1
             + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
@@ -8257,32 +8260,30 @@ impl DualV {
         let v2_by_1_y_leg2 = L_AB * c2_leg2;
         let rate_dot_1_leg2 = k1_leg2
             * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let moment1_z_leg2 = parameters[15] * rate_dot_1_leg2;
-        let tau_1_leg2 = parameters[16] * rate_dot_1_leg2 + parameters[17] * rate_1_leg2
-            + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19];
-        let v2_by_1_x_leg2 = L_AB * s2_leg2;
         let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
         let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
             + l_ab_rate_1_squared_leg2;
         let minus_rate_dot_2_leg2 = k1_leg2
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let force2_x_leg2 = parameters[22] * minus_rate_dot_2_leg2
-            - parameters[21] * rate_2_squared_leg2 + parameters[23] * minus_a_on_f1_leg2;
-        let a2_y_leg2 = s2_leg2 * l_ab_rate_1_squared_leg2
-            + v2_by_1_y_leg2 * rate_dot_1_leg2;
-        let force2_y_leg2 = parameters[23] * a2_y_leg2
-            - (parameters[21] * minus_rate_dot_2_leg2
-                + parameters[22] * rate_2_squared_leg2);
+            - parameters[21] * rate_2_squared_leg2;
+        let minus_force2_y_leg2 = parameters[21] * minus_rate_dot_2_leg2
+            + parameters[22] * rate_2_squared_leg2;
+        let tau_1_leg2 = parameters[16] * rate_dot_1_leg2 + parameters[17] * rate_1_leg2
+            + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19];
         let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
         let tau_2_leg2 = parameters[26]
             - (parameters[24] * minus_qd_2_leg2
                 + ::overact::math::signed(parameters[25], minus_qd_2_leg2));
-        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
-            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
+        let force_on_u1_leg2 = rate_dot_1_leg2
+            * (parameters[15] + L_AB_SQUARED * parameters[23])
+            + L_AB * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
+            + tau_1_leg2 - tau_2_leg2;
+        let a2_y_leg2 = s2_leg2 * l_ab_rate_1_squared_leg2
+            + v2_by_1_y_leg2 * rate_dot_1_leg2;
         let moment2_z_leg2 = parameters[21] * a2_y_leg2
-            - parameters[20] * minus_rate_dot_2_leg2
-            - parameters[22] * minus_a_on_f1_leg2;
+            - parameters[22] * minus_a_on_f1_leg2
+            - parameters[20] * minus_rate_dot_2_leg2;
         let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
         let tau_3_leg2 = parameters[27] * qd_3_leg2
             + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
@@ -8309,37 +8310,35 @@ impl DualV {
         let v2_by_1_y_leg3 = L_AB * c2_leg3;
         let rate_dot_1_leg3 = k1_leg3
             * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let moment1_z_leg3 = parameters[30] * rate_dot_1_leg3;
-        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
-        let v2_by_1_x_leg3 = L_AB * s2_leg3;
         let l_ab_rate_1_squared_leg3 = L_AB * rate_1_squared_leg3;
         let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
             + l_ab_rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
             * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
-            - parameters[36] * rate_2_squared_leg3 + parameters[38] * minus_a_on_f1_leg3;
-        let a2_y_leg3 = s2_leg3 * l_ab_rate_1_squared_leg3
-            + v2_by_1_y_leg3 * rate_dot_1_leg3;
-        let force2_y_leg3 = parameters[38] * a2_y_leg3
-            - (parameters[36] * minus_rate_dot_2_leg3
-                + parameters[37] * rate_2_squared_leg3);
+            - parameters[36] * rate_2_squared_leg3;
+        let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
+            + parameters[37] * rate_2_squared_leg3;
+        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (parameters[39] * minus_qd_2_leg3
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
+        let force_on_u1_leg3 = rate_dot_1_leg3
+            * (parameters[30] + L_AB_SQUARED * parameters[38])
+            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + tau_1_leg3 - tau_2_leg3;
+        let a2_y_leg3 = s2_leg3 * l_ab_rate_1_squared_leg3
+            + v2_by_1_y_leg3 * rate_dot_1_leg3;
         let moment2_z_leg3 = parameters[36] * a2_y_leg3
-            - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * minus_a_on_f1_leg3;
+            - parameters[37] * minus_a_on_f1_leg3
+            - parameters[35] * minus_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t1_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -8360,44 +8359,44 @@ impl DualV {
         let v2_by_1_y_leg4 = L_AB * c2_leg4;
         let rate_dot_1_leg4 = k1_leg4
             * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
-        let moment1_z_leg4 = parameters[45] * rate_dot_1_leg4;
-        let tau_1_leg4 = parameters[46] * rate_dot_1_leg4 + parameters[47] * rate_1_leg4
-            + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49];
-        let v2_by_1_x_leg4 = L_AB * s2_leg4;
         let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
         let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
             + l_ab_rate_1_squared_leg4;
         let minus_rate_dot_2_leg4 = k1_leg4
             * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
         let force2_x_leg4 = parameters[52] * minus_rate_dot_2_leg4
-            - parameters[51] * rate_2_squared_leg4 + parameters[53] * minus_a_on_f1_leg4;
-        let a2_y_leg4 = s2_leg4 * l_ab_rate_1_squared_leg4
-            + v2_by_1_y_leg4 * rate_dot_1_leg4;
-        let force2_y_leg4 = parameters[53] * a2_y_leg4
-            - (parameters[51] * minus_rate_dot_2_leg4
-                + parameters[52] * rate_2_squared_leg4);
+            - parameters[51] * rate_2_squared_leg4;
+        let minus_force2_y_leg4 = parameters[51] * minus_rate_dot_2_leg4
+            + parameters[52] * rate_2_squared_leg4;
+        let tau_1_leg4 = parameters[46] * rate_dot_1_leg4 + parameters[47] * rate_1_leg4
+            + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49];
         let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
         let tau_2_leg4 = parameters[56]
             - (parameters[54] * minus_qd_2_leg4
                 + ::overact::math::signed(parameters[55], minus_qd_2_leg4));
-        let force_on_u1_leg4 = moment1_z_leg4 + tau_1_leg4
-            + v2_by_1_x_leg4 * force2_x_leg4 + v2_by_1_y_leg4 * force2_y_leg4
-            - tau_2_leg4;
+        let force_on_u1_leg4 = rate_dot_1_leg4
+            * (parameters[45] + L_AB_SQUARED * parameters[53])
+            + L_AB * (s2_leg4 * force2_x_leg4 - c2_leg4 * minus_force2_y_leg4)
+            + tau_1_leg4 - tau_2_leg4;
+        let a2_y_leg4 = s2_leg4 * l_ab_rate_1_squared_leg4
+            + v2_by_1_y_leg4 * rate_dot_1_leg4;
         let moment2_z_leg4 = parameters[51] * a2_y_leg4
-            - parameters[50] * minus_rate_dot_2_leg4
-            - parameters[52] * minus_a_on_f1_leg4;
+            - parameters[52] * minus_a_on_f1_leg4
+            - parameters[50] * minus_rate_dot_2_leg4;
         let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
         let tau_3_leg4 = parameters[57] * qd_3_leg4
             + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let mass_platform = parameters[63] + parameters[67];
         let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let first_y_platform = parameters[62] + parameters[66];
         let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-        let force_x_platform = parameters[62] * inv_r_p_a_arm_x_leg1
-            - parameters[61] * inv_r_p_a_arm_y_leg3 + acceleration[0] * parameters[63]
-            - parameters[65] * inv_r_p_a_arm_y_leg3
-            + parameters[66] * inv_r_p_a_arm_x_leg1 + acceleration[0] * parameters[67];
-        let t2 = t1 + g1_vx_leg4 * force_on_u1_leg4 - minus_g2_vx_leg4 * force_on_u2_leg4
-            + force_x_platform;
+        let first_x_platform = parameters[61] + parameters[65];
+        let force_x_platform = acceleration[0] * mass_platform
+            + inv_r_p_a_arm_x_leg1 * first_y_platform
+            - inv_r_p_a_arm_y_leg3 * first_x_platform;
+        let t1_platform = t1_leg3 + g1_vx_leg4 * force_on_u1_leg4
+            - minus_g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
         ::overact::guard::platform(
@@ -8418,16 +8417,15 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let inv_pivot_2 = 1.0 / pivot_2;
-        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g1_vy_leg2 * force_on_u1_leg2 - minus_g2_vy_leg2 * force_on_u2_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = acceleration[1] * parameters[63]
-            - (parameters[61] * inv_r_p_a_arm_x_leg1
-                + parameters[62] * inv_r_p_a_arm_y_leg3)
-            - parameters[65] * inv_r_p_a_arm_x_leg1
-            - parameters[66] * inv_r_p_a_arm_y_leg3 + acceleration[1] * parameters[67];
-        let t4 = t3 + g1_vy_leg4 * force_on_u1_leg4 - minus_g2_vy_leg4 * force_on_u2_leg4
-            + force_y_platform - t2 * l_2_1;
+        let force_y_platform = acceleration[1] * mass_platform
+            - (inv_r_p_a_arm_x_leg1 * first_x_platform
+                + inv_r_p_a_arm_y_leg3 * first_y_platform);
+        let t1 = t2_leg3 + g1_vy_leg4 * force_on_u1_leg4
+            - minus_g2_vy_leg4 * force_on_u2_leg4 + force_y_platform
+            - t1_platform * l_2_1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
         let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
@@ -8444,20 +8442,20 @@ impl DualV {
         let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
         let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t3_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g2_wz_leg2 * force_on_u2_leg2
             - minus_g1_wz_leg2 * force_on_u1_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
             + tau_3_leg3;
         let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4 + p_y_leg1 * minus_g2_vx_leg4;
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let moment_z_platform = acceleration[2] * parameters[60]
-            + parameters[61] * a_y_platform - parameters[62] * a_x_platform
-            + acceleration[2] * parameters[64] + parameters[65] * a_y_platform
-            - parameters[66] * a_x_platform;
-        let t6 = t5 + g1_wz_leg4 * force_on_u1_leg4 - minus_g2_wz_leg4 * force_on_u2_leg4
-            + tau_3_leg4 + moment_z_platform - t2 * l_3_1 - l_3_2 * t4;
+        let inertia_zz_platform = parameters[60] + parameters[64];
+        let moment_z_platform = acceleration[1]
+            * (c_phi * first_x_platform - s_phi * first_y_platform)
+            - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
+            + acceleration[2] * inertia_zz_platform;
+        let t2 = t3_leg3 + g1_wz_leg4 * force_on_u1_leg4
+            - minus_g2_wz_leg4 * force_on_u2_leg4 + tau_3_leg4 + moment_z_platform
+            - t1_platform * l_3_1 - l_3_2 * t1;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1
             + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
             + g1_wz_leg4 * g1_wz_leg4;
@@ -8467,14 +8465,14 @@ impl DualV {
             0.30769284902009914,
             ::overact::ActuatorGroup::All,
         )?;
-        let t7 = t6 / pivot_3;
-        let t8 = inv_pivot_2 * t4 - l_3_2 * t7;
-        let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
+        let t3 = t2 / pivot_3;
+        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
+        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t9 + g1_vy_leg1 * t8 - minus_g1_wz_leg1 * t7,
-            g1_vx_leg2 * t9 + g1_vy_leg2 * t8 - minus_g1_wz_leg2 * t7,
-            g1_vx_leg3 * t9 + g1_vy_leg3 * t8 + g1_wz_leg3 * t7,
-            g1_vx_leg4 * t9 + g1_vy_leg4 * t8 + g1_wz_leg4 * t7,
+            g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
+            g1_vx_leg2 * t5 + g1_vy_leg2 * t4 - minus_g1_wz_leg2 * t3,
+            g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
+            g1_vx_leg4 * t5 + g1_vy_leg4 * t4 + g1_wz_leg4 * t3,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -8488,7 +8486,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 684 operations (303 additions, 370 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 698 intermediates.
+    /// 674 operations (294 additions, 369 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 688 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8509,8 +8507,12 @@ impl DualV {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -8783,32 +8785,31 @@ impl DualV {
         let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
             + l_ab_squared_rate_2_squared_leg1;
         let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t3_leg1);
-        let moment1_z_leg1 = parameters[0] * rate_dot_1_leg1;
-        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + rate_1_leg1 * parameters[2]
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
         let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-            - rate_2_squared_leg1 * parameters[6] + parameters[8] * a2_x_leg1;
-        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
-        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
-            + rate_dot_1_leg1 * v2_by_1_y_leg1;
-        let force2_y_leg1 = parameters[8] * a2_y_leg1
-            - (parameters[6] * minus_rate_dot_2_leg1
-                + rate_2_squared_leg1 * parameters[7]);
+            - rate_2_squared_leg1 * parameters[6];
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
+            + rate_2_squared_leg1 * parameters[7];
+        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + rate_1_leg1 * parameters[2]
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (minus_qd_2_leg1 * parameters[9]
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            - tau_2_leg1;
-        let moment2_z_leg1 = parameters[6] * a2_y_leg1
-            - parameters[5] * minus_rate_dot_2_leg1 - parameters[7] * a2_x_leg1;
+        let force_on_u1_leg1 = rate_dot_1_leg1
+            * (parameters[0] + L_AB_SQUARED * parameters[8])
+            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + tau_1_leg1 - tau_2_leg1;
+        let a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
+            + 1.7857142857142858 * (t1_leg1 * rate_dot_1_leg1);
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1 - parameters[7] * a2_x_leg1
+            - parameters[5] * minus_rate_dot_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + wz;
         let tau_3_leg1 = qd_3_leg1 * parameters[12]
             + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
@@ -8817,16 +8818,14 @@ impl DualV {
         let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg2;
         let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
-        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + l_ab_squared_rate_2_squared_leg2;
         let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t3_leg2);
-        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
-        let minus_a2_y_leg2 = rate_1_squared_leg2 * minus_v2_by_1_x_leg2
-            + minus_rate_dot_1_leg2 * v2_by_1_y_leg2;
+        let minus_a2_y_leg2 = INV_L_AB * (det_leg2 * rate_1_squared_leg2)
+            + 1.7857142857142858 * (t1_leg2 * minus_rate_dot_1_leg2);
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
         let moment2_z_leg2 = parameters[20] * rate_dot_2_leg2
-            - parameters[21] * minus_a2_y_leg2 - parameters[22] * a2_x_leg2;
+            - (parameters[21] * minus_a2_y_leg2 + parameters[22] * a2_x_leg2);
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         let tau_2_leg2 = qd_2_leg2 * parameters[24]
             + ::overact::math::signed(parameters[25], qd_2_leg2) + parameters[26];
@@ -8834,71 +8833,70 @@ impl DualV {
         let tau_3_leg2 = qd_3_leg2 * parameters[27]
             + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let minus_force2_x_leg2 = rate_2_squared_leg2 * parameters[21]
+            + parameters[22] * rate_dot_2_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
+            - rate_2_squared_leg2 * parameters[22];
         let tau_1_leg2 = parameters[19]
             - (parameters[16] * minus_rate_dot_1_leg2
                 + minus_rate_1_leg2 * parameters[17]
                 + ::overact::math::signed(parameters[18], minus_rate_1_leg2));
-        let minus_moment1_z_leg2 = parameters[15] * minus_rate_dot_1_leg2;
-        let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
-            - rate_2_squared_leg2 * parameters[22] - parameters[23] * minus_a2_y_leg2;
-        let force2_x_leg2 = parameters[23] * a2_x_leg2
-            - (rate_2_squared_leg2 * parameters[21] + parameters[22] * rate_dot_2_leg2);
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + v2_by_1_y_leg2 * force2_y_leg2 - minus_v2_by_1_x_leg2 * force2_x_leg2
-            - tau_2_leg2;
+        let force_on_u1_leg2 = L_AB
+            * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
+            - minus_rate_dot_1_leg2 * (parameters[15] + L_AB_SQUARED * parameters[23])
+            + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let a_end_x_leg3 = dvx - a_arm_x_leg1;
         let a_end_y_leg3 = dvy + a_arm_y_leg3;
         let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
             + l_ab_squared_rate_2_squared_leg3;
         let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t3_leg3);
-        let moment1_z_leg3 = parameters[30] * rate_dot_1_leg3;
-        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + rate_1_leg3 * parameters[32]
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
-        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
             * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
         let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
-            - rate_2_squared_leg3 * parameters[36] + parameters[38] * a2_x_leg3;
-        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
-        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
-            + rate_dot_1_leg3 * v2_by_1_y_leg3;
-        let force2_y_leg3 = parameters[38] * a2_y_leg3
-            - (parameters[36] * minus_rate_dot_2_leg3
-                + rate_2_squared_leg3 * parameters[37]);
+            - rate_2_squared_leg3 * parameters[36];
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
+            + rate_2_squared_leg3 * parameters[37];
+        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + rate_1_leg3 * parameters[32]
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (minus_qd_2_leg3 * parameters[39]
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
-        let moment2_z_leg3 = parameters[36] * a2_y_leg3
-            - parameters[35] * minus_rate_dot_2_leg3 - parameters[37] * a2_x_leg3;
+        let force_on_u1_leg3 = rate_dot_1_leg3
+            * (parameters[30] + L_AB_SQUARED * parameters[38])
+            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + tau_1_leg3 - tau_2_leg3;
+        let a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
+            + 1.7857142857142858 * (t1_leg3 * rate_dot_1_leg3);
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let moment2_z_leg3 = parameters[36] * a2_y_leg3 - parameters[37] * a2_x_leg3
+            - parameters[35] * minus_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + wz;
         let tau_3_leg3 = qd_3_leg3 * parameters[42]
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t7 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
         let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg4;
         let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
-        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
             + l_ab_squared_rate_2_squared_leg4;
         let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t3_leg4);
-        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
-        let minus_a2_y_leg4 = rate_1_squared_leg4 * minus_v2_by_1_x_leg4
-            + minus_rate_dot_1_leg4 * v2_by_1_y_leg4;
+        let minus_a2_y_leg4 = INV_L_AB * (det_leg4 * rate_1_squared_leg4)
+            + 1.7857142857142858 * (t1_leg4 * minus_rate_dot_1_leg4);
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
         let moment2_z_leg4 = parameters[50] * rate_dot_2_leg4
-            - parameters[51] * minus_a2_y_leg4 - parameters[52] * a2_x_leg4;
+            - (parameters[51] * minus_a2_y_leg4 + parameters[52] * a2_x_leg4);
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let tau_2_leg4 = qd_2_leg4 * parameters[54]
             + ::overact::math::signed(parameters[55], qd_2_leg4) + parameters[56];
@@ -8906,61 +8904,64 @@ impl DualV {
         let tau_3_leg4 = qd_3_leg4 * parameters[57]
             + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let minus_force2_x_leg4 = rate_2_squared_leg4 * parameters[51]
+            + parameters[52] * rate_dot_2_leg4;
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
+            - rate_2_squared_leg4 * parameters[52];
         let tau_1_leg4 = parameters[49]
             - (parameters[46] * minus_rate_dot_1_leg4
                 + minus_rate_1_leg4 * parameters[47]
                 + ::overact::math::signed(parameters[48], minus_rate_1_leg4));
-        let minus_moment1_z_leg4 = parameters[45] * minus_rate_dot_1_leg4;
-        let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
-            - rate_2_squared_leg4 * parameters[52] - parameters[53] * minus_a2_y_leg4;
-        let force2_x_leg4 = parameters[53] * a2_x_leg4
-            - (rate_2_squared_leg4 * parameters[51] + parameters[52] * rate_dot_2_leg4);
-        let force_on_u1_leg4 = tau_1_leg4 - minus_moment1_z_leg4
-            + v2_by_1_y_leg4 * force2_y_leg4 - minus_v2_by_1_x_leg4 * force2_x_leg4
-            - tau_2_leg4;
+        let force_on_u1_leg4 = L_AB
+            * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
+            - minus_rate_dot_1_leg4 * (parameters[45] + L_AB_SQUARED * parameters[53])
+            + tau_1_leg4 - tau_2_leg4;
+        let mass_platform = parameters[63] + parameters[67];
         let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let first_y_platform = parameters[62] + parameters[66];
         let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-        let force_x_platform = parameters[62] * inv_r_p_a_arm_x_leg1
-            - parameters[61] * inv_r_p_a_arm_y_leg3 + dvx * parameters[63]
-            - parameters[65] * inv_r_p_a_arm_y_leg3
-            + parameters[66] * inv_r_p_a_arm_x_leg1 + dvx * parameters[67];
-        let t8 = t7 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
-            + force_x_platform;
-        let t9 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let first_x_platform = parameters[61] + parameters[65];
+        let force_x_platform = dvx * mass_platform
+            + inv_r_p_a_arm_x_leg1 * first_y_platform
+            - inv_r_p_a_arm_y_leg3 * first_x_platform;
+        let t1_platform = t4_leg3 + g2_vx_leg4 * force_on_u2_leg4
+            - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
+        let t5_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = dvy * parameters[63]
-            - (parameters[61] * inv_r_p_a_arm_x_leg1
-                + parameters[62] * inv_r_p_a_arm_y_leg3)
-            - parameters[65] * inv_r_p_a_arm_x_leg1
-            - parameters[66] * inv_r_p_a_arm_y_leg3 + dvy * parameters[67];
-        let t10 = t9 + g2_vy_leg4 * force_on_u2_leg4
-            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform - l_2_1 * t8;
+        let force_y_platform = dvy * mass_platform
+            - (inv_r_p_a_arm_x_leg1 * first_x_platform
+                + inv_r_p_a_arm_y_leg3 * first_y_platform);
+        let t7 = t5_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
+            - l_2_1 * t1_platform;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t11 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t6_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
             + tau_3_leg3;
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        let a_y_platform = c_phi * dvy - s_phi * dvx;
-        let a_x_platform = s_phi * dvy + c_phi * dvx;
-        let moment_z_platform = dwz * parameters[60] + parameters[61] * a_y_platform
-            - parameters[62] * a_x_platform + dwz * parameters[64]
-            + parameters[65] * a_y_platform - parameters[66] * a_x_platform;
-        let t12 = t11 + g2_wz_leg4 * force_on_u2_leg4
+        let inertia_zz_platform = parameters[60] + parameters[64];
+        let moment_z_platform = dvy
+            * (c_phi * first_x_platform - s_phi * first_y_platform)
+            - dvx * (s_phi * first_x_platform + c_phi * first_y_platform)
+            + dwz * inertia_zz_platform;
+        let t8 = t6_leg3 + g2_wz_leg4 * force_on_u2_leg4
             - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
-            - l_3_1 * t8 - l_3_2 * t10;
-        let t13 = inv_pivot_3 * t12;
-        let t14 = inv_pivot_2 * t10 - l_3_2 * t13;
-        let t15 = inv_pivot_1 * t8 - l_2_1 * t14 - l_3_1 * t13;
+            - l_3_1 * t1_platform - l_3_2 * t7;
+        let t9 = inv_pivot_3 * t8;
+        let t10 = inv_pivot_2 * t7 - l_3_2 * t9;
+        let t11 = inv_pivot_1 * t1_platform - l_2_1 * t10 - l_3_1 * t9;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t15 + g1_vy_leg1 * t14 - minus_g1_wz_leg1 * t13,
-            g1_wz_leg2 * t13 - (minus_g1_vx_leg2 * t15 + minus_g1_vy_leg2 * t14),
-            g1_vx_leg3 * t15 + g1_vy_leg3 * t14 + g1_wz_leg3 * t13,
-            -(minus_g1_vx_leg4 * t15 + minus_g1_vy_leg4 * t14 + minus_g1_wz_leg4 * t13),
+            g1_vx_leg1 * t11 + g1_vy_leg1 * t10 - minus_g1_wz_leg1 * t9,
+            g1_wz_leg2 * t9 - (minus_g1_vx_leg2 * t11 + minus_g1_vy_leg2 * t10),
+            g1_vx_leg3 * t11 + g1_vy_leg3 * t10 + g1_wz_leg3 * t9,
+            -(minus_g1_vx_leg4 * t11 + minus_g1_vy_leg4 * t10 + minus_g1_wz_leg4 * t9),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -8971,7 +8972,7 @@ impl DualV {
     ///
     /// Output: 3 x 3.
     ///
-    /// 475 operations (185 additions, 282 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 475 intermediates.
+    /// 325 operations (135 additions, 182 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 325 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8980,8 +8981,10 @@ impl DualV {
         parameters: &[::core::primitive::f64; 68],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
-        /// 1 / l_ab
-        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -9007,18 +9010,13 @@ impl DualV {
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let masses_leg1_1_1 = parameters[0] + L_AB_SQUARED * parameters[8]
+            + parameters[1];
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-        let c12_leg1 = INV_L_AB * l2_x_leg1;
-        let v2_by_1_y_leg1 = 1.7857142857142858
-            * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
-        let g1_vx_v2_by_1_y_leg1 = g1_vx_leg1 * v2_by_1_y_leg1;
-        let t1 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
-            + v2_by_1_x_leg1
-                * (minus_g2_vx_leg1 * parameters[7] + c12_leg1 * parameters[8])
-            + v2_by_1_y_leg1
-                * (parameters[8] * g1_vx_v2_by_1_y_leg1
-                    - minus_g2_vx_leg1 * parameters[6]);
+        let c2_leg1 = 6.377551020408164 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let force1_y_by_2_leg1 = c2_leg1 * parameters[6] - s2_leg1 * parameters[7];
+        let masses_leg1_1_2 = L_AB * force1_y_by_2_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
@@ -9033,24 +9031,21 @@ impl DualV {
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-        let v2_by_1_y_leg2 = 1.7857142857142858
-            * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
-        let minus_g1_vx_v2_by_1_y_leg2 = minus_g1_vx_leg2 * v2_by_1_y_leg2;
-        let c12_leg2 = INV_L_AB * l2_x_leg2;
-        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
-        let t2 = v2_by_1_y_leg2
-            * (g2_vx_leg2 * parameters[21] - parameters[23] * minus_g1_vx_v2_by_1_y_leg2)
-            - minus_v2_by_1_x_leg2
-                * (c12_leg2 * parameters[23] - g2_vx_leg2 * parameters[22])
-            - (minus_g1_vx_leg2 * parameters[16] + minus_g1_vx_leg2 * parameters[15]);
-        let t3 = g1_vx_leg1 * t1
+        let c2_leg2 = 6.377551020408164 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let force1_y_by_2_leg2 = c2_leg2 * parameters[21]
+            + minus_s2_leg2 * parameters[22];
+        let masses_leg2_1_2 = L_AB * force1_y_by_2_leg2;
+        let masses_leg2_1_1 = parameters[15] + L_AB_SQUARED * parameters[23]
+            + parameters[16];
+        let t1_leg2 = g1_vx_leg1
+            * (g1_vx_leg1 * masses_leg1_1_1 - minus_g2_vx_leg1 * masses_leg1_1_2)
             - minus_g2_vx_leg1
-                * (parameters[6] * g1_vx_v2_by_1_y_leg1
-                    - minus_g2_vx_leg1 * parameters[5] - c12_leg1 * parameters[7])
+                * (g1_vx_leg1 * masses_leg1_1_2 - minus_g2_vx_leg1 * parameters[5])
             + g2_vx_leg2
-                * (g2_vx_leg2 * parameters[20]
-                    - parameters[21] * minus_g1_vx_v2_by_1_y_leg2
-                    - c12_leg2 * parameters[22]) - minus_g1_vx_leg2 * t2;
+                * (g2_vx_leg2 * parameters[20] - minus_g1_vx_leg2 * masses_leg2_1_2)
+            - minus_g1_vx_leg2
+                * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * masses_leg2_1_1);
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
@@ -9067,18 +9062,18 @@ impl DualV {
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let masses_leg3_1_1 = parameters[30] + L_AB_SQUARED * parameters[38]
+            + parameters[31];
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-        let c12_leg3 = INV_L_AB * l2_x_leg3;
-        let v2_by_1_y_leg3 = 1.7857142857142858
-            * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
-        let g1_vx_v2_by_1_y_leg3 = g1_vx_leg3 * v2_by_1_y_leg3;
-        let t4 = g1_vx_leg3 * parameters[30] + g1_vx_leg3 * parameters[31]
-            + v2_by_1_x_leg3
-                * (minus_g2_vx_leg3 * parameters[37] + c12_leg3 * parameters[38])
-            + v2_by_1_y_leg3
-                * (parameters[38] * g1_vx_v2_by_1_y_leg3
-                    - minus_g2_vx_leg3 * parameters[36]);
+        let c2_leg3 = 6.377551020408164 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
+        let force1_y_by_2_leg3 = c2_leg3 * parameters[36] - s2_leg3 * parameters[37];
+        let masses_leg3_1_2 = L_AB * force1_y_by_2_leg3;
+        let t1_leg3 = t1_leg2
+            + g1_vx_leg3
+                * (g1_vx_leg3 * masses_leg3_1_1 - minus_g2_vx_leg3 * masses_leg3_1_2)
+            - minus_g2_vx_leg3
+                * (g1_vx_leg3 * masses_leg3_1_2 - minus_g2_vx_leg3 * parameters[35]);
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
@@ -9093,169 +9088,104 @@ impl DualV {
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        let v2_by_1_y_leg4 = 1.7857142857142858
-            * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
-        let minus_g1_vx_v2_by_1_y_leg4 = minus_g1_vx_leg4 * v2_by_1_y_leg4;
-        let c12_leg4 = INV_L_AB * l2_x_leg4;
-        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
-        let t5 = v2_by_1_y_leg4
-            * (g2_vx_leg4 * parameters[51] - parameters[53] * minus_g1_vx_v2_by_1_y_leg4)
-            - minus_v2_by_1_x_leg4
-                * (c12_leg4 * parameters[53] - g2_vx_leg4 * parameters[52])
-            - (minus_g1_vx_leg4 * parameters[46] + minus_g1_vx_leg4 * parameters[45]);
-        let t6 = t3 + g1_vx_leg3 * t4
-            - minus_g2_vx_leg3
-                * (parameters[36] * g1_vx_v2_by_1_y_leg3
-                    - minus_g2_vx_leg3 * parameters[35] - c12_leg3 * parameters[37])
+        let c2_leg4 = 6.377551020408164 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let force1_y_by_2_leg4 = c2_leg4 * parameters[51]
+            + minus_s2_leg4 * parameters[52];
+        let masses_leg4_1_2 = L_AB * force1_y_by_2_leg4;
+        let masses_leg4_1_1 = parameters[45] + L_AB_SQUARED * parameters[53]
+            + parameters[46];
+        let t1_leg4 = t1_leg3
             + g2_vx_leg4
-                * (g2_vx_leg4 * parameters[50]
-                    - parameters[51] * minus_g1_vx_v2_by_1_y_leg4
-                    - c12_leg4 * parameters[52]) - minus_g1_vx_leg4 * t5;
-        let m_platform_plus_m_payload = parameters[63] + parameters[67];
+                * (g2_vx_leg4 * parameters[50] - minus_g1_vx_leg4 * masses_leg4_1_2)
+            - minus_g1_vx_leg4
+                * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * masses_leg4_1_1);
+        let mass_platform = parameters[63] + parameters[67];
         // --- leg1
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-        let s12_leg1 = INV_L_AB * l2_y_leg1;
-        let v2_by_1_y_g1_vy_leg1 = v2_by_1_y_leg1 * g1_vy_leg1;
-        let t7 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
-            + v2_by_1_x_leg1
-                * (minus_g2_vy_leg1 * parameters[7] + s12_leg1 * parameters[8])
-            + v2_by_1_y_leg1
-                * (parameters[8] * v2_by_1_y_g1_vy_leg1
-                    - minus_g2_vy_leg1 * parameters[6]);
-        let t8 = parameters[6] * v2_by_1_y_g1_vy_leg1 - minus_g2_vy_leg1 * parameters[5]
-            - s12_leg1 * parameters[7];
+        let t1_leg1 = g1_vy_leg1 * masses_leg1_1_1 - minus_g2_vy_leg1 * masses_leg1_1_2;
+        let t2_leg1 = g1_vy_leg1 * masses_leg1_1_2 - minus_g2_vy_leg1 * parameters[5];
         // --- leg2
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-        let minus_v2_by_1_y_g1_vy_leg2 = v2_by_1_y_leg2 * minus_g1_vy_leg2;
-        let s12_leg2 = INV_L_AB * l2_y_leg2;
-        let t9 = g2_vy_leg2 * parameters[20]
-            - parameters[21] * minus_v2_by_1_y_g1_vy_leg2 - s12_leg2 * parameters[22];
-        let t10 = v2_by_1_y_leg2
-            * (g2_vy_leg2 * parameters[21] - parameters[23] * minus_v2_by_1_y_g1_vy_leg2)
-            - minus_v2_by_1_x_leg2
-                * (s12_leg2 * parameters[23] - g2_vy_leg2 * parameters[22])
-            - (minus_g1_vy_leg2 * parameters[16] + minus_g1_vy_leg2 * parameters[15]);
+        let t2_leg2 = g2_vy_leg2 * parameters[20] - minus_g1_vy_leg2 * masses_leg2_1_2;
+        let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2 - minus_g1_vy_leg2 * masses_leg2_1_1;
         // --- leg3
         let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-        let s12_leg3 = INV_L_AB * l2_y_leg3;
-        let v2_by_1_y_g1_vy_leg3 = v2_by_1_y_leg3 * g1_vy_leg3;
-        let t11 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
-            + v2_by_1_x_leg3
-                * (minus_g2_vy_leg3 * parameters[37] + s12_leg3 * parameters[38])
-            + v2_by_1_y_leg3
-                * (parameters[38] * v2_by_1_y_g1_vy_leg3
-                    - minus_g2_vy_leg3 * parameters[36]);
-        let t12 = parameters[36] * v2_by_1_y_g1_vy_leg3
-            - minus_g2_vy_leg3 * parameters[35] - s12_leg3 * parameters[37];
-        let t13 = g1_vx_leg1 * t7 - minus_g2_vx_leg1 * t8 + g2_vx_leg2 * t9
-            - minus_g1_vx_leg2 * t10 + g1_vx_leg3 * t11 - minus_g2_vx_leg3 * t12;
+        let t2_leg3 = g1_vy_leg3 * masses_leg3_1_1 - minus_g2_vy_leg3 * masses_leg3_1_2;
+        let t3_leg3 = g1_vy_leg3 * masses_leg3_1_2 - minus_g2_vy_leg3 * parameters[35];
+        let t4_leg3 = g1_vx_leg1 * t1_leg1 - minus_g2_vx_leg1 * t2_leg1
+            + g2_vx_leg2 * t2_leg2 - minus_g1_vx_leg2 * t3_leg2 + g1_vx_leg3 * t2_leg3
+            - minus_g2_vx_leg3 * t3_leg3;
         // --- leg4
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        let minus_v2_by_1_y_g1_vy_leg4 = v2_by_1_y_leg4 * minus_g1_vy_leg4;
-        let s12_leg4 = INV_L_AB * l2_y_leg4;
-        let t14 = g2_vy_leg4 * parameters[50]
-            - parameters[51] * minus_v2_by_1_y_g1_vy_leg4 - s12_leg4 * parameters[52];
-        let t15 = v2_by_1_y_leg4
-            * (g2_vy_leg4 * parameters[51] - parameters[53] * minus_v2_by_1_y_g1_vy_leg4)
-            - minus_v2_by_1_x_leg4
-                * (s12_leg4 * parameters[53] - g2_vy_leg4 * parameters[52])
-            - (minus_g1_vy_leg4 * parameters[46] + minus_g1_vy_leg4 * parameters[45]);
-        let t16 = t13 + g2_vx_leg4 * t14 - minus_g1_vx_leg4 * t15;
+        let t2_leg4 = g2_vy_leg4 * parameters[50] - minus_g1_vy_leg4 * masses_leg4_1_2;
+        let t3_leg4 = g2_vy_leg4 * masses_leg4_1_2 - minus_g1_vy_leg4 * masses_leg4_1_1;
+        let t4_leg4 = t4_leg3 + g2_vx_leg4 * t2_leg4 - minus_g1_vx_leg4 * t3_leg4;
+        // --- leg1
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        let minus_v2_by_1_y_g1_wz_leg1 = v2_by_1_y_leg1 * minus_g1_wz_leg1;
-        let minus_v2_by_1_x_g1_wz_leg1 = v2_by_1_x_leg1 * minus_g1_wz_leg1;
-        let t17 = v2_by_1_y_leg1
-            * (g2_wz_leg1 * parameters[6] - parameters[8] * minus_v2_by_1_y_g1_wz_leg1)
-            - v2_by_1_x_leg1
-                * (g2_wz_leg1 * parameters[7]
-                    + parameters[8] * minus_v2_by_1_x_g1_wz_leg1)
-            - (minus_g1_wz_leg1 * parameters[0] + minus_g1_wz_leg1 * parameters[1]);
-        let t18 = g2_wz_leg1 * parameters[5] - parameters[6] * minus_v2_by_1_y_g1_wz_leg1
-            + parameters[7] * minus_v2_by_1_x_g1_wz_leg1;
+        let t3_leg1 = g2_wz_leg1 * masses_leg1_1_2 - minus_g1_wz_leg1 * masses_leg1_1_1;
+        let t4_leg1 = g2_wz_leg1 * parameters[5] - minus_g1_wz_leg1 * masses_leg1_1_2;
+        // --- leg2
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        let v2_by_1_y_g1_wz_leg2 = v2_by_1_y_leg2 * g1_wz_leg2;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let minus_v2_by_1_x_g1_wz_leg2 = minus_v2_by_1_x_leg2 * g1_wz_leg2;
-        let t19 = parameters[21] * v2_by_1_y_g1_wz_leg2
-            - minus_g2_wz_leg2 * parameters[20]
-            + parameters[22] * minus_v2_by_1_x_g1_wz_leg2;
-        let t20 = g1_wz_leg2 * parameters[16] + g1_wz_leg2 * parameters[15]
-            + v2_by_1_y_leg2
-                * (parameters[23] * v2_by_1_y_g1_wz_leg2
-                    - minus_g2_wz_leg2 * parameters[21])
-            - minus_v2_by_1_x_leg2
-                * (minus_g2_wz_leg2 * parameters[22]
-                    - parameters[23] * minus_v2_by_1_x_g1_wz_leg2);
+        let t4_leg2 = g1_wz_leg2 * masses_leg2_1_2 - minus_g2_wz_leg2 * parameters[20];
+        let t5_leg2 = g1_wz_leg2 * masses_leg2_1_1 - minus_g2_wz_leg2 * masses_leg2_1_2;
+        // --- leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let v2_by_1_x_g1_wz_leg3 = v2_by_1_x_leg3 * g1_wz_leg3;
-        let v2_by_1_y_g1_wz_leg3 = v2_by_1_y_leg3 * g1_wz_leg3;
-        let t21 = g1_wz_leg3 * parameters[30] + g1_wz_leg3 * parameters[31]
-            + v2_by_1_x_leg3
-                * (minus_g2_wz_leg3 * parameters[37]
-                    + parameters[38] * v2_by_1_x_g1_wz_leg3)
-            + v2_by_1_y_leg3
-                * (parameters[38] * v2_by_1_y_g1_wz_leg3
-                    - minus_g2_wz_leg3 * parameters[36]);
-        let t22 = parameters[36] * v2_by_1_y_g1_wz_leg3
-            - minus_g2_wz_leg3 * parameters[35] - parameters[37] * v2_by_1_x_g1_wz_leg3;
-        let t23 = g1_vx_leg1 * t17 - minus_g2_vx_leg1 * t18 + g2_vx_leg2 * t19
-            - minus_g1_vx_leg2 * t20 + g1_vx_leg3 * t21 - minus_g2_vx_leg3 * t22;
+        let t5_leg3 = g1_wz_leg3 * masses_leg3_1_1 - minus_g2_wz_leg3 * masses_leg3_1_2;
+        let t6_leg3 = g1_wz_leg3 * masses_leg3_1_2 - minus_g2_wz_leg3 * parameters[35];
+        let t7_leg3 = g1_vx_leg1 * t3_leg1 - minus_g2_vx_leg1 * t4_leg1
+            + g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2 + g1_vx_leg3 * t5_leg3
+            - minus_g2_vx_leg3 * t6_leg3;
+        // --- leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let minus_v2_by_1_y_g1_wz_leg4 = v2_by_1_y_leg4 * minus_g1_wz_leg4;
-        let v2_by_1_x_g1_wz_leg4 = minus_v2_by_1_x_leg4 * minus_g1_wz_leg4;
-        let t24 = g2_wz_leg4 * parameters[50]
-            - parameters[51] * minus_v2_by_1_y_g1_wz_leg4
-            - parameters[52] * v2_by_1_x_g1_wz_leg4;
-        let t25 = v2_by_1_y_leg4
-            * (g2_wz_leg4 * parameters[51] - parameters[53] * minus_v2_by_1_y_g1_wz_leg4)
-            - minus_v2_by_1_x_leg4
-                * (parameters[53] * v2_by_1_x_g1_wz_leg4 - g2_wz_leg4 * parameters[52])
-            - (minus_g1_wz_leg4 * parameters[46] + minus_g1_wz_leg4 * parameters[45]);
-        let t26 = 9.81 * s_phi;
-        let t27 = 9.81 * c_phi;
-        let moment_x_platform = parameters[61] * t26 + parameters[62] * t27
-            + parameters[65] * t26 + parameters[66] * t27;
-        let t28 = t23 + g2_vx_leg4 * t24 - minus_g1_vx_leg4 * t25
-            - 0.1019367991845056 * moment_x_platform;
-        let t29 = g1_vy_leg1 * t7 - minus_g2_vy_leg1 * t8 + g2_vy_leg2 * t9
-            - minus_g1_vy_leg2 * t10 + g1_vy_leg3 * t11 - minus_g2_vy_leg3 * t12;
-        let t30 = g1_vy_leg1 * t17 - minus_g2_vy_leg1 * t18 + g2_vy_leg2 * t19
-            - minus_g1_vy_leg2 * t20 + g1_vy_leg3 * t21 - minus_g2_vy_leg3 * t22;
-        let moment_y_platform = parameters[62] * t26 - parameters[61] * t27
-            - parameters[65] * t27 + parameters[66] * t26;
-        let t31 = t30 + g2_vy_leg4 * t24 - minus_g1_vy_leg4 * t25
-            - 0.1019367991845056 * moment_y_platform;
-        let t32 = g2_wz_leg1 * t18 - minus_g1_wz_leg1 * t17 + g1_wz_leg2 * t20
-            - minus_g2_wz_leg2 * t19 + g1_wz_leg3 * t21 - minus_g2_wz_leg3 * t22;
+        let t5_leg4 = g2_wz_leg4 * parameters[50] - minus_g1_wz_leg4 * masses_leg4_1_2;
+        let t6_leg4 = g2_wz_leg4 * masses_leg4_1_2 - minus_g1_wz_leg4 * masses_leg4_1_1;
+        let first_x_platform = parameters[61] + parameters[65];
+        let first_y_platform = parameters[62] + parameters[66];
+        let t1_platform = t7_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
+            - (s_phi * first_x_platform + c_phi * first_y_platform);
+        let t8_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
+            + g2_vy_leg2 * t2_leg2 - minus_g1_vy_leg2 * t3_leg2 + g1_vy_leg3 * t2_leg3
+            - minus_g2_vy_leg3 * t3_leg3;
+        let t9_leg3 = g1_vy_leg1 * t3_leg1 - minus_g2_vy_leg1 * t4_leg1
+            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t5_leg2 + g1_vy_leg3 * t5_leg3
+            - minus_g2_vy_leg3 * t6_leg3;
+        let t2_platform = t9_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
+            + c_phi * first_x_platform - s_phi * first_y_platform;
+        let t10_leg3 = g2_wz_leg1 * t4_leg1 - minus_g1_wz_leg1 * t3_leg1
+            + g1_wz_leg2 * t5_leg2 - minus_g2_wz_leg2 * t4_leg2 + g1_wz_leg3 * t5_leg3
+            - minus_g2_wz_leg3 * t6_leg3;
+        let inertia_zz_platform = parameters[60] + parameters[64];
         ::core::result::Result::Ok([
-            [t6 + m_platform_plus_m_payload, t16, t28],
+            [t1_leg4 + mass_platform, t4_leg4, t1_platform],
             [
-                t16,
-                t29 + g2_vy_leg4 * t14 - minus_g1_vy_leg4 * t15
-                    + m_platform_plus_m_payload,
-                t31,
+                t4_leg4,
+                t8_leg3 + g2_vy_leg4 * t2_leg4 - minus_g1_vy_leg4 * t3_leg4
+                    + mass_platform,
+                t2_platform,
             ],
             [
-                t28, t31,
-                t32 + g2_wz_leg4 * t24 - minus_g1_wz_leg4 * t25 + parameters[60]
-                    + parameters[64],
+                t1_platform, t2_platform,
+                t10_leg3 + g2_wz_leg4 * t5_leg4 - minus_g1_wz_leg4 * t6_leg4
+                    + inertia_zz_platform,
             ],
         ])
     }
@@ -9268,7 +9198,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 459 operations (203 additions, 248 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 474 intermediates.
+    /// 457 operations (197 additions, 252 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 472 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -9282,8 +9212,12 @@ impl DualV {
         )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -9309,57 +9243,56 @@ impl DualV {
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        let v_arm_x_leg3 = p_y_leg1 * twist[2];
-        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-        let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
-        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
+            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
-            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
         let t2_leg1 = 0.5 * t1_leg1;
+        let minus_bias_rate_dot_2_leg1 = k1_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_force2_y_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1
+            + parameters[7] * rate_2_squared_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
         let minus_bias_rate_dot_1_leg1 = k1_leg1
             * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
         let tau_1_leg1 = parameters[2] * rate_1_leg1
             - parameters[1] * minus_bias_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let minus_moment1_z_leg1 = parameters[0] * minus_bias_rate_dot_1_leg1;
-        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
-        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
-            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
-        let minus_bias_rate_dot_2_leg1 = k1_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
-        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 - parameters[8] * minus_bias_a2_x_leg1;
-        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
-        let bias_a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
-            - minus_bias_rate_dot_1_leg1 * v2_by_1_y_leg1;
-        let force2_y_leg1 = parameters[8] * bias_a2_y_leg1
-            - (parameters[6] * minus_bias_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1);
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (parameters[9] * minus_qd_2_leg1
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            - tau_2_leg1;
+        let force_on_u1_leg1 = L_AB
+            * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            - minus_bias_rate_dot_1_leg1 * (parameters[0] + L_AB_SQUARED * parameters[8])
+            + tau_1_leg1 - tau_2_leg1;
+        let bias_a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
+            - 1.7857142857142858 * (t1_leg1 * minus_bias_rate_dot_1_leg1);
+        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
         let moment2_z_leg1 = parameters[6] * bias_a2_y_leg1
-            - parameters[5] * minus_bias_rate_dot_2_leg1
-            + parameters[7] * minus_bias_a2_x_leg1;
+            + parameters[7] * minus_bias_a2_x_leg1
+            - parameters[5] * minus_bias_rate_dot_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         let tau_3_leg1 = parameters[12] * qd_3_leg1
             + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
@@ -9397,10 +9330,8 @@ impl DualV {
             - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
         let bias_rate_dot_1_leg2 = k1_leg2
             * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
-        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
-        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
-        let bias_a2_y_leg2 = bias_rate_dot_1_leg2 * v2_by_1_y_leg2
-            - rate_1_squared_leg2 * minus_v2_by_1_x_leg2;
+        let bias_a2_y_leg2 = 1.7857142857142858 * (t1_leg2 * bias_rate_dot_1_leg2)
+            - INV_L_AB * (det_leg2 * rate_1_squared_leg2);
         let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
         let moment2_z_leg2 = parameters[20] * bias_rate_dot_2_leg2
             + parameters[21] * bias_a2_y_leg2 + parameters[22] * minus_bias_a2_x_leg2;
@@ -9411,19 +9342,20 @@ impl DualV {
         let tau_3_leg2 = parameters[27] * qd_3_leg2
             + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let moment1_z_leg2 = parameters[15] * bias_rate_dot_1_leg2;
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
+            + parameters[22] * bias_rate_dot_2_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
+            - parameters[22] * rate_2_squared_leg2;
         let tau_1_leg2 = parameters[16] * bias_rate_dot_1_leg2
             - parameters[17] * minus_rate_1_leg2
             - ::overact::math::signed(parameters[18], minus_rate_1_leg2)
             + parameters[19];
-        let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
-            + parameters[22] * bias_rate_dot_2_leg2
-            + parameters[23] * minus_bias_a2_x_leg2;
-        let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
-            - parameters[22] * rate_2_squared_leg2 + parameters[23] * bias_a2_y_leg2;
-        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
-            + minus_v2_by_1_x_leg2 * minus_force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
+        let force_on_u1_leg2 = bias_rate_dot_1_leg2
+            * (parameters[15] + L_AB_SQUARED * parameters[23])
+            + L_AB * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
+            + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
@@ -9440,59 +9372,58 @@ impl DualV {
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
+            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
-            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
         let t2_leg3 = 0.5 * t1_leg3;
+        let minus_bias_rate_dot_2_leg3 = k1_leg3
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let force2_x_leg3 = parameters[37] * minus_bias_rate_dot_2_leg3
+            - parameters[36] * rate_2_squared_leg3;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_force2_y_leg3 = parameters[36] * minus_bias_rate_dot_2_leg3
+            + parameters[37] * rate_2_squared_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
         let minus_bias_rate_dot_1_leg3 = k1_leg3
             * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
         let tau_1_leg3 = parameters[32] * rate_1_leg3
             - parameters[31] * minus_bias_rate_dot_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
-        let minus_moment1_z_leg3 = parameters[30] * minus_bias_rate_dot_1_leg3;
-        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
-        let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
-            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
-        let minus_bias_rate_dot_2_leg3 = k1_leg3
-            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
-        let force2_x_leg3 = parameters[37] * minus_bias_rate_dot_2_leg3
-            - parameters[36] * rate_2_squared_leg3
-            - parameters[38] * minus_bias_a2_x_leg3;
-        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
-        let bias_a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
-            - minus_bias_rate_dot_1_leg3 * v2_by_1_y_leg3;
-        let force2_y_leg3 = parameters[38] * bias_a2_y_leg3
-            - (parameters[36] * minus_bias_rate_dot_2_leg3
-                + parameters[37] * rate_2_squared_leg3);
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (parameters[39] * minus_qd_2_leg3
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = tau_1_leg3 - minus_moment1_z_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
+        let force_on_u1_leg3 = L_AB
+            * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            - minus_bias_rate_dot_1_leg3
+                * (parameters[30] + L_AB_SQUARED * parameters[38]) + tau_1_leg3
             - tau_2_leg3;
+        let bias_a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
+            - 1.7857142857142858 * (t1_leg3 * minus_bias_rate_dot_1_leg3);
+        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
         let moment2_z_leg3 = parameters[36] * bias_a2_y_leg3
-            - parameters[35] * minus_bias_rate_dot_2_leg3
-            + parameters[37] * minus_bias_a2_x_leg3;
+            + parameters[37] * minus_bias_a2_x_leg3
+            - parameters[35] * minus_bias_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -9528,10 +9459,8 @@ impl DualV {
             - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
         let bias_rate_dot_1_leg4 = k1_leg4
             * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t2_leg4);
-        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
-        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
-        let bias_a2_y_leg4 = bias_rate_dot_1_leg4 * v2_by_1_y_leg4
-            - rate_1_squared_leg4 * minus_v2_by_1_x_leg4;
+        let bias_a2_y_leg4 = 1.7857142857142858 * (t1_leg4 * bias_rate_dot_1_leg4)
+            - INV_L_AB * (det_leg4 * rate_1_squared_leg4);
         let minus_bias_a2_x_leg4 = INV_L_AB * bias_a_on_f1_leg4;
         let moment2_z_leg4 = parameters[50] * bias_rate_dot_2_leg4
             + parameters[51] * bias_a2_y_leg4 + parameters[52] * minus_bias_a2_x_leg4;
@@ -9542,39 +9471,38 @@ impl DualV {
         let tau_3_leg4 = parameters[57] * qd_3_leg4
             + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
-        let moment1_z_leg4 = parameters[45] * bias_rate_dot_1_leg4;
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
+            + parameters[52] * bias_rate_dot_2_leg4;
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let force2_y_leg4 = parameters[51] * bias_rate_dot_2_leg4
+            - parameters[52] * rate_2_squared_leg4;
         let tau_1_leg4 = parameters[46] * bias_rate_dot_1_leg4
             - parameters[47] * minus_rate_1_leg4
             - ::overact::math::signed(parameters[48], minus_rate_1_leg4)
             + parameters[49];
-        let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
-            + parameters[52] * bias_rate_dot_2_leg4
-            + parameters[53] * minus_bias_a2_x_leg4;
-        let force2_y_leg4 = parameters[51] * bias_rate_dot_2_leg4
-            - parameters[52] * rate_2_squared_leg4 + parameters[53] * bias_a2_y_leg4;
-        let force_on_u1_leg4 = moment1_z_leg4 + tau_1_leg4
-            + minus_v2_by_1_x_leg4 * minus_force2_x_leg4 + v2_by_1_y_leg4 * force2_y_leg4
-            - tau_2_leg4;
+        let force_on_u1_leg4 = bias_rate_dot_1_leg4
+            * (parameters[45] + L_AB_SQUARED * parameters[53])
+            + L_AB * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
+            + tau_1_leg4 - tau_2_leg4;
         let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
+        let first_y_platform = parameters[62] + parameters[66];
         let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
-        let force_x_platform = parameters[62] * inv_r_p_bias_a_end_x_leg1
-            - parameters[61] * inv_r_p_bias_a_end_y_leg3
-            - parameters[65] * inv_r_p_bias_a_end_y_leg3
-            + parameters[66] * inv_r_p_bias_a_end_x_leg1;
-        let t2 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let first_x_platform = parameters[61] + parameters[65];
+        let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
+            - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let minus_force_y_platform = parameters[61] * inv_r_p_bias_a_end_x_leg1
-            + parameters[62] * inv_r_p_bias_a_end_y_leg3
-            + parameters[65] * inv_r_p_bias_a_end_x_leg1
-            + parameters[66] * inv_r_p_bias_a_end_y_leg3;
+        let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
+            + inv_r_p_bias_a_end_y_leg3 * first_y_platform;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -9582,11 +9510,11 @@ impl DualV {
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         ::core::result::Result::Ok([
-            t1 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            t3_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
                 + force_x_platform,
-            t2 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+            t4_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
                 - minus_force_y_platform,
-            t3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+            t5_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
                 + tau_3_leg4,
         ])
     }
@@ -9600,7 +9528,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 866 operations (364 additions, 491 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 881 intermediates.
+    /// 712 operations (302 additions, 399 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 727 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -9617,8 +9545,12 @@ impl DualV {
         )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -9687,57 +9619,56 @@ impl DualV {
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         // --- leg1
-        let v_arm_x_leg3 = p_y_leg1 * twist[2];
-        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
-        let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
-        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
+            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
-            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
         let t2_leg1 = 0.5 * t1_leg1;
+        let minus_bias_rate_dot_2_leg1 = k1_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_force2_y_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1
+            + parameters[7] * rate_2_squared_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
         let minus_bias_rate_dot_1_leg1 = k1_leg1
             * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+        let t3_leg1 = parameters[0] + L_AB_SQUARED * parameters[8];
         let tau_1_leg1 = parameters[2] * rate_1_leg1
             - parameters[1] * minus_bias_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let minus_moment1_z_leg1 = parameters[0] * minus_bias_rate_dot_1_leg1;
-        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
-        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
-            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
-        let minus_bias_rate_dot_2_leg1 = k1_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
-        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 - parameters[8] * minus_bias_a2_x_leg1;
-        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
-        let bias_a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
-            - minus_bias_rate_dot_1_leg1 * v2_by_1_y_leg1;
-        let force2_y_leg1 = parameters[8] * bias_a2_y_leg1
-            - (parameters[6] * minus_bias_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1);
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (parameters[9] * minus_qd_2_leg1
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            - tau_2_leg1;
+        let force_on_u1_leg1 = L_AB
+            * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            - minus_bias_rate_dot_1_leg1 * t3_leg1 + tau_1_leg1 - tau_2_leg1;
+        let bias_a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
+            - 1.7857142857142858 * (t1_leg1 * minus_bias_rate_dot_1_leg1);
+        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
         let moment2_z_leg1 = parameters[6] * bias_a2_y_leg1
-            - parameters[5] * minus_bias_rate_dot_2_leg1
-            + parameters[7] * minus_bias_a2_x_leg1;
+            + parameters[7] * minus_bias_a2_x_leg1
+            - parameters[5] * minus_bias_rate_dot_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         let tau_3_leg1 = parameters[12] * qd_3_leg1
             + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
@@ -9763,10 +9694,8 @@ impl DualV {
             - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
         let bias_rate_dot_1_leg2 = k1_leg2
             * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
-        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
-        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
-        let bias_a2_y_leg2 = bias_rate_dot_1_leg2 * v2_by_1_y_leg2
-            - rate_1_squared_leg2 * minus_v2_by_1_x_leg2;
+        let bias_a2_y_leg2 = 1.7857142857142858 * (t1_leg2 * bias_rate_dot_1_leg2)
+            - INV_L_AB * (det_leg2 * rate_1_squared_leg2);
         let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
         let moment2_z_leg2 = parameters[20] * bias_rate_dot_2_leg2
             + parameters[21] * bias_a2_y_leg2 + parameters[22] * minus_bias_a2_x_leg2;
@@ -9777,73 +9706,72 @@ impl DualV {
         let tau_3_leg2 = parameters[27] * qd_3_leg2
             + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let moment1_z_leg2 = parameters[15] * bias_rate_dot_1_leg2;
+        let t3_leg2 = parameters[15] + L_AB_SQUARED * parameters[23];
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
+            + parameters[22] * bias_rate_dot_2_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
+            - parameters[22] * rate_2_squared_leg2;
         let tau_1_leg2 = parameters[16] * bias_rate_dot_1_leg2
             - parameters[17] * minus_rate_1_leg2
             - ::overact::math::signed(parameters[18], minus_rate_1_leg2)
             + parameters[19];
-        let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
-            + parameters[22] * bias_rate_dot_2_leg2
-            + parameters[23] * minus_bias_a2_x_leg2;
-        let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
-            - parameters[22] * rate_2_squared_leg2 + parameters[23] * bias_a2_y_leg2;
-        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
-            + minus_v2_by_1_x_leg2 * minus_force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
+        let force_on_u1_leg2 = bias_rate_dot_1_leg2 * t3_leg2
+            + L_AB * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
+            + tau_1_leg2 - tau_2_leg2;
         // --- leg3
-        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
+            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
-            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
         let t2_leg3 = 0.5 * t1_leg3;
+        let minus_bias_rate_dot_2_leg3 = k1_leg3
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let force2_x_leg3 = parameters[37] * minus_bias_rate_dot_2_leg3
+            - parameters[36] * rate_2_squared_leg3;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_force2_y_leg3 = parameters[36] * minus_bias_rate_dot_2_leg3
+            + parameters[37] * rate_2_squared_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
         let minus_bias_rate_dot_1_leg3 = k1_leg3
             * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
+        let t3_leg3 = parameters[30] + L_AB_SQUARED * parameters[38];
         let tau_1_leg3 = parameters[32] * rate_1_leg3
             - parameters[31] * minus_bias_rate_dot_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
-        let minus_moment1_z_leg3 = parameters[30] * minus_bias_rate_dot_1_leg3;
-        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
-        let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
-            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
-        let minus_bias_rate_dot_2_leg3 = k1_leg3
-            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
-        let force2_x_leg3 = parameters[37] * minus_bias_rate_dot_2_leg3
-            - parameters[36] * rate_2_squared_leg3
-            - parameters[38] * minus_bias_a2_x_leg3;
-        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
-        let bias_a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
-            - minus_bias_rate_dot_1_leg3 * v2_by_1_y_leg3;
-        let force2_y_leg3 = parameters[38] * bias_a2_y_leg3
-            - (parameters[36] * minus_bias_rate_dot_2_leg3
-                + parameters[37] * rate_2_squared_leg3);
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (parameters[39] * minus_qd_2_leg3
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = tau_1_leg3 - minus_moment1_z_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
+        let force_on_u1_leg3 = L_AB
+            * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            - minus_bias_rate_dot_1_leg3 * t3_leg3 + tau_1_leg3 - tau_2_leg3;
+        let bias_a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
+            - 1.7857142857142858 * (t1_leg3 * minus_bias_rate_dot_1_leg3);
+        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
         let moment2_z_leg3 = parameters[36] * bias_a2_y_leg3
-            - parameters[35] * minus_bias_rate_dot_2_leg3
-            + parameters[37] * minus_bias_a2_x_leg3;
+            + parameters[37] * minus_bias_a2_x_leg3
+            - parameters[35] * minus_bias_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -9867,10 +9795,8 @@ impl DualV {
             - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
         let bias_rate_dot_1_leg4 = k1_leg4
             * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t2_leg4);
-        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
-        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
-        let bias_a2_y_leg4 = bias_rate_dot_1_leg4 * v2_by_1_y_leg4
-            - rate_1_squared_leg4 * minus_v2_by_1_x_leg4;
+        let bias_a2_y_leg4 = 1.7857142857142858 * (t1_leg4 * bias_rate_dot_1_leg4)
+            - INV_L_AB * (det_leg4 * rate_1_squared_leg4);
         let minus_bias_a2_x_leg4 = INV_L_AB * bias_a_on_f1_leg4;
         let moment2_z_leg4 = parameters[50] * bias_rate_dot_2_leg4
             + parameters[51] * bias_a2_y_leg4 + parameters[52] * minus_bias_a2_x_leg4;
@@ -9881,228 +9807,163 @@ impl DualV {
         let tau_3_leg4 = parameters[57] * qd_3_leg4
             + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
-        let moment1_z_leg4 = parameters[45] * bias_rate_dot_1_leg4;
+        let t3_leg4 = parameters[45] + L_AB_SQUARED * parameters[53];
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
+            + parameters[52] * bias_rate_dot_2_leg4;
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let force2_y_leg4 = parameters[51] * bias_rate_dot_2_leg4
+            - parameters[52] * rate_2_squared_leg4;
         let tau_1_leg4 = parameters[46] * bias_rate_dot_1_leg4
             - parameters[47] * minus_rate_1_leg4
             - ::overact::math::signed(parameters[48], minus_rate_1_leg4)
             + parameters[49];
-        let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
-            + parameters[52] * bias_rate_dot_2_leg4
-            + parameters[53] * minus_bias_a2_x_leg4;
-        let force2_y_leg4 = parameters[51] * bias_rate_dot_2_leg4
-            - parameters[52] * rate_2_squared_leg4 + parameters[53] * bias_a2_y_leg4;
-        let force_on_u1_leg4 = moment1_z_leg4 + tau_1_leg4
-            + minus_v2_by_1_x_leg4 * minus_force2_x_leg4 + v2_by_1_y_leg4 * force2_y_leg4
-            - tau_2_leg4;
+        let force_on_u1_leg4 = bias_rate_dot_1_leg4 * t3_leg4
+            + L_AB * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
+            + tau_1_leg4 - tau_2_leg4;
         let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
+        let first_y_platform = parameters[62] + parameters[66];
         let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
-        let force_x_platform = parameters[62] * inv_r_p_bias_a_end_x_leg1
-            - parameters[61] * inv_r_p_bias_a_end_y_leg3
-            - parameters[65] * inv_r_p_bias_a_end_y_leg3
-            + parameters[66] * inv_r_p_bias_a_end_x_leg1;
-        let t2 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+        let first_x_platform = parameters[61] + parameters[65];
+        let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
+            - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
+        let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
             + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3]
-            - (t1 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
-                + force_x_platform);
-        let c12_leg1 = INV_L_AB * l2_x_leg1;
-        let g1_vx_v2_by_1_y_leg1 = g1_vx_leg1 * v2_by_1_y_leg1;
-        let t3 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
-            + v2_by_1_x_leg1
-                * (minus_g2_vx_leg1 * parameters[7] + c12_leg1 * parameters[8])
-            + v2_by_1_y_leg1
-                * (parameters[8] * g1_vx_v2_by_1_y_leg1
-                    - minus_g2_vx_leg1 * parameters[6]);
-        let minus_g1_vx_v2_by_1_y_leg2 = minus_g1_vx_leg2 * v2_by_1_y_leg2;
-        let c12_leg2 = INV_L_AB * l2_x_leg2;
-        let t4 = v2_by_1_y_leg2
-            * (g2_vx_leg2 * parameters[21] - parameters[23] * minus_g1_vx_v2_by_1_y_leg2)
-            - minus_v2_by_1_x_leg2
-                * (c12_leg2 * parameters[23] - g2_vx_leg2 * parameters[22])
-            - (minus_g1_vx_leg2 * parameters[16] + minus_g1_vx_leg2 * parameters[15]);
-        let t5 = g1_vx_leg1 * t3
-            - minus_g2_vx_leg1
-                * (parameters[6] * g1_vx_v2_by_1_y_leg1
-                    - minus_g2_vx_leg1 * parameters[5] - c12_leg1 * parameters[7])
+            - (t4_leg3 + g2_vx_leg4 * force_on_u2_leg4
+                - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform);
+        let masses_leg1_1_1 = t3_leg1 + parameters[1];
+        let minus_masses_leg1_1_2 = 0.02854230377166157
+            * (125.12755102040816 * (det_leg1 * parameters[7])
+                - 62.56377551020408 * (t1_leg1 * parameters[6]));
+        let masses_leg2_1_2 = 0.02854230377166157
+            * (125.12755102040816 * (det_leg2 * parameters[22])
+                + 62.56377551020408 * (t1_leg2 * parameters[21]));
+        let masses_leg2_1_1 = t3_leg2 + parameters[16];
+        let t4_leg2 = g1_vx_leg1
+            * (g1_vx_leg1 * masses_leg1_1_1 + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
+            + minus_g2_vx_leg1
+                * (g1_vx_leg1 * minus_masses_leg1_1_2 + minus_g2_vx_leg1 * parameters[5])
             + g2_vx_leg2
-                * (g2_vx_leg2 * parameters[20]
-                    - parameters[21] * minus_g1_vx_v2_by_1_y_leg2
-                    - c12_leg2 * parameters[22]) - minus_g1_vx_leg2 * t4;
-        let c12_leg3 = INV_L_AB * l2_x_leg3;
-        let g1_vx_v2_by_1_y_leg3 = g1_vx_leg3 * v2_by_1_y_leg3;
-        let t6 = g1_vx_leg3 * parameters[30] + g1_vx_leg3 * parameters[31]
-            + v2_by_1_x_leg3
-                * (minus_g2_vx_leg3 * parameters[37] + c12_leg3 * parameters[38])
-            + v2_by_1_y_leg3
-                * (parameters[38] * g1_vx_v2_by_1_y_leg3
-                    - minus_g2_vx_leg3 * parameters[36]);
-        let minus_g1_vx_v2_by_1_y_leg4 = minus_g1_vx_leg4 * v2_by_1_y_leg4;
-        let c12_leg4 = INV_L_AB * l2_x_leg4;
-        let t7 = v2_by_1_y_leg4
-            * (g2_vx_leg4 * parameters[51] - parameters[53] * minus_g1_vx_v2_by_1_y_leg4)
-            - minus_v2_by_1_x_leg4
-                * (c12_leg4 * parameters[53] - g2_vx_leg4 * parameters[52])
-            - (minus_g1_vx_leg4 * parameters[46] + minus_g1_vx_leg4 * parameters[45]);
-        let t8 = t5 + g1_vx_leg3 * t6
-            - minus_g2_vx_leg3
-                * (parameters[36] * g1_vx_v2_by_1_y_leg3
-                    - minus_g2_vx_leg3 * parameters[35] - c12_leg3 * parameters[37])
+                * (g2_vx_leg2 * parameters[20] - minus_g1_vx_leg2 * masses_leg2_1_2)
+            - minus_g1_vx_leg2
+                * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * masses_leg2_1_1);
+        let masses_leg3_1_1 = t3_leg3 + parameters[31];
+        let minus_masses_leg3_1_2 = 0.02854230377166157
+            * (125.12755102040816 * (det_leg3 * parameters[37])
+                - 62.56377551020408 * (t1_leg3 * parameters[36]));
+        let t5_leg3 = t4_leg2
+            + g1_vx_leg3
+                * (g1_vx_leg3 * masses_leg3_1_1
+                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+            + minus_g2_vx_leg3
+                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                    + minus_g2_vx_leg3 * parameters[35]);
+        let masses_leg4_1_2 = 0.02854230377166157
+            * (125.12755102040816 * (det_leg4 * parameters[52])
+                + 62.56377551020408 * (t1_leg4 * parameters[51]));
+        let masses_leg4_1_1 = t3_leg4 + parameters[46];
+        let t4_leg4 = t5_leg3
             + g2_vx_leg4
-                * (g2_vx_leg4 * parameters[50]
-                    - parameters[51] * minus_g1_vx_v2_by_1_y_leg4
-                    - c12_leg4 * parameters[52]) - minus_g1_vx_leg4 * t7;
-        let m_platform_plus_m_payload = parameters[63] + parameters[67];
-        let mass_1_1 = t8 + m_platform_plus_m_payload;
+                * (g2_vx_leg4 * parameters[50] - minus_g1_vx_leg4 * masses_leg4_1_2)
+            - minus_g1_vx_leg4
+                * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * masses_leg4_1_1);
+        let mass_platform = parameters[63] + parameters[67];
+        let mass_1_1 = t4_leg4 + mass_platform;
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
-        let s12_leg1 = INV_L_AB * l2_y_leg1;
-        let g1_vy_v2_by_1_y_leg1 = g1_vy_leg1 * v2_by_1_y_leg1;
-        let t9 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
-            + v2_by_1_x_leg1
-                * (minus_g2_vy_leg1 * parameters[7] + s12_leg1 * parameters[8])
-            + v2_by_1_y_leg1
-                * (parameters[8] * g1_vy_v2_by_1_y_leg1
-                    - minus_g2_vy_leg1 * parameters[6]);
-        let t10 = parameters[6] * g1_vy_v2_by_1_y_leg1 - minus_g2_vy_leg1 * parameters[5]
-            - s12_leg1 * parameters[7];
-        let minus_g1_vy_v2_by_1_y_leg2 = minus_g1_vy_leg2 * v2_by_1_y_leg2;
-        let s12_leg2 = INV_L_AB * l2_y_leg2;
-        let t11 = g2_vy_leg2 * parameters[20]
-            - parameters[21] * minus_g1_vy_v2_by_1_y_leg2 - s12_leg2 * parameters[22];
-        let t12 = v2_by_1_y_leg2
-            * (g2_vy_leg2 * parameters[21] - parameters[23] * minus_g1_vy_v2_by_1_y_leg2)
-            - minus_v2_by_1_x_leg2
-                * (s12_leg2 * parameters[23] - g2_vy_leg2 * parameters[22])
-            - (minus_g1_vy_leg2 * parameters[16] + minus_g1_vy_leg2 * parameters[15]);
-        let s12_leg3 = INV_L_AB * l2_y_leg3;
-        let g1_vy_v2_by_1_y_leg3 = g1_vy_leg3 * v2_by_1_y_leg3;
-        let t13 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
-            + v2_by_1_x_leg3
-                * (minus_g2_vy_leg3 * parameters[37] + s12_leg3 * parameters[38])
-            + v2_by_1_y_leg3
-                * (parameters[38] * g1_vy_v2_by_1_y_leg3
-                    - minus_g2_vy_leg3 * parameters[36]);
-        let t14 = parameters[36] * g1_vy_v2_by_1_y_leg3
-            - minus_g2_vy_leg3 * parameters[35] - s12_leg3 * parameters[37];
-        let t15 = g1_vx_leg1 * t9 - minus_g2_vx_leg1 * t10 + g2_vx_leg2 * t11
-            - minus_g1_vx_leg2 * t12 + g1_vx_leg3 * t13 - minus_g2_vx_leg3 * t14;
-        let minus_g1_vy_v2_by_1_y_leg4 = minus_g1_vy_leg4 * v2_by_1_y_leg4;
-        let s12_leg4 = INV_L_AB * l2_y_leg4;
-        let t16 = g2_vy_leg4 * parameters[50]
-            - parameters[51] * minus_g1_vy_v2_by_1_y_leg4 - s12_leg4 * parameters[52];
-        let t17 = v2_by_1_y_leg4
-            * (g2_vy_leg4 * parameters[51] - parameters[53] * minus_g1_vy_v2_by_1_y_leg4)
-            - minus_v2_by_1_x_leg4
-                * (s12_leg4 * parameters[53] - g2_vy_leg4 * parameters[52])
-            - (minus_g1_vy_leg4 * parameters[46] + minus_g1_vy_leg4 * parameters[45]);
-        let mass_1_2 = t15 + g2_vx_leg4 * t16 - minus_g1_vx_leg4 * t17;
+        let t4_leg1 = g1_vy_leg1 * masses_leg1_1_1
+            + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
+        let t5_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
+            + minus_g2_vy_leg1 * parameters[5];
+        let t5_leg2 = g2_vy_leg2 * parameters[20] - minus_g1_vy_leg2 * masses_leg2_1_2;
+        let t6_leg2 = g2_vy_leg2 * masses_leg2_1_2 - minus_g1_vy_leg2 * masses_leg2_1_1;
+        let t6_leg3 = g1_vy_leg3 * masses_leg3_1_1
+            + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t7_leg3 = g1_vy_leg3 * minus_masses_leg3_1_2
+            + minus_g2_vy_leg3 * parameters[35];
+        let t8_leg3 = g1_vx_leg1 * t4_leg1 + minus_g2_vx_leg1 * t5_leg1
+            + g2_vx_leg2 * t5_leg2 - minus_g1_vx_leg2 * t6_leg2 + g1_vx_leg3 * t6_leg3
+            + minus_g2_vx_leg3 * t7_leg3;
+        let t5_leg4 = g2_vy_leg4 * parameters[50] - minus_g1_vy_leg4 * masses_leg4_1_2;
+        let t6_leg4 = g2_vy_leg4 * masses_leg4_1_2 - minus_g1_vy_leg4 * masses_leg4_1_1;
+        let mass_1_2 = t8_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4;
         let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t18 = g1_vy_leg1 * t9 - minus_g2_vy_leg1 * t10 + g2_vy_leg2 * t11
-            - minus_g1_vy_leg2 * t12 + g1_vy_leg3 * t13 - minus_g2_vy_leg3 * t14;
-        let mass_2_2 = t18 + g2_vy_leg4 * t16 - minus_g1_vy_leg4 * t17
-            + m_platform_plus_m_payload;
+        let t9_leg3 = g1_vy_leg1 * t4_leg1 + minus_g2_vy_leg1 * t5_leg1
+            + g2_vy_leg2 * t5_leg2 - minus_g1_vy_leg2 * t6_leg2 + g1_vy_leg3 * t6_leg3
+            + minus_g2_vy_leg3 * t7_leg3;
+        let mass_2_2 = t9_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
+            + mass_platform;
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let inv_pivot_2 = 1.0 / pivot_2;
-        let t19 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let minus_force_y_platform = parameters[61] * inv_r_p_bias_a_end_x_leg1
-            + parameters[62] * inv_r_p_bias_a_end_y_leg3
-            + parameters[65] * inv_r_p_bias_a_end_x_leg1
-            + parameters[66] * inv_r_p_bias_a_end_y_leg3;
-        let t20 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+        let t10_leg3 = g1_vy_leg1 * force_on_u1_leg1
+            - minus_g2_vy_leg1 * force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
+            - minus_g1_vy_leg2 * force_on_u1_leg2 + g1_vy_leg3 * force_on_u1_leg3
+            - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
+            + inv_r_p_bias_a_end_y_leg3 * first_y_platform;
+        let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
             + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
-            - (t19 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
-                - minus_force_y_platform);
-        let t21 = t20 - t2 * l_2_1;
-        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        let minus_v2_by_1_y_g1_wz_leg1 = v2_by_1_y_leg1 * minus_g1_wz_leg1;
-        let minus_v2_by_1_x_g1_wz_leg1 = v2_by_1_x_leg1 * minus_g1_wz_leg1;
-        let t22 = v2_by_1_y_leg1
-            * (g2_wz_leg1 * parameters[6] - parameters[8] * minus_v2_by_1_y_g1_wz_leg1)
-            - v2_by_1_x_leg1
-                * (g2_wz_leg1 * parameters[7]
-                    + parameters[8] * minus_v2_by_1_x_g1_wz_leg1)
-            - (minus_g1_wz_leg1 * parameters[0] + minus_g1_wz_leg1 * parameters[1]);
-        let t23 = g2_wz_leg1 * parameters[5] - parameters[6] * minus_v2_by_1_y_g1_wz_leg1
-            + parameters[7] * minus_v2_by_1_x_g1_wz_leg1;
+            - (t10_leg3 + g2_vy_leg4 * force_on_u2_leg4
+                - minus_g1_vy_leg4 * force_on_u1_leg4 - minus_force_y_platform);
+        let t3 = t2 - t1 * l_2_1;
+        // --- leg2
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        let v2_by_1_y_g1_wz_leg2 = v2_by_1_y_leg2 * g1_wz_leg2;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let minus_v2_by_1_x_g1_wz_leg2 = minus_v2_by_1_x_leg2 * g1_wz_leg2;
-        let t24 = parameters[21] * v2_by_1_y_g1_wz_leg2
-            - minus_g2_wz_leg2 * parameters[20]
-            + parameters[22] * minus_v2_by_1_x_g1_wz_leg2;
-        let t25 = g1_wz_leg2 * parameters[16] + g1_wz_leg2 * parameters[15]
-            + v2_by_1_y_leg2
-                * (parameters[23] * v2_by_1_y_g1_wz_leg2
-                    - minus_g2_wz_leg2 * parameters[21])
-            - minus_v2_by_1_x_leg2
-                * (minus_g2_wz_leg2 * parameters[22]
-                    - parameters[23] * minus_v2_by_1_x_g1_wz_leg2);
+        let t7_leg2 = g1_wz_leg2 * masses_leg2_1_2 - minus_g2_wz_leg2 * parameters[20];
+        let t8_leg2 = g1_wz_leg2 * masses_leg2_1_1 - minus_g2_wz_leg2 * masses_leg2_1_2;
+        // --- leg1
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let t6_leg1 = minus_g1_wz_leg1 * masses_leg1_1_1
+            + g2_wz_leg1 * minus_masses_leg1_1_2;
+        let t7_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
+            + g2_wz_leg1 * parameters[5];
+        // --- leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let v2_by_1_x_g1_wz_leg3 = v2_by_1_x_leg3 * g1_wz_leg3;
-        let v2_by_1_y_g1_wz_leg3 = v2_by_1_y_leg3 * g1_wz_leg3;
-        let t26 = g1_wz_leg3 * parameters[30] + g1_wz_leg3 * parameters[31]
-            + v2_by_1_x_leg3
-                * (minus_g2_wz_leg3 * parameters[37]
-                    + parameters[38] * v2_by_1_x_g1_wz_leg3)
-            + v2_by_1_y_leg3
-                * (parameters[38] * v2_by_1_y_g1_wz_leg3
-                    - minus_g2_wz_leg3 * parameters[36]);
-        let t27 = parameters[36] * v2_by_1_y_g1_wz_leg3
-            - minus_g2_wz_leg3 * parameters[35] - parameters[37] * v2_by_1_x_g1_wz_leg3;
-        let t28 = g1_vy_leg1 * t22 - minus_g2_vy_leg1 * t23 + g2_vy_leg2 * t24
-            - minus_g1_vy_leg2 * t25 + g1_vy_leg3 * t26 - minus_g2_vy_leg3 * t27;
+        let t11_leg3 = g1_wz_leg3 * masses_leg3_1_1
+            + minus_g2_wz_leg3 * minus_masses_leg3_1_2;
+        let t12_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
+            + minus_g2_wz_leg3 * parameters[35];
+        let t13_leg3 = g2_vy_leg2 * t7_leg2 - minus_g1_vy_leg2 * t8_leg2
+            - (g1_vy_leg1 * t6_leg1 + minus_g2_vy_leg1 * t7_leg1) + g1_vy_leg3 * t11_leg3
+            + minus_g2_vy_leg3 * t12_leg3;
+        // --- leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let minus_v2_by_1_y_g1_wz_leg4 = v2_by_1_y_leg4 * minus_g1_wz_leg4;
-        let v2_by_1_x_g1_wz_leg4 = minus_v2_by_1_x_leg4 * minus_g1_wz_leg4;
-        let t29 = g2_wz_leg4 * parameters[50]
-            - parameters[51] * minus_v2_by_1_y_g1_wz_leg4
-            - parameters[52] * v2_by_1_x_g1_wz_leg4;
-        let t30 = v2_by_1_y_leg4
-            * (g2_wz_leg4 * parameters[51] - parameters[53] * minus_v2_by_1_y_g1_wz_leg4)
-            - minus_v2_by_1_x_leg4
-                * (parameters[53] * v2_by_1_x_g1_wz_leg4 - g2_wz_leg4 * parameters[52])
-            - (minus_g1_wz_leg4 * parameters[46] + minus_g1_wz_leg4 * parameters[45]);
-        let t31 = 9.81 * s_phi;
-        let t32 = 9.81 * c_phi;
-        let moment_y_platform = parameters[62] * t31 - parameters[61] * t32
-            - parameters[65] * t32 + parameters[66] * t31;
-        let mass_2_3 = t28 + g2_vy_leg4 * t29 - minus_g1_vy_leg4 * t30
-            - 0.1019367991845056 * moment_y_platform;
-        let t33 = g1_vx_leg1 * t22 - minus_g2_vx_leg1 * t23 + g2_vx_leg2 * t24
-            - minus_g1_vx_leg2 * t25 + g1_vx_leg3 * t26 - minus_g2_vx_leg3 * t27;
-        let moment_x_platform = parameters[61] * t31 + parameters[62] * t32
-            + parameters[65] * t31 + parameters[66] * t32;
-        let mass_1_3 = t33 + g2_vx_leg4 * t29 - minus_g1_vx_leg4 * t30
-            - 0.1019367991845056 * moment_x_platform;
+        let t7_leg4 = g2_wz_leg4 * parameters[50] - minus_g1_wz_leg4 * masses_leg4_1_2;
+        let t8_leg4 = g2_wz_leg4 * masses_leg4_1_2 - minus_g1_wz_leg4 * masses_leg4_1_1;
+        let mass_2_3 = t13_leg3 + g2_vy_leg4 * t7_leg4 - minus_g1_vy_leg4 * t8_leg4
+            + c_phi * first_x_platform - s_phi * first_y_platform;
+        let t14_leg3 = g2_vx_leg2 * t7_leg2 - minus_g1_vx_leg2 * t8_leg2
+            - (g1_vx_leg1 * t6_leg1 + minus_g2_vx_leg1 * t7_leg1) + g1_vx_leg3 * t11_leg3
+            + minus_g2_vx_leg3 * t12_leg3;
+        let mass_1_3 = t14_leg3 + g2_vx_leg4 * t7_leg4 - minus_g1_vx_leg4 * t8_leg4
+            - (s_phi * first_x_platform + c_phi * first_y_platform);
         let l_3_1 = mass_1_3 * inv_pivot_1;
         let schur_2_3 = mass_2_3 - mass_1_2 * l_3_1;
         let l_3_2 = schur_2_3 * inv_pivot_2;
-        let t34 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
-            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
-            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
-            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
-            + tau_3_leg3;
-        let t35 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
+        let t15_leg3 = g2_wz_leg1 * force_on_u2_leg1
+            - minus_g1_wz_leg1 * force_on_u1_leg1 + tau_3_leg1
+            + g1_wz_leg2 * force_on_u1_leg2 - minus_g2_wz_leg2 * force_on_u2_leg2
+            + tau_3_leg2 + g1_wz_leg3 * force_on_u1_leg3
+            - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
+        let t4 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
             + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3]
-            - (t34 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
-                + tau_3_leg4);
-        let t36 = g2_wz_leg1 * t23 - minus_g1_wz_leg1 * t22 + g1_wz_leg2 * t25
-            - minus_g2_wz_leg2 * t24 + g1_wz_leg3 * t26 - minus_g2_wz_leg3 * t27;
-        let mass_3_3 = t36 + g2_wz_leg4 * t29 - minus_g1_wz_leg4 * t30 + parameters[60]
-            + parameters[64];
+            - (t15_leg3 + g2_wz_leg4 * force_on_u2_leg4
+                - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4);
+        let t16_leg3 = minus_g1_wz_leg1 * t6_leg1 + g2_wz_leg1 * t7_leg1
+            + g1_wz_leg2 * t8_leg2 - minus_g2_wz_leg2 * t7_leg2 + g1_wz_leg3 * t11_leg3
+            + minus_g2_wz_leg3 * t12_leg3;
+        let inertia_zz_platform = parameters[60] + parameters[64];
+        let mass_3_3 = t16_leg3 + g2_wz_leg4 * t7_leg4 - minus_g1_wz_leg4 * t8_leg4
+            + inertia_zz_platform;
         let pivot_3 = mass_3_3 - mass_1_3 * l_3_1 - schur_2_3 * l_3_2;
         ::overact::guard::mass(pivot_3)?;
-        let t37 = (t35 - t2 * l_3_1 - l_3_2 * t21) / pivot_3;
-        let t38 = inv_pivot_2 * t21 - l_3_2 * t37;
-        ::core::result::Result::Ok([
-            t2 * inv_pivot_1 - l_2_1 * t38 - l_3_1 * t37, t38, t37,
-        ])
+        let t5 = (t4 - t1 * l_3_1 - l_3_2 * t3) / pivot_3;
+        let t6 = inv_pivot_2 * t3 - l_3_2 * t5;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t6 - l_3_1 * t5, t6, t5])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
@@ -10115,7 +9976,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 633 operations (276 additions, 345 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 648 intermediates.
+    /// 623 operations (267 additions, 344 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 638 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10134,8 +9995,12 @@ impl DualV {
         )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -10186,32 +10051,31 @@ impl DualV {
         let t2_leg1 = 0.5 * t1_leg1;
         let rate_dot_1_leg1 = k1_leg1
             * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let moment1_z_leg1 = parameters[0] * rate_dot_1_leg1;
-        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let v2_by_1_x_leg1 = INV_L_AB * det_leg1;
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
             * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
         let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 + parameters[8] * a2_x_leg1;
-        let v2_by_1_y_leg1 = 1.7857142857142858 * t1_leg1;
-        let a2_y_leg1 = rate_1_squared_leg1 * v2_by_1_x_leg1
-            + rate_dot_1_leg1 * v2_by_1_y_leg1;
-        let force2_y_leg1 = parameters[8] * a2_y_leg1
-            - (parameters[6] * minus_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1);
+            - parameters[6] * rate_2_squared_leg1;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
+            + parameters[7] * rate_2_squared_leg1;
+        let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let tau_2_leg1 = parameters[11]
             - (parameters[9] * minus_qd_2_leg1
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
-        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            - tau_2_leg1;
-        let moment2_z_leg1 = parameters[6] * a2_y_leg1
-            - parameters[5] * minus_rate_dot_2_leg1 - parameters[7] * a2_x_leg1;
+        let force_on_u1_leg1 = rate_dot_1_leg1
+            * (parameters[0] + L_AB_SQUARED * parameters[8])
+            + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + tau_1_leg1 - tau_2_leg1;
+        let a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
+            + 1.7857142857142858 * (t1_leg1 * rate_dot_1_leg1);
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1 - parameters[7] * a2_x_leg1
+            - parameters[5] * minus_rate_dot_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         let tau_3_leg1 = parameters[12] * qd_3_leg1
             + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
@@ -10244,17 +10108,15 @@ impl DualV {
         let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
         let t2_leg2 = 0.5 * t1_leg2;
         let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
-        let minus_v2_by_1_x_leg2 = INV_L_AB * det_leg2;
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg2;
         let minus_rate_dot_1_leg2 = k1_leg2
             * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t2_leg2);
-        let v2_by_1_y_leg2 = 1.7857142857142858 * t1_leg2;
-        let minus_a2_y_leg2 = rate_1_squared_leg2 * minus_v2_by_1_x_leg2
-            + minus_rate_dot_1_leg2 * v2_by_1_y_leg2;
+        let minus_a2_y_leg2 = INV_L_AB * (det_leg2 * rate_1_squared_leg2)
+            + 1.7857142857142858 * (t1_leg2 * minus_rate_dot_1_leg2);
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
         let moment2_z_leg2 = parameters[20] * rate_dot_2_leg2
-            - parameters[21] * minus_a2_y_leg2 - parameters[22] * a2_x_leg2;
+            - (parameters[21] * minus_a2_y_leg2 + parameters[22] * a2_x_leg2);
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         let tau_2_leg2 = parameters[24] * qd_2_leg2
             + ::overact::math::signed(parameters[25], qd_2_leg2) + parameters[26];
@@ -10262,18 +10124,20 @@ impl DualV {
         let tau_3_leg2 = parameters[27] * qd_3_leg2
             + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
+            + parameters[22] * rate_dot_2_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
+            - parameters[22] * rate_2_squared_leg2;
         let tau_1_leg2 = parameters[19]
             - (parameters[16] * minus_rate_dot_1_leg2
                 + parameters[17] * minus_rate_1_leg2
                 + ::overact::math::signed(parameters[18], minus_rate_1_leg2));
-        let minus_moment1_z_leg2 = parameters[15] * minus_rate_dot_1_leg2;
-        let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
-            - parameters[22] * rate_2_squared_leg2 - parameters[23] * minus_a2_y_leg2;
-        let force2_x_leg2 = parameters[23] * a2_x_leg2
-            - (parameters[21] * rate_2_squared_leg2 + parameters[22] * rate_dot_2_leg2);
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + v2_by_1_y_leg2 * force2_y_leg2 - minus_v2_by_1_x_leg2 * force2_x_leg2
-            - tau_2_leg2;
+        let force_on_u1_leg2 = L_AB
+            * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
+            - minus_rate_dot_1_leg2 * (parameters[15] + L_AB_SQUARED * parameters[23])
+            + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
@@ -10311,37 +10175,36 @@ impl DualV {
         let t2_leg3 = 0.5 * t1_leg3;
         let rate_dot_1_leg3 = k1_leg3
             * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
-        let moment1_z_leg3 = parameters[30] * rate_dot_1_leg3;
-        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
-            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
-        let v2_by_1_x_leg3 = INV_L_AB * det_leg3;
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
             * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
         let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
-            - parameters[36] * rate_2_squared_leg3 + parameters[38] * a2_x_leg3;
-        let v2_by_1_y_leg3 = 1.7857142857142858 * t1_leg3;
-        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
-            + rate_dot_1_leg3 * v2_by_1_y_leg3;
-        let force2_y_leg3 = parameters[38] * a2_y_leg3
-            - (parameters[36] * minus_rate_dot_2_leg3
-                + parameters[37] * rate_2_squared_leg3);
+            - parameters[36] * rate_2_squared_leg3;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
+            + parameters[37] * rate_2_squared_leg3;
+        let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
+            + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         let tau_2_leg3 = parameters[41]
             - (parameters[39] * minus_qd_2_leg3
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
-        let moment2_z_leg3 = parameters[36] * a2_y_leg3
-            - parameters[35] * minus_rate_dot_2_leg3 - parameters[37] * a2_x_leg3;
+        let force_on_u1_leg3 = rate_dot_1_leg3
+            * (parameters[30] + L_AB_SQUARED * parameters[38])
+            + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + tau_1_leg3 - tau_2_leg3;
+        let a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
+            + 1.7857142857142858 * (t1_leg3 * rate_dot_1_leg3);
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let moment2_z_leg3 = parameters[36] * a2_y_leg3 - parameters[37] * a2_x_leg3
+            - parameters[35] * minus_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t1 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -10372,17 +10235,15 @@ impl DualV {
         let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
         let t2_leg4 = 0.5 * t1_leg4;
         let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
-        let minus_v2_by_1_x_leg4 = INV_L_AB * det_leg4;
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
             + L_AB_SQUARED * rate_2_squared_leg4;
         let minus_rate_dot_1_leg4 = k1_leg4
             * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t2_leg4);
-        let v2_by_1_y_leg4 = 1.7857142857142858 * t1_leg4;
-        let minus_a2_y_leg4 = rate_1_squared_leg4 * minus_v2_by_1_x_leg4
-            + minus_rate_dot_1_leg4 * v2_by_1_y_leg4;
+        let minus_a2_y_leg4 = INV_L_AB * (det_leg4 * rate_1_squared_leg4)
+            + 1.7857142857142858 * (t1_leg4 * minus_rate_dot_1_leg4);
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
         let moment2_z_leg4 = parameters[50] * rate_dot_2_leg4
-            - parameters[51] * minus_a2_y_leg4 - parameters[52] * a2_x_leg4;
+            - (parameters[51] * minus_a2_y_leg4 + parameters[52] * a2_x_leg4);
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let tau_2_leg4 = parameters[54] * qd_2_leg4
             + ::overact::math::signed(parameters[55], qd_2_leg4) + parameters[56];
@@ -10390,26 +10251,30 @@ impl DualV {
         let tau_3_leg4 = parameters[57] * qd_3_leg4
             + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
+            + parameters[52] * rate_dot_2_leg4;
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
+            - parameters[52] * rate_2_squared_leg4;
         let tau_1_leg4 = parameters[49]
             - (parameters[46] * minus_rate_dot_1_leg4
                 + parameters[47] * minus_rate_1_leg4
                 + ::overact::math::signed(parameters[48], minus_rate_1_leg4));
-        let minus_moment1_z_leg4 = parameters[45] * minus_rate_dot_1_leg4;
-        let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
-            - parameters[52] * rate_2_squared_leg4 - parameters[53] * minus_a2_y_leg4;
-        let force2_x_leg4 = parameters[53] * a2_x_leg4
-            - (parameters[51] * rate_2_squared_leg4 + parameters[52] * rate_dot_2_leg4);
-        let force_on_u1_leg4 = tau_1_leg4 - minus_moment1_z_leg4
-            + v2_by_1_y_leg4 * force2_y_leg4 - minus_v2_by_1_x_leg4 * force2_x_leg4
-            - tau_2_leg4;
+        let force_on_u1_leg4 = L_AB
+            * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
+            - minus_rate_dot_1_leg4 * (parameters[45] + L_AB_SQUARED * parameters[53])
+            + tau_1_leg4 - tau_2_leg4;
+        let mass_platform = parameters[63] + parameters[67];
         let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let first_y_platform = parameters[62] + parameters[66];
         let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-        let force_x_platform = parameters[62] * inv_r_p_a_arm_x_leg1
-            - parameters[61] * inv_r_p_a_arm_y_leg3 + acceleration[0] * parameters[63]
-            - parameters[65] * inv_r_p_a_arm_y_leg3
-            + parameters[66] * inv_r_p_a_arm_x_leg1 + acceleration[0] * parameters[67];
-        let t2 = t1 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
-            + force_x_platform;
+        let first_x_platform = parameters[61] + parameters[65];
+        let force_x_platform = acceleration[0] * mass_platform
+            + inv_r_p_a_arm_x_leg1 * first_y_platform
+            - inv_r_p_a_arm_y_leg3 * first_x_platform;
+        let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
+            - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
         ::overact::guard::platform(
@@ -10430,16 +10295,15 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let inv_pivot_2 = 1.0 / pivot_2;
-        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = acceleration[1] * parameters[63]
-            - (parameters[61] * inv_r_p_a_arm_x_leg1
-                + parameters[62] * inv_r_p_a_arm_y_leg3)
-            - parameters[65] * inv_r_p_a_arm_x_leg1
-            - parameters[66] * inv_r_p_a_arm_y_leg3 + acceleration[1] * parameters[67];
-        let t4 = t3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
-            + force_y_platform - t2 * l_2_1;
+        let force_y_platform = acceleration[1] * mass_platform
+            - (inv_r_p_a_arm_x_leg1 * first_x_platform
+                + inv_r_p_a_arm_y_leg3 * first_y_platform);
+        let t1 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
+            - t1_platform * l_2_1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -10480,48 +10344,47 @@ impl DualV {
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
             + tau_3_leg3;
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-        let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let moment_z_platform = acceleration[2] * parameters[60]
-            + parameters[61] * a_y_platform - parameters[62] * a_x_platform
-            + acceleration[2] * parameters[64] + parameters[65] * a_y_platform
-            - parameters[66] * a_x_platform;
-        let t6 = t5 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
-            + tau_3_leg4 + moment_z_platform - t2 * l_3_1 - l_3_2 * t4;
-        let t7 = inv_pivot_3 * t6;
-        let t8 = inv_pivot_2 * t4 - l_3_2 * t7;
-        let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
+        let inertia_zz_platform = parameters[60] + parameters[64];
+        let moment_z_platform = acceleration[1]
+            * (c_phi * first_x_platform - s_phi * first_y_platform)
+            - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
+            + acceleration[2] * inertia_zz_platform;
+        let t2 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
+            - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
+            - t1_platform * l_3_1 - l_3_2 * t1;
+        let t3 = inv_pivot_3 * t2;
+        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
+        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
         let g1_vy_minus_g1_vx_l_2_1_leg4 = minus_g1_vx_leg4 * l_2_1 - minus_g1_vy_leg4;
-        let t10 = inv_pivot_3
+        let t6 = inv_pivot_3
             * (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
                 - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4);
-        let t11 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t10;
-        let t12 = minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t11 + l_3_1 * t10;
-        let minus_normal_1_1 = g1_vy_leg1 * t11 - g1_vx_leg1 * t12
-            - minus_g1_wz_leg1 * t10;
+        let t7 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t6;
+        let t8 = minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t7 + l_3_1 * t6;
+        let minus_normal_1_1 = g1_vy_leg1 * t7 - g1_vx_leg1 * t8 - minus_g1_wz_leg1 * t6;
         let normal_4_1 = 1.0
-            - (minus_g1_vx_leg4 * t12 - minus_g1_vy_leg4 * t11 - minus_g1_wz_leg4 * t10);
+            - (minus_g1_vx_leg4 * t8 - minus_g1_vy_leg4 * t7 - minus_g1_wz_leg4 * t6);
         let norm_1 = ::overact::math::sqrt(normal_4_1);
         ::overact::guard::platform(norm_1, 0.5, ::overact::ActuatorGroup::All)?;
         let inv_norm_1 = 1.0 / norm_1;
-        let minus_normal_2_1 = minus_g1_vx_leg2 * t12 - minus_g1_vy_leg2 * t11
-            + g1_wz_leg2 * t10;
-        let minus_normal_3_1 = g1_vy_leg3 * t11 - g1_vx_leg3 * t12 + g1_wz_leg3 * t10;
+        let minus_normal_2_1 = minus_g1_vx_leg2 * t8 - minus_g1_vy_leg2 * t7
+            + g1_wz_leg2 * t6;
+        let minus_normal_3_1 = g1_vy_leg3 * t7 - g1_vx_leg3 * t8 + g1_wz_leg3 * t6;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t9 + g1_vy_leg1 * t8 - minus_g1_wz_leg1 * t7
+            g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3
                 - preload[0] * (minus_normal_1_1 * inv_norm_1),
-            g1_wz_leg2 * t7 - (minus_g1_vx_leg2 * t9 + minus_g1_vy_leg2 * t8)
+            g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4)
                 - preload[0] * (minus_normal_2_1 * inv_norm_1),
-            g1_vx_leg3 * t9 + g1_vy_leg3 * t8 + g1_wz_leg3 * t7
+            g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3
                 - preload[0] * (minus_normal_3_1 * inv_norm_1),
             preload[0] * (normal_4_1 * inv_norm_1)
-                - (minus_g1_vx_leg4 * t9 + minus_g1_vy_leg4 * t8 + minus_g1_wz_leg4 * t7),
+                - (minus_g1_vx_leg4 * t5 + minus_g1_vy_leg4 * t4 + minus_g1_wz_leg4 * t3),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.

@@ -33,9 +33,8 @@
 /// | `a_on_f1_left` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
 /// | `bias_a_on_f1_left` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
 /// | `a1_x_left` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
-/// | `v2_by_1_x_left` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `force2_x_left` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
-/// | `moment1_z_left` | m | moment of a body's inertial parameters about its origin |
+/// | `moment2_z_left` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_left` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_left` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `bias_a1_x_left` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
@@ -3456,7 +3455,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 241 operations (93 additions, 142 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 245 intermediates.
+    /// 239 operations (93 additions, 140 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 243 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3476,12 +3475,8 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
         const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half
-        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
         /// l_1 / half²
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
@@ -3541,20 +3536,18 @@ impl FiveBar {
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let moment1_z_left = parameters[1] * a1_y_left
-            - parameters[0] * minus_rate_dot_1_left - parameters[2] * a1_x_left;
+        let minus_force2_x_left = parameters[8] * rate_2_squared_left
+            + parameters[9] * rate_dot_2_left;
+        let force2_y_left = parameters[8] * rate_dot_2_left
+            - parameters[9] * rate_2_squared_left;
+        let t4_left = a1_y_left * (parameters[1] + L_1 * parameters[10])
+            - parameters[2] * a1_x_left
+            - minus_rate_dot_1_left * (parameters[0] + L_1_SQUARED * parameters[10])
+            + L_1 * (minus_s2_left * minus_force2_x_left + c2_left * force2_y_left);
         let tau_1_left = parameters[6]
             - (parameters[3] * minus_rate_dot_1_left + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
-        let force2_y_left = parameters[8] * rate_dot_2_left
-            - parameters[9] * rate_2_squared_left + parameters[10] * a2_y_left;
-        let minus_v2_by_1_x_left = INV_L_2 * det_left;
-        let force2_x_left = parameters[10] * a2_x_left
-            - (parameters[8] * rate_2_squared_left + parameters[9] * rate_dot_2_left);
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
-            - tau_2_left;
+        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -3572,15 +3565,20 @@ impl FiveBar {
         let g1_vx_right = l2_x_right * k_right;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let minus_g2_vx_right = l1_x_right * k_right;
         let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            parameters[23],
+            minus_qd_2_right,
+        );
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
             + L_2_SQUARED * rate_2_squared_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = rho_squared_right - 0.1025;
         let t3_right = TWICE_L_2 * t2_right;
@@ -3588,43 +3586,35 @@ impl FiveBar {
             * (a_on_f1_right + rate_1_squared_right * t3_right);
         let a1_y_right = 49.05 * l1_x_right;
         let a1_x_right = 49.05 * l1_y_right;
-        let moment1_z_right = parameters[12] * rate_dot_1_right
-            + parameters[13] * a1_y_right - parameters[14] * a1_x_right;
-        let tau_1_right = parameters[15] * rate_dot_1_right
-            + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let v2_by_1_x_right = INV_L_2 * det_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let minus_a_on_f2_right = l1_x_right * acceleration[0]
             + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
         let minus_rate_dot_2_right = k_right
             * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
-        let t4_right = a1_x_right - L_1 * rate_1_squared_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-        let a2_x_right = c2_right * t4_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
         let force2_x_right = parameters[21] * minus_rate_dot_2_right
-            - parameters[20] * rate_2_squared_right + parameters[22] * a2_x_right;
-        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
-        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t4_right;
-        let force2_y_right = parameters[22] * a2_y_right
-            - (parameters[20] * minus_rate_dot_2_right
-                + parameters[21] * rate_2_squared_right);
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            parameters[23],
-            minus_qd_2_right,
-        );
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
-            + minus_tau_2_right;
-        let moment2_z_right = parameters[20] * a2_y_right
-            - parameters[19] * minus_rate_dot_2_right - parameters[21] * a2_x_right;
+            - parameters[20] * rate_2_squared_right;
+        let c2_right = INV_HALF * t2_right;
+        let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
+            + parameters[21] * rate_2_squared_right;
+        let t4_right = rate_dot_1_right * (parameters[12] + L_1_SQUARED * parameters[22])
+            + a1_y_right * (parameters[13] + L_1 * parameters[22])
+            - parameters[14] * a1_x_right
+            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let tau_1_right = parameters[15] * rate_dot_1_right
+            + parameters[16] * rate_1_right
+            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
+        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
+        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+        let t5_right = a1_x_right - L_1 * rate_1_squared_right;
+        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t5_right;
+        let a2_x_right = c2_right * t5_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
+            - parameters[19] * minus_rate_dot_2_right;
         let force_on_u2_right = moment2_z_right - minus_tau_2_right;
         let force_x_platform = acceleration[0] * parameters[24];
-        let t1 = g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
-            + g1_vx_right * force_on_u1_right - minus_g2_vx_right * force_on_u2_right
-            + force_x_platform;
+        let t1_platform = g2_vx_left * force_on_u2_left
+            - minus_g1_vx_left * force_on_u1_left + g1_vx_right * force_on_u1_right
+            - minus_g2_vx_right * force_on_u2_right + force_x_platform;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
         ::overact::guard::platform(
             s_1_1,
@@ -3635,9 +3625,9 @@ impl FiveBar {
         let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
         let l_2_1 = s_1_2 * inv_pivot_1;
         let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
-        let t2 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+        let t1 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
             + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
-            + force_y_platform - t1 * l_2_1;
+            + force_y_platform - t1_platform * l_2_1;
         let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
         ::overact::guard::platform(
@@ -3645,10 +3635,10 @@ impl FiveBar {
             14.323546684675748,
             ::overact::ActuatorGroup::All,
         )?;
-        let t3 = t2 / pivot_2;
-        let t4 = t1 * inv_pivot_1 - l_2_1 * t3;
+        let t2 = t1 / pivot_2;
+        let t3 = t1_platform * inv_pivot_1 - l_2_1 * t2;
         ::core::result::Result::Ok([
-            -(minus_g1_vx_left * t4 + minus_g1_vy_left * t3), g1_vx_right * t4 + g1_vy_right * t3,
+            -(minus_g1_vx_left * t3 + minus_g1_vy_left * t2), g1_vx_right * t3 + g1_vy_right * t2,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3662,7 +3652,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 210 operations (79 additions, 127 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 4 signs, 220 intermediates.
+    /// 208 operations (79 additions, 125 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 4 signs, 218 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3685,6 +3675,8 @@ impl FiveBar {
         const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// l_2
         const L_2: ::core::primitive::f64 = 0.25;
         // --- sines and cosines
@@ -3700,51 +3692,48 @@ impl FiveBar {
         let inv_s2_left = 1.0 / s2_left;
         let k1_left = INV_L_1 * inv_s2_left;
         let g1_vx_left = c12_left * k1_left;
+        let g1_vy_left = s12_left * k1_left;
+        let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
         let k2_left = INV_L_2 * inv_s2_left;
         let minus_g2_vx_left = c1_left * k2_left;
         let minus_g2_vy_left = s1_left * k2_left;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        let minus_tau_2_left = ::overact::math::signed(parameters[11], minus_qd_2_left);
         let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
         let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
         let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
             + l_2_rate_2_squared_left;
-        let g1_vy_left = s12_left * k1_left;
-        let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
         let rate_1_squared_left = rate_1_left * rate_1_left;
-        let v2_by_1_y_left = L_1 * c2_left;
+        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
         let rate_dot_1_left = k1_left
-            * (a_on_f1_left + rate_1_squared_left * v2_by_1_y_left);
+            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
         let a1_y_left = 9.81 * c1_left;
         let a1_x_left = 9.81 * s1_left;
-        let moment1_z_left = parameters[0] * rate_dot_1_left + parameters[1] * a1_y_left
-            - parameters[2] * a1_x_left;
-        let tau_1_left = parameters[3] * rate_dot_1_left + parameters[4] * rate_1_left
-            + ::overact::math::signed(parameters[5], rate_1_left) + parameters[6];
-        let v2_by_1_x_left = L_1 * s2_left;
-        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
         let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
             + l_1_rate_1_squared_left;
         let minus_rate_dot_2_left = k2_left
             * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
-        let a1_x_minus_l_1_rate_1_squared_left = a1_x_left - l_1_rate_1_squared_left;
-        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left + L_1 * rate_dot_1_left;
-        let a2_x_left = c2_left * a1_x_minus_l_1_rate_1_squared_left
-            + s2_left * a1_y_plus_l_1_rate_dot_1_left;
         let force2_x_left = parameters[9] * minus_rate_dot_2_left
-            - parameters[8] * rate_2_squared_left + parameters[10] * a2_x_left;
+            - parameters[8] * rate_2_squared_left;
+        let minus_force2_y_left = parameters[8] * minus_rate_dot_2_left
+            + parameters[9] * rate_2_squared_left;
+        let t1_left = rate_dot_1_left * (parameters[0] + L_1_SQUARED * parameters[10])
+            + a1_y_left * (parameters[1] + L_1 * parameters[10])
+            - parameters[2] * a1_x_left
+            + L_1 * (s2_left * force2_x_left - c2_left * minus_force2_y_left);
+        let tau_1_left = parameters[3] * rate_dot_1_left + parameters[4] * rate_1_left
+            + ::overact::math::signed(parameters[5], rate_1_left) + parameters[6];
+        let force_on_u1_left = minus_tau_2_left + t1_left + tau_1_left;
+        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left + L_1 * rate_dot_1_left;
+        let a1_x_minus_l_1_rate_1_squared_left = a1_x_left - l_1_rate_1_squared_left;
         let a2_y_left = c2_left * a1_y_plus_l_1_rate_dot_1_left
             - s2_left * a1_x_minus_l_1_rate_1_squared_left;
-        let force2_y_left = parameters[10] * a2_y_left
-            - (parameters[8] * minus_rate_dot_2_left
-                + parameters[9] * rate_2_squared_left);
-        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        let minus_tau_2_left = ::overact::math::signed(parameters[11], minus_qd_2_left);
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            + v2_by_1_x_left * force2_x_left + v2_by_1_y_left * force2_y_left
-            + minus_tau_2_left;
-        let moment2_z_left = parameters[8] * a2_y_left
-            - parameters[7] * minus_rate_dot_2_left - parameters[9] * a2_x_left;
+        let a2_x_left = c2_left * a1_x_minus_l_1_rate_1_squared_left
+            + s2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let moment2_z_left = parameters[8] * a2_y_left - parameters[9] * a2_x_left
+            - parameters[7] * minus_rate_dot_2_left;
         let force_on_u2_left = moment2_z_left - minus_tau_2_left;
         // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
@@ -3752,58 +3741,55 @@ impl FiveBar {
         let inv_s2_right = 1.0 / s2_right;
         let k1_right = INV_L_1 * inv_s2_right;
         let g1_vx_right = c12_right * k1_right;
+        let g1_vy_right = s12_right * k1_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let k2_right = INV_L_2 * inv_s2_right;
         let minus_g2_vx_right = c1_right * k2_right;
         let minus_g2_vy_right = s1_right * k2_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
-        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
-            + l_2_rate_2_squared_right;
-        let g1_vy_right = s12_right * k1_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let v2_by_1_y_right = L_1 * c2_right;
-        let rate_dot_1_right = k1_right
-            * (a_on_f1_right + rate_1_squared_right * v2_by_1_y_right);
-        let a1_y_right = 9.81 * c1_right;
-        let a1_x_right = 9.81 * s1_right;
-        let moment1_z_right = parameters[12] * rate_dot_1_right
-            + parameters[13] * a1_y_right - parameters[14] * a1_x_right;
-        let tau_1_right = parameters[15] * rate_dot_1_right
-            + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let v2_by_1_x_right = L_1 * s2_right;
-        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
-        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
-            + l_1_rate_1_squared_right;
-        let minus_rate_dot_2_right = k2_right
-            * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
-        let t1_right = a1_x_right - l_1_rate_1_squared_right;
-        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-        let a2_x_right = c2_right * t1_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-        let force2_x_right = parameters[21] * minus_rate_dot_2_right
-            - parameters[20] * rate_2_squared_right + parameters[22] * a2_x_right;
-        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t1_right;
-        let force2_y_right = parameters[22] * a2_y_right
-            - (parameters[20] * minus_rate_dot_2_right
-                + parameters[21] * rate_2_squared_right);
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
             minus_qd_2_right,
         );
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
-            + minus_tau_2_right;
-        let moment2_z_right = parameters[20] * a2_y_right
-            - parameters[19] * minus_rate_dot_2_right - parameters[21] * a2_x_right;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let rate_dot_1_right = k1_right
+            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
+        let a1_y_right = 9.81 * c1_right;
+        let a1_x_right = 9.81 * s1_right;
+        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
+            + l_1_rate_1_squared_right;
+        let minus_rate_dot_2_right = k2_right
+            * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
+        let force2_x_right = parameters[21] * minus_rate_dot_2_right
+            - parameters[20] * rate_2_squared_right;
+        let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
+            + parameters[21] * rate_2_squared_right;
+        let t1_right = rate_dot_1_right * (parameters[12] + L_1_SQUARED * parameters[22])
+            + a1_y_right * (parameters[13] + L_1 * parameters[22])
+            - parameters[14] * a1_x_right
+            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let tau_1_right = parameters[15] * rate_dot_1_right
+            + parameters[16] * rate_1_right
+            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
+        let force_on_u1_right = minus_tau_2_right + t1_right + tau_1_right;
+        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+        let t2_right = a1_x_right - l_1_rate_1_squared_right;
+        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t2_right;
+        let a2_x_right = c2_right * t2_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
+            - parameters[19] * minus_rate_dot_2_right;
         let force_on_u2_right = moment2_z_right - minus_tau_2_right;
         let force_x_platform = acceleration[0] * parameters[24];
-        let t1 = g1_vx_left * force_on_u1_left - minus_g2_vx_left * force_on_u2_left
-            + g1_vx_right * force_on_u1_right - minus_g2_vx_right * force_on_u2_right
-            + force_x_platform;
+        let t1_platform = g1_vx_left * force_on_u1_left
+            - minus_g2_vx_left * force_on_u2_left + g1_vx_right * force_on_u1_right
+            - minus_g2_vx_right * force_on_u2_right + force_x_platform;
         let s_1_1 = g1_vx_left * g1_vx_left + g1_vx_right * g1_vx_right;
         ::overact::guard::platform(
             s_1_1,
@@ -3814,9 +3800,9 @@ impl FiveBar {
         let s_1_2 = g1_vx_left * g1_vy_left + g1_vx_right * g1_vy_right;
         let l_2_1 = s_1_2 * inv_pivot_1;
         let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
-        let t2 = g1_vy_left * force_on_u1_left - minus_g2_vy_left * force_on_u2_left
+        let t1 = g1_vy_left * force_on_u1_left - minus_g2_vy_left * force_on_u2_left
             + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
-            + force_y_platform - t1 * l_2_1;
+            + force_y_platform - t1_platform * l_2_1;
         let s_2_2 = g1_vy_left * g1_vy_left + g1_vy_right * g1_vy_right;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
         ::overact::guard::platform(
@@ -3824,10 +3810,10 @@ impl FiveBar {
             14.32354668467552,
             ::overact::ActuatorGroup::All,
         )?;
-        let t3 = t2 / pivot_2;
-        let t4 = t1 * inv_pivot_1 - l_2_1 * t3;
+        let t2 = t1 / pivot_2;
+        let t3 = t1_platform * inv_pivot_1 - l_2_1 * t2;
         ::core::result::Result::Ok([
-            g1_vx_left * t4 + g1_vy_left * t3, g1_vx_right * t4 + g1_vy_right * t3,
+            g1_vx_left * t3 + g1_vy_left * t2, g1_vx_right * t3 + g1_vy_right * t2,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3841,7 +3827,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 254 operations (97 additions, 151 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 258 intermediates.
+    /// 252 operations (97 additions, 149 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 256 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3864,12 +3850,8 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
         const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half
-        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
         /// l_1 / half²
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
@@ -4008,72 +3990,69 @@ impl FiveBar {
         let qd_2_left = rate_2_left - actuator_velocities[0];
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let moment1_z_left = actuator_accelerations[0] * parameters[0]
-            + bias_a1_y_left * parameters[1] - bias_a1_x_left * parameters[2];
+        let minus_force2_x_left = rate_2_squared_left * parameters[8]
+            + parameters[9] * rate_dot_2_left;
+        let force2_y_left = parameters[8] * rate_dot_2_left
+            - rate_2_squared_left * parameters[9];
+        let t5_left = actuator_accelerations[0]
+            * (parameters[0] + L_1_SQUARED * parameters[10])
+            + bias_a1_y_left * (parameters[1] + L_1 * parameters[10])
+            - bias_a1_x_left * parameters[2]
+            + L_1 * (minus_s2_left * minus_force2_x_left + c2_left * force2_y_left);
         let tau_1_left = actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
-        let force2_y_left = parameters[8] * rate_dot_2_left
-            - rate_2_squared_left * parameters[9] + parameters[10] * a2_y_left;
-        let minus_v2_by_1_x_left = INV_L_2 * det_left;
-        let force2_x_left = parameters[10] * a2_x_left
-            - (rate_2_squared_left * parameters[8] + parameters[9] * rate_dot_2_left);
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
-            - tau_2_left;
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let moment1_z_right = actuator_accelerations[1] * parameters[12]
-            + bias_a1_y_right * parameters[13] - bias_a1_x_right * parameters[14];
-        let tau_1_right = actuator_accelerations[1] * parameters[15]
-            + actuator_velocities[1] * parameters[16]
-            + ::overact::math::signed(parameters[17], actuator_velocities[1])
-            + parameters[18];
+        let force_on_u1_left = t5_left + tau_1_left - tau_2_left;
         // --- right
-        let v2_by_1_x_right = INV_L_2 * det_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
-            + minus_bias_a_on_f2_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
-        let t4_right = bias_a1_x_right - L_1 * rate_1_squared_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
-            + L_1 * actuator_accelerations[1];
-        let a2_x_right = c2_right * t4_right + s2_right * bias_a1_y_plus_l_1_qdd1_right;
-        let force2_x_right = parameters[21] * minus_rate_dot_2_right
-            - rate_2_squared_right * parameters[20] + parameters[22] * a2_x_right;
-        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
-        let a2_y_right = c2_right * bias_a1_y_plus_l_1_qdd1_right - s2_right * t4_right;
-        let force2_y_right = parameters[22] * a2_y_right
-            - (parameters[20] * minus_rate_dot_2_right
-                + rate_2_squared_right * parameters[21]);
         let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
             minus_qd_2_right,
         );
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
-            + minus_tau_2_right;
-        let moment2_z_right = parameters[20] * a2_y_right
-            - parameters[19] * minus_rate_dot_2_right - parameters[21] * a2_x_right;
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
+            + minus_bias_a_on_f2_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let force2_x_right = parameters[21] * minus_rate_dot_2_right
+            - rate_2_squared_right * parameters[20];
+        let c2_right = INV_HALF * t2_right;
+        let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
+            + rate_2_squared_right * parameters[21];
+        let t4_right = actuator_accelerations[1]
+            * (parameters[12] + L_1_SQUARED * parameters[22])
+            + bias_a1_y_right * (parameters[13] + L_1 * parameters[22])
+            - bias_a1_x_right * parameters[14]
+            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let tau_1_right = actuator_accelerations[1] * parameters[15]
+            + actuator_velocities[1] * parameters[16]
+            + ::overact::math::signed(parameters[17], actuator_velocities[1])
+            + parameters[18];
+        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
+        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+            + L_1 * actuator_accelerations[1];
+        let t5_right = bias_a1_x_right - L_1 * rate_1_squared_right;
+        let a2_y_right = c2_right * bias_a1_y_plus_l_1_qdd1_right - s2_right * t5_right;
+        let a2_x_right = c2_right * t5_right + s2_right * bias_a1_y_plus_l_1_qdd1_right;
+        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
+            - parameters[19] * minus_rate_dot_2_right;
         let force_on_u2_right = moment2_z_right - minus_tau_2_right;
         let force_x_platform = dvx * parameters[24];
-        let t3 = g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
-            + g1_vx_right * force_on_u1_right - minus_g2_vx_right * force_on_u2_right
-            + force_x_platform;
+        let t1_platform = g2_vx_left * force_on_u2_left
+            - minus_g1_vx_left * force_on_u1_left + g1_vx_right * force_on_u1_right
+            - minus_g2_vx_right * force_on_u2_right + force_x_platform;
         let force_y_platform = parameters[24] * (dvy + 9.81);
-        let t4 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+        let t3 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
             + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
-            + force_y_platform - l_2_1 * t3;
-        let t5 = inv_pivot_2 * t4;
-        let t6 = inv_pivot_1 * t3 - l_2_1 * t5;
+            + force_y_platform - l_2_1 * t1_platform;
+        let t4 = inv_pivot_2 * t3;
+        let t5 = inv_pivot_1 * t1_platform - l_2_1 * t4;
         ::core::result::Result::Ok([
-            -(minus_g1_vx_left * t6 + minus_g1_vy_left * t5), g1_vx_right * t6 + g1_vy_right * t5,
+            -(minus_g1_vx_left * t5 + minus_g1_vy_left * t4), g1_vx_right * t5 + g1_vy_right * t4,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -4084,7 +4063,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 156 operations (57 additions, 95 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 155 intermediates.
+    /// 114 operations (43 additions, 67 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 113 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4095,10 +4074,12 @@ impl FiveBar {
         ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
-        /// l_1 / half
-        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// 2 l_2
@@ -4120,15 +4101,12 @@ impl FiveBar {
         let g2_vx_left = l1_x_left * k_left;
         let l2_x_left = d_x_left - l1_x_left;
         let minus_g1_vx_left = l2_x_left * k_left;
-        let v2_by_1_y_left = L_1_PER_HALF * (rho_squared_left - 0.1025);
-        let minus_g1_vx_v2_by_1_y_left = minus_g1_vx_left * v2_by_1_y_left;
-        let c12_left = INV_L_2 * l2_x_left;
-        let minus_v2_by_1_x_left = INV_L_2 * det_left;
-        let t1 = v2_by_1_y_left
-            * (g2_vx_left * parameters[8] - parameters[10] * minus_g1_vx_v2_by_1_y_left)
-            - minus_v2_by_1_x_left
-                * (c12_left * parameters[10] - g2_vx_left * parameters[9])
-            - (minus_g1_vx_left * parameters[0] + minus_g1_vx_left * parameters[3]);
+        let c2_left = INV_HALF * (rho_squared_left - 0.1025);
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let force1_y_by_2_left = c2_left * parameters[8] + minus_s2_left * parameters[9];
+        let masses_left_1_2 = L_1 * force1_y_by_2_left;
+        let masses_left_1_1 = parameters[0] + L_1_SQUARED * parameters[10]
+            + parameters[3];
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -4144,60 +4122,46 @@ impl FiveBar {
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
-        let v2_by_1_x_right = INV_L_2 * det_right;
+        let masses_right_1_1 = parameters[12] + L_1_SQUARED * parameters[22]
+            + parameters[15];
         let minus_g2_vx_right = l1_x_right * k_right;
-        let c12_right = INV_L_2 * l2_x_right;
-        let v2_by_1_y_right = L_1_PER_HALF * (rho_squared_right - 0.1025);
-        let g1_vx_v2_by_1_y_right = g1_vx_right * v2_by_1_y_right;
-        let t2 = g1_vx_right * parameters[12] + g1_vx_right * parameters[15]
-            + v2_by_1_x_right
-                * (minus_g2_vx_right * parameters[21] + c12_right * parameters[22])
-            + v2_by_1_y_right
-                * (parameters[22] * g1_vx_v2_by_1_y_right
-                    - minus_g2_vx_right * parameters[20]);
-        let t3 = g2_vx_left
-            * (g2_vx_left * parameters[7] - parameters[8] * minus_g1_vx_v2_by_1_y_left
-                - c12_left * parameters[9]) - minus_g1_vx_left * t1 + g1_vx_right * t2
+        let c2_right = INV_HALF * (rho_squared_right - 0.1025);
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let force1_y_by_2_right = c2_right * parameters[20] - s2_right * parameters[21];
+        let masses_right_1_2 = L_1 * force1_y_by_2_right;
+        let t2_right = g2_vx_left
+            * (g2_vx_left * parameters[7] - minus_g1_vx_left * masses_left_1_2)
+            - minus_g1_vx_left
+                * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * masses_left_1_1)
+            + g1_vx_right
+                * (g1_vx_right * masses_right_1_1 - minus_g2_vx_right * masses_right_1_2)
             - minus_g2_vx_right
-                * (parameters[20] * g1_vx_v2_by_1_y_right
-                    - minus_g2_vx_right * parameters[19] - c12_right * parameters[21]);
+                * (g1_vx_right * masses_right_1_2 - minus_g2_vx_right * parameters[19]);
         // --- left
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let g2_vy_left = l1_y_left * k_left;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
-        let minus_v2_by_1_y_g1_vy_left = v2_by_1_y_left * minus_g1_vy_left;
-        let s12_left = INV_L_2 * l2_y_left;
-        let t4 = g2_vy_left * parameters[7] - parameters[8] * minus_v2_by_1_y_g1_vy_left
-            - s12_left * parameters[9];
-        let t5 = v2_by_1_y_left
-            * (g2_vy_left * parameters[8] - parameters[10] * minus_v2_by_1_y_g1_vy_left)
-            - minus_v2_by_1_x_left
-                * (s12_left * parameters[10] - g2_vy_left * parameters[9])
-            - (minus_g1_vy_left * parameters[0] + minus_g1_vy_left * parameters[3]);
+        let t2_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
+        let t3_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
         let minus_g2_vy_right = l1_y_right * k_right;
-        let s12_right = INV_L_2 * l2_y_right;
-        let v2_by_1_y_g1_vy_right = v2_by_1_y_right * g1_vy_right;
-        let t6 = g1_vy_right * parameters[12] + g1_vy_right * parameters[15]
-            + v2_by_1_x_right
-                * (minus_g2_vy_right * parameters[21] + s12_right * parameters[22])
-            + v2_by_1_y_right
-                * (parameters[22] * v2_by_1_y_g1_vy_right
-                    - minus_g2_vy_right * parameters[20]);
-        let t7 = parameters[20] * v2_by_1_y_g1_vy_right
-            - minus_g2_vy_right * parameters[19] - s12_right * parameters[21];
-        let t8 = g2_vx_left * t4 - minus_g1_vx_left * t5 + g1_vx_right * t6
-            - minus_g2_vx_right * t7;
+        let t3_right = g1_vy_right * masses_right_1_1
+            - minus_g2_vy_right * masses_right_1_2;
+        let t4_right = g1_vy_right * masses_right_1_2
+            - minus_g2_vy_right * parameters[19];
+        let t5_right = g2_vx_left * t2_left - minus_g1_vx_left * t3_left
+            + g1_vx_right * t3_right - minus_g2_vx_right * t4_right;
         ::core::result::Result::Ok([
-            [t3 + parameters[24], t8],
+            [t2_right + parameters[24], t5_right],
             [
-                t8,
-                g2_vy_left * t4 - minus_g1_vy_left * t5 + g1_vy_right * t6
-                    - minus_g2_vy_right * t7 + parameters[24],
+                t5_right,
+                g2_vy_left * t2_left - minus_g1_vy_left * t3_left
+                    + g1_vy_right * t3_right - minus_g2_vy_right * t4_right
+                    + parameters[24],
             ],
         ])
     }
@@ -4210,7 +4174,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 197 operations (75 additions, 118 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 201 intermediates.
+    /// 195 operations (75 additions, 116 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 199 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4226,12 +4190,8 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
         const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half
-        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
         /// l_1 / half²
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
@@ -4287,23 +4247,19 @@ impl FiveBar {
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let moment1_z_left = parameters[1] * bias_a1_y_left
-            - parameters[0] * minus_bias_rate_dot_1_left
-            - parameters[2] * bias_a1_x_left;
+        let minus_force2_x_left = parameters[8] * rate_2_squared_left
+            + parameters[9] * bias_rate_dot_2_left;
+        let force2_y_left = parameters[8] * bias_rate_dot_2_left
+            - parameters[9] * rate_2_squared_left;
+        let t6_left = bias_a1_y_left * (parameters[1] + L_1 * parameters[10])
+            - parameters[2] * bias_a1_x_left
+            - minus_bias_rate_dot_1_left * (parameters[0] + L_1_SQUARED * parameters[10])
+            + L_1 * (minus_s2_left * minus_force2_x_left + c2_left * force2_y_left);
         let tau_1_left = parameters[6]
             - (parameters[3] * minus_bias_rate_dot_1_left
                 + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
-        let force2_y_left = parameters[8] * bias_rate_dot_2_left
-            - parameters[9] * rate_2_squared_left + parameters[10] * bias_a2_y_left;
-        let minus_v2_by_1_x_left = INV_L_2 * det_left;
-        let force2_x_left = parameters[10] * bias_a2_x_left
-            - (parameters[8] * rate_2_squared_left
-                + parameters[9] * bias_rate_dot_2_left);
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
-            - tau_2_left;
+        let force_on_u1_left = t6_left + tau_1_left - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -4319,16 +4275,21 @@ impl FiveBar {
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            parameters[23],
+            minus_qd_2_right,
+        );
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = rho_squared_right - 0.1025;
         let t3_right = TWICE_L_2 * t2_right;
@@ -4336,38 +4297,31 @@ impl FiveBar {
             * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
-        let moment1_z_right = parameters[12] * bias_rate_dot_1_right
-            + parameters[13] * bias_a1_y_right - parameters[14] * bias_a1_x_right;
-        let tau_1_right = parameters[15] * bias_rate_dot_1_right
-            + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let v2_by_1_x_right = INV_L_2 * det_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
         let minus_bias_rate_dot_2_right = k_right
             * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
-        let t4_right = bias_a1_x_right - L_1 * rate_1_squared_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let t5_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
-        let bias_a2_x_right = c2_right * t4_right + s2_right * t5_right;
         let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
-            - parameters[20] * rate_2_squared_right + parameters[22] * bias_a2_x_right;
-        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
-        let bias_a2_y_right = c2_right * t5_right - s2_right * t4_right;
-        let force2_y_right = parameters[22] * bias_a2_y_right
-            - (parameters[20] * minus_bias_rate_dot_2_right
-                + parameters[21] * rate_2_squared_right);
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            parameters[23],
-            minus_qd_2_right,
-        );
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
-            + minus_tau_2_right;
+            - parameters[20] * rate_2_squared_right;
+        let c2_right = INV_HALF * t2_right;
+        let minus_force2_y_right = parameters[20] * minus_bias_rate_dot_2_right
+            + parameters[21] * rate_2_squared_right;
+        let t4_right = bias_rate_dot_1_right
+            * (parameters[12] + L_1_SQUARED * parameters[22])
+            + bias_a1_y_right * (parameters[13] + L_1 * parameters[22])
+            - parameters[14] * bias_a1_x_right
+            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let tau_1_right = parameters[15] * bias_rate_dot_1_right
+            + parameters[16] * rate_1_right
+            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
+        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
+        let t5_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
+        let t6_right = bias_a1_x_right - L_1 * rate_1_squared_right;
+        let bias_a2_y_right = c2_right * t5_right - s2_right * t6_right;
+        let bias_a2_x_right = c2_right * t6_right + s2_right * t5_right;
         let moment2_z_right = parameters[20] * bias_a2_y_right
-            - parameters[19] * minus_bias_rate_dot_2_right
-            - parameters[21] * bias_a2_x_right;
+            - parameters[21] * bias_a2_x_right
+            - parameters[19] * minus_bias_rate_dot_2_right;
         let force_on_u2_right = moment2_z_right - minus_tau_2_right;
         let force_y_platform = 9.81 * parameters[24];
         ::core::result::Result::Ok([
@@ -4389,7 +4343,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 318 operations (121 additions, 191 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 322 intermediates.
+    /// 270 operations (105 additions, 159 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 274 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4408,12 +4362,8 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
         const INV_HALF: ::core::primitive::f64 = 10.0;
-        /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half
-        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
         /// l_1 / half²
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
@@ -4484,135 +4434,110 @@ impl FiveBar {
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let moment1_z_left = parameters[1] * bias_a1_y_left
-            - parameters[0] * minus_bias_rate_dot_1_left
-            - parameters[2] * bias_a1_x_left;
+        let force1_y_by_1_left = parameters[1] + L_1 * parameters[10];
+        let t6_left = parameters[0] + L_1_SQUARED * parameters[10];
+        let minus_force2_x_left = parameters[8] * rate_2_squared_left
+            + parameters[9] * bias_rate_dot_2_left;
+        let force2_y_left = parameters[8] * bias_rate_dot_2_left
+            - parameters[9] * rate_2_squared_left;
+        let t7_left = bias_a1_y_left * force1_y_by_1_left
+            - parameters[2] * bias_a1_x_left - minus_bias_rate_dot_1_left * t6_left
+            + L_1 * (minus_s2_left * minus_force2_x_left + c2_left * force2_y_left);
         let tau_1_left = parameters[6]
             - (parameters[3] * minus_bias_rate_dot_1_left
                 + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
-        let force2_y_left = parameters[8] * bias_rate_dot_2_left
-            - parameters[9] * rate_2_squared_left + parameters[10] * bias_a2_y_left;
-        let minus_v2_by_1_x_left = INV_L_2 * det_left;
-        let force2_x_left = parameters[10] * bias_a2_x_left
-            - (parameters[8] * rate_2_squared_left
-                + parameters[9] * bias_rate_dot_2_left);
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
-            - tau_2_left;
+        let force_on_u1_left = t7_left + tau_1_left - tau_2_left;
         // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let moment1_z_right = parameters[12] * bias_rate_dot_1_right
-            + parameters[13] * bias_a1_y_right - parameters[14] * bias_a1_x_right;
-        let tau_1_right = parameters[15] * bias_rate_dot_1_right
-            + parameters[16] * rate_1_right
-            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let v2_by_1_x_right = INV_L_2 * det_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
-        let c2_right = INV_HALF * t2_right;
-        let t4_right = bias_a1_x_right - L_1 * rate_1_squared_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let t5_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
-        let bias_a2_x_right = c2_right * t4_right + s2_right * t5_right;
-        let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
-            - parameters[20] * rate_2_squared_right + parameters[22] * bias_a2_x_right;
-        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
-        let bias_a2_y_right = c2_right * t5_right - s2_right * t4_right;
-        let force2_y_right = parameters[22] * bias_a2_y_right
-            - (parameters[20] * minus_bias_rate_dot_2_right
-                + parameters[21] * rate_2_squared_right);
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
             minus_qd_2_right,
         );
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
-            + minus_tau_2_right;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let t4_right = parameters[12] + L_1_SQUARED * parameters[22];
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let force1_y_by_1_right = parameters[13] + L_1 * parameters[22];
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+        let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
+            - parameters[20] * rate_2_squared_right;
+        let c2_right = INV_HALF * t2_right;
+        let minus_force2_y_right = parameters[20] * minus_bias_rate_dot_2_right
+            + parameters[21] * rate_2_squared_right;
+        let t5_right = bias_rate_dot_1_right * t4_right
+            + bias_a1_y_right * force1_y_by_1_right - parameters[14] * bias_a1_x_right
+            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let tau_1_right = parameters[15] * bias_rate_dot_1_right
+            + parameters[16] * rate_1_right
+            + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
+        let force_on_u1_right = minus_tau_2_right + t5_right + tau_1_right;
+        let t6_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
+        let t7_right = bias_a1_x_right - L_1 * rate_1_squared_right;
+        let bias_a2_y_right = c2_right * t6_right - s2_right * t7_right;
+        let bias_a2_x_right = c2_right * t7_right + s2_right * t6_right;
         let moment2_z_right = parameters[20] * bias_a2_y_right
-            - parameters[19] * minus_bias_rate_dot_2_right
-            - parameters[21] * bias_a2_x_right;
+            - parameters[21] * bias_a2_x_right
+            - parameters[19] * minus_bias_rate_dot_2_right;
         let force_on_u2_right = moment2_z_right - minus_tau_2_right;
         let t1 = g1_vx_right * torques[1] - minus_g1_vx_left * torques[0]
             - (g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
                 + g1_vx_right * force_on_u1_right
                 - minus_g2_vx_right * force_on_u2_right);
-        let minus_g1_vx_v2_by_1_y_left = minus_g1_vx_left * v2_by_1_y_left;
-        let c12_left = INV_L_2 * l2_x_left;
-        let t2 = v2_by_1_y_left
-            * (g2_vx_left * parameters[8] - parameters[10] * minus_g1_vx_v2_by_1_y_left)
-            - minus_v2_by_1_x_left
-                * (c12_left * parameters[10] - g2_vx_left * parameters[9])
-            - (minus_g1_vx_left * parameters[0] + minus_g1_vx_left * parameters[3]);
-        let c12_right = INV_L_2 * l2_x_right;
-        let g1_vx_v2_by_1_y_right = g1_vx_right * v2_by_1_y_right;
-        let t3 = g1_vx_right * parameters[12] + g1_vx_right * parameters[15]
-            + v2_by_1_x_right
-                * (minus_g2_vx_right * parameters[21] + c12_right * parameters[22])
-            + v2_by_1_y_right
-                * (parameters[22] * g1_vx_v2_by_1_y_right
-                    - minus_g2_vx_right * parameters[20]);
-        let t4 = g2_vx_left
-            * (g2_vx_left * parameters[7] - parameters[8] * minus_g1_vx_v2_by_1_y_left
-                - c12_left * parameters[9]) - minus_g1_vx_left * t2 + g1_vx_right * t3
+        let force1_y_by_2_left = c2_left * parameters[8] + minus_s2_left * parameters[9];
+        let masses_left_1_2 = L_1 * force1_y_by_2_left;
+        let masses_left_1_1 = t6_left + parameters[3];
+        let masses_right_1_1 = t4_right + parameters[15];
+        let force1_y_by_2_right = c2_right * parameters[20] - s2_right * parameters[21];
+        let masses_right_1_2 = L_1 * force1_y_by_2_right;
+        let t8_right = g2_vx_left
+            * (g2_vx_left * parameters[7] - minus_g1_vx_left * masses_left_1_2)
+            - minus_g1_vx_left
+                * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * masses_left_1_1)
+            + g1_vx_right
+                * (g1_vx_right * masses_right_1_1 - minus_g2_vx_right * masses_right_1_2)
             - minus_g2_vx_right
-                * (parameters[20] * g1_vx_v2_by_1_y_right
-                    - minus_g2_vx_right * parameters[19] - c12_right * parameters[21]);
-        let mass_1_1 = t4 + parameters[24];
+                * (g1_vx_right * masses_right_1_2 - minus_g2_vx_right * parameters[19]);
+        let mass_1_1 = t8_right + parameters[24];
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
-        let minus_g1_vy_v2_by_1_y_left = minus_g1_vy_left * v2_by_1_y_left;
-        let s12_left = INV_L_2 * l2_y_left;
-        let t5 = g2_vy_left * parameters[7] - parameters[8] * minus_g1_vy_v2_by_1_y_left
-            - s12_left * parameters[9];
-        let t6 = v2_by_1_y_left
-            * (g2_vy_left * parameters[8] - parameters[10] * minus_g1_vy_v2_by_1_y_left)
-            - minus_v2_by_1_x_left
-                * (s12_left * parameters[10] - g2_vy_left * parameters[9])
-            - (minus_g1_vy_left * parameters[0] + minus_g1_vy_left * parameters[3]);
-        let s12_right = INV_L_2 * l2_y_right;
-        let g1_vy_v2_by_1_y_right = g1_vy_right * v2_by_1_y_right;
-        let t7 = g1_vy_right * parameters[12] + g1_vy_right * parameters[15]
-            + v2_by_1_x_right
-                * (minus_g2_vy_right * parameters[21] + s12_right * parameters[22])
-            + v2_by_1_y_right
-                * (parameters[22] * g1_vy_v2_by_1_y_right
-                    - minus_g2_vy_right * parameters[20]);
-        let t8 = parameters[20] * g1_vy_v2_by_1_y_right
-            - minus_g2_vy_right * parameters[19] - s12_right * parameters[21];
-        let mass_1_2 = g2_vx_left * t5 - minus_g1_vx_left * t6 + g1_vx_right * t7
-            - minus_g2_vx_right * t8;
+        let t8_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
+        let t9_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
+        let t9_right = g1_vy_right * masses_right_1_1
+            - minus_g2_vy_right * masses_right_1_2;
+        let t10_right = g1_vy_right * masses_right_1_2
+            - minus_g2_vy_right * parameters[19];
+        let mass_1_2 = g2_vx_left * t8_left - minus_g1_vx_left * t9_left
+            + g1_vx_right * t9_right - minus_g2_vx_right * t10_right;
         let l_2_1 = mass_1_2 * inv_pivot_1;
         let force_y_platform = 9.81 * parameters[24];
-        let t9 = g1_vy_right * torques[1] - minus_g1_vy_left * torques[0]
+        let t2 = g1_vy_right * torques[1] - minus_g1_vy_left * torques[0]
             - (g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
                 + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
                 + force_y_platform);
-        let mass_2_2 = g2_vy_left * t5 - minus_g1_vy_left * t6 + g1_vy_right * t7
-            - minus_g2_vy_right * t8 + parameters[24];
+        let mass_2_2 = g2_vy_left * t8_left - minus_g1_vy_left * t9_left
+            + g1_vy_right * t9_right - minus_g2_vy_right * t10_right + parameters[24];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
-        let t10 = (t9 - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t10, t10])
+        let t3 = (t2 - t1 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///

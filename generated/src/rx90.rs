@@ -11,7 +11,7 @@
 /// |---|---|---|
 /// | `c23_arm` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
 /// | `s23_arm` | sin q | sine of a joint angle, named as its cosine is |
-/// | `rate_1_squared_arm` | u_i² | square of a joint rate |
+/// | `rate_2_squared_arm` | u_i² | square of a joint rate |
 /// | `w4_y_arm` | ω_j | angular velocity of body j in its own axes |
 /// | `wd4_y_arm` | ω̇_j | angular acceleration of body j in its own axes |
 /// | `a2_x_arm` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
@@ -1357,7 +1357,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 714 operations (334 additions, 380 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 724 intermediates.
+    /// 547 operations (283 additions, 264 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 557 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1375,21 +1375,24 @@ impl Rx90 {
         )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
+        /// d3²
+        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
         // --- sines and cosines
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let moment1_z_arm = joint_accelerations[0] * parameters[0];
-        let tau_1_arm = joint_accelerations[0] * parameters[1]
-            + joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0])
-            + parameters[4];
         // --- arm
+        let t1_arm = parameters[40] + parameters[54] + parameters[68];
+        let t2_arm = parameters[26] + t1_arm;
+        let t3_arm = D3_SQUARED * t2_arm;
+        let t4_arm = parameters[8] + parameters[20] + t3_arm;
         let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
         let w2_y_arm = c2_arm * joint_velocities[0];
         let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
         let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
+        let t5_arm = parameters[5] + parameters[20] - t4_arm;
+        let t6_arm = parameters[10] + t3_arm;
         let w2_x_arm = s2_arm * joint_velocities[0];
         let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
         let u2_xz_arm = c2_arm * joint_accelerations[0];
@@ -1397,26 +1400,22 @@ impl Rx90 {
         let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
         let w2_x_w2_y_arm = w2_x_arm * w2_y_arm;
         let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
+        let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
         let w2_y_squared_arm = w2_y_arm * w2_y_arm;
         let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t1 = parameters[5] * wd2_x_arm - parameters[6] * u2_zx_arm
-            + parameters[7] * u2_yx_arm - parameters[8] * qd2_w2_y_arm
+        let t7_arm = wd2_x_arm * t5_arm + qd2_w2_y_arm * t6_arm
+            - parameters[6] * u2_zx_arm + u2_yx_arm * xz_2_minus_d3_mz_3
             + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
-        let moment2_x_arm = t1 + parameters[10] * qd2_w2_y_arm;
-        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
-        let t2 = parameters[5] * qd2_w2_x_arm + parameters[6] * u2_zy_arm
-            + parameters[7] * (rate_2_squared_arm - w2_x_squared_arm)
-            + parameters[8] * wd2_y_arm - parameters[9] * u2_xy_arm;
-        let moment2_y_arm = t2 - parameters[10] * qd2_w2_x_arm;
-        let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
-        let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let w3_y_arm = joint_velocities[0] * c23_arm;
+        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
         let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
             + joint_velocities[2] * w3_y_arm;
-        let w3_x_arm = joint_velocities[0] * s23_arm;
+        let t8_arm = parameters[39] + D3 * t1_arm;
+        let t9_arm = D3 * (parameters[39] + t8_arm);
+        let t10_arm = parameters[17] + parameters[34] + t9_arm - parameters[20];
         let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
+        let t11_arm = parameters[22] + parameters[34] + t9_arm;
+        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
         let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
         let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
             - joint_velocities[2] * w3_x_arm;
@@ -1424,43 +1423,21 @@ impl Rx90 {
         let w3_x_w3_y_arm = w3_x_arm * w3_y_arm;
         let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
         let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
-        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
         let w3_y_squared_arm = w3_y_arm * w3_y_arm;
         let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t3 = parameters[17] * wd3_x_arm - parameters[18] * u3_zx_arm
-            + parameters[19] * u3_yx_arm - parameters[20] * w3_y_w3_z_arm
+        let t12_arm = wd3_x_arm * t10_arm + w3_y_w3_z_arm * t11_arm
+            - parameters[18] * u3_zx_arm + parameters[19] * u3_yx_arm
             + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
         let a3_z_arm = D3 * u2_zx_arm;
-        let a2_y_arm = 9.81 * c2_arm;
-        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
-        let a2_x_arm = 9.81 * s2_arm;
-        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
-        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
-        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
-        let moment3_x_arm = t3 + parameters[22] * w3_y_w3_z_arm
-            + parameters[24] * a3_z_arm - parameters[25] * a3_y_arm;
-        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
-        let t4 = parameters[17] * w3_x_w3_z_arm + parameters[18] * u3_zy_arm
-            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
-            + parameters[20] * wd3_y_arm - parameters[21] * u3_xy_arm;
-        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
-        let moment3_y_arm = t4 - parameters[22] * w3_x_w3_z_arm
-            - parameters[23] * a3_z_arm + parameters[25] * a3_x_arm;
-        let minus_v3_by_1_z_arm = D3 * c2_arm;
-        let rate_1_squared_arm = joint_velocities[0] * joint_velocities[0];
-        let force3_z_arm = parameters[23] * u3_zx_arm + parameters[24] * u3_zy_arm
-            - parameters[25] * rate_1_squared_arm + parameters[26] * a3_z_arm;
-        let t5 = moment1_z_arm + tau_1_arm + s2_arm * moment2_x_arm
-            + c2_arm * moment2_y_arm + s23_arm * moment3_x_arm + c23_arm * moment3_y_arm
-            - minus_v3_by_1_z_arm * force3_z_arm;
-        let w4_by_1_x_arm = s23_arm * c4_arm;
+        let t13_arm = t8_arm + parameters[24];
         let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
         let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
             - joint_velocities[3] * minus_w4_y_arm;
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let t14_arm = parameters[31] + parameters[48] - parameters[34];
         let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let zz_4_plus_yy_5 = parameters[36] + parameters[48];
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
         let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
         let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
             + joint_velocities[3] * w4_x_arm;
@@ -1468,238 +1445,212 @@ impl Rx90 {
         let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
         let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
         let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
         let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
         let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let t6 = parameters[31] * wd4_x_arm - parameters[32] * u4_zx_arm
-            + parameters[33] * u4_yx_arm + parameters[34] * minus_w4_y_w4_z_arm
+        let t15_arm = wd4_x_arm * t14_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
+            - parameters[32] * u4_zx_arm + parameters[33] * u4_yx_arm
             + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
+        let a2_y_arm = 9.81 * c2_arm;
+        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
+        let a2_x_arm = 9.81 * s2_arm;
+        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
+        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
         let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
         let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
-        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
-        let t1_arm = D3 * (u2_zx_arm + u3_zy_arm);
-        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t1_arm;
-        let moment4_x_arm = t6 - parameters[36] * minus_w4_y_w4_z_arm
-            + parameters[38] * a4_z_arm + parameters[39] * a5_z_arm;
-        let w5_by_1_z_arm = s23_arm * s4_arm;
-        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
-        let t7 = parameters[31] * w4_x_w4_z_arm + parameters[32] * u4_zy_arm
-            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
-            - parameters[34] * minus_wd4_y_arm + parameters[35] * minus_u4_xy_arm;
-        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t1_arm;
-        let moment4_y_arm = t7 - parameters[36] * w4_x_w4_z_arm
-            - parameters[37] * a4_z_arm + parameters[39] * a4_x_arm;
-        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
-        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
-        let t8 = parameters[31] * minus_w4_x_w4_y_arm
-            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
-            + parameters[33] * minus_u4_yz_arm - parameters[34] * minus_w4_x_w4_y_arm
-            + parameters[35] * u4_xz_arm;
-        let moment4_z_arm = t8 + parameters[36] * wd4_z_arm - parameters[37] * a5_z_arm
-            - parameters[38] * a4_x_arm;
-        let t2_arm = D3 * (s23_arm - c2_arm);
-        let minus_v4_by_1_x_arm = s4_arm * t2_arm;
-        let minus_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
-        let force4_x_arm = parameters[39] * u4_xz_arm
-            - (parameters[37] * minus_u4_xx_arm + parameters[38] * minus_u4_xy_arm)
-            + parameters[40] * a4_x_arm;
-        let v5_by_1_z_arm = c4_arm * t2_arm;
-        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let force4_y_arm = parameters[37] * u4_yx_arm - parameters[38] * minus_u4_yy_arm
-            - parameters[39] * minus_u4_yz_arm - parameters[40] * a5_z_arm;
-        let t9 = t5 + w4_by_1_x_arm * moment4_x_arm - w5_by_1_z_arm * moment4_y_arm
-            + c23_arm * moment4_z_arm
-            - (minus_v4_by_1_x_arm * force4_x_arm + v5_by_1_z_arm * force4_y_arm);
-        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let my_4_minus_mz_5 = parameters[38] - parameters[53];
         let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
-        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
-        let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
         let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
             + joint_velocities[4] * w5_y_arm;
-        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
-        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-        let force5_y_arm = parameters[51] * u5_yx_arm - parameters[52] * minus_u5_yy_arm
-            + parameters[53] * u5_yz_arm + parameters[54] * a5_y_arm;
-        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
-        let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let t16_arm = parameters[45] + parameters[62] - parameters[48];
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let zz_5_plus_yy_6 = parameters[50] + parameters[62];
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
         let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
         let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
             - joint_velocities[4] * w5_x_arm;
-        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
-        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
-        let force5_x_arm = parameters[52] * u5_xy_arm - parameters[51] * minus_u5_xx_arm
-            + parameters[53] * u5_xz_arm + parameters[54] * a5_x_arm;
         let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
-        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
-        let force5_z_arm = parameters[51] * u5_zx_arm + parameters[52] * u5_zy_arm
-            - parameters[53] * minus_u4_yy_arm + parameters[54] * a5_z_arm;
-        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
-        let t10 = parameters[45] * wd5_x_arm - parameters[46] * u5_zx_arm
-            + parameters[47] * u5_yx_arm - parameters[48] * w5_y_w5_z_arm
+        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
+        let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let t17_arm = wd5_x_arm * t16_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
+            - parameters[46] * u5_zx_arm + parameters[47] * u5_yx_arm
             + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
-        let moment5_x_arm = t10 + parameters[50] * w5_y_w5_z_arm
-            + parameters[52] * a5_z_arm - parameters[53] * a5_y_arm;
-        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
-        let t11 = parameters[45] * w5_x_w5_z_arm + parameters[46] * u5_zy_arm
-            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
-            + parameters[48] * wd5_y_arm - parameters[49] * u5_xy_arm;
-        let moment5_y_arm = t11 - parameters[50] * w5_x_w5_z_arm
-            - parameters[51] * a5_z_arm + parameters[53] * a5_x_arm;
-        let t12 = parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
-            - parameters[45] * w5_x_w5_y_arm - parameters[47] * u5_yz_arm
-            + parameters[48] * w5_x_w5_y_arm + parameters[49] * u5_xz_arm;
-        let moment5_z_arm = t12 + parameters[50] * wd5_z_arm + parameters[51] * a5_y_arm
-            - parameters[52] * a5_x_arm;
-        let t13 = v5_by_1_y_arm * force5_y_arm - minus_v5_by_1_x_arm * force5_x_arm
-            + v5_by_1_z_arm * force5_z_arm + w5_by_1_x_arm * moment5_x_arm
-            + w5_by_1_y_arm * moment5_y_arm + w5_by_1_z_arm * moment5_z_arm;
-        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
-        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
-        let v6_by_1_y_arm = t2_arm * w6_by_2_y_arm;
-        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
+        let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
+        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
+        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
+        let t18_arm = D3 * (u2_zx_arm + u3_zy_arm);
+        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t18_arm;
+        let my_5_plus_mz_6 = parameters[52] + parameters[67];
         let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
-        let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
-        let w6_z_arm = w5_y_arm + joint_velocities[5];
-        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
         let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
             - joint_velocities[5] * minus_w6_y_arm;
-        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
-        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
-        let force6_y_arm = parameters[65] * u6_yx_arm - parameters[66] * minus_u6_yy_arm
-            - parameters[67] * minus_u6_yz_arm - parameters[68] * minus_a6_y_arm;
-        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
-        let minus_v6_by_1_x_arm = t2_arm * minus_w6_by_2_x_arm;
+        let xx_6_minus_yy_6 = parameters[59] - parameters[62];
+        let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
         let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
         let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
             + joint_velocities[5] * w6_x_arm;
-        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
-        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-        let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
-        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-        let force6_x_arm = parameters[67] * u6_xz_arm
-            - (parameters[65] * minus_u6_xx_arm + parameters[66] * minus_u6_xy_arm)
-            + parameters[68] * a6_x_arm;
         let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
-        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
-        let force6_z_arm = parameters[65] * u6_zx_arm + parameters[66] * u6_zy_arm
-            - parameters[67] * minus_u5_yy_arm + parameters[68] * a5_y_arm;
-        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
-        let t14 = parameters[59] * wd6_x_arm - parameters[60] * u6_zx_arm
-            + parameters[61] * u6_yx_arm + parameters[62] * minus_w6_y_w6_z_arm
+        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
+        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+        let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
+        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+        let t19_arm = wd6_x_arm * xx_6_minus_yy_6 - parameters[64] * minus_w6_y_w6_z_arm
+            - parameters[60] * u6_zx_arm + parameters[61] * u6_yx_arm
             + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
-        let moment6_x_arm = t14 - parameters[64] * minus_w6_y_w6_z_arm
-            + parameters[66] * a5_y_arm + parameters[67] * minus_a6_y_arm;
-        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
-        let t15 = parameters[59] * w6_x_w6_z_arm + parameters[60] * u6_zy_arm
+        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t18_arm;
+        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+        let moment6_x_arm = t19_arm + parameters[66] * a5_y_arm;
+        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
+        let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
+            + parameters[60] * u6_zy_arm
             + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
-            - parameters[62] * minus_wd6_y_arm + parameters[63] * minus_u6_xy_arm;
-        let moment6_y_arm = t15 - parameters[64] * w6_x_w6_z_arm
-            - parameters[65] * a5_y_arm + parameters[67] * a6_x_arm;
-        let t16 = parameters[59] * minus_w6_x_w6_y_arm
+            + parameters[63] * minus_u6_xy_arm - parameters[65] * a5_y_arm;
+        let moment5_x_arm = t17_arm + a5_z_arm * my_5_plus_mz_6 + c6_arm * moment6_x_arm
+            - s6_arm * moment6_y_arm;
+        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
+        let t20_arm = w5_x_w5_z_arm * (t16_arm - zz_5_plus_yy_6)
+            + parameters[46] * u5_zy_arm
+            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
+            - parameters[49] * u5_xy_arm - parameters[51] * a5_z_arm;
+        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
+        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
+        let t21_arm = parameters[64] * wd6_z_arm + minus_w6_x_w6_y_arm * xx_6_minus_yy_6
             + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
-            + parameters[61] * minus_u6_yz_arm - parameters[62] * minus_w6_x_w6_y_arm
-            + parameters[63] * u6_xz_arm;
-        let moment6_z_arm = t16 + parameters[64] * wd6_z_arm
-            - parameters[65] * minus_a6_y_arm - parameters[66] * a6_x_arm;
-        let t17 = v6_by_1_y_arm * force6_y_arm - minus_v6_by_1_x_arm * force6_x_arm
-            + v5_by_1_y_arm * force6_z_arm + w6_by_1_x_arm * moment6_x_arm
-            - minus_w6_by_1_y_arm * moment6_y_arm + w5_by_1_y_arm * moment6_z_arm;
-        let force_on_u1_arm = t9 + t13 + t17;
-        let t18 = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-            - parameters[5] * w2_x_w2_y_arm + parameters[7] * minus_u2_yz_arm
-            + parameters[8] * w2_x_w2_y_arm + parameters[9] * u2_xz_arm;
-        let moment2_z_arm = t18 + joint_accelerations[1] * parameters[10]
-            + parameters[11] * a2_y_arm - parameters[12] * a2_x_arm;
+            + parameters[61] * minus_u6_yz_arm + parameters[63] * u6_xz_arm;
+        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
+        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
+        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
+        let moment6_z_arm = t21_arm
+            - (parameters[65] * minus_a6_y_arm + parameters[66] * a6_x_arm);
+        let moment5_y_arm = t20_arm + moment6_z_arm;
+        let moment4_x_arm = t15_arm + a4_z_arm * my_4_minus_mz_5 + c5_arm * moment5_x_arm
+            - s5_arm * moment5_y_arm;
+        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
+        let t22_arm = w4_x_w4_z_arm * (t14_arm - zz_4_plus_yy_5)
+            + parameters[32] * u4_zy_arm
+            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
+            + parameters[35] * minus_u4_xy_arm - parameters[37] * a4_z_arm;
+        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
+        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
+        let t23_arm = wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t16_arm
+            + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
+            - parameters[47] * u5_yz_arm + parameters[49] * u5_xz_arm;
+        let moment5_z_arm = t23_arm + parameters[51] * a5_y_arm
+            - a5_x_arm * my_5_plus_mz_6
+            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let moment4_y_arm = t22_arm - moment5_z_arm;
+        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let minus_force6_x_arm = parameters[65] * minus_u6_xx_arm
+            + parameters[66] * minus_u6_xy_arm;
+        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let force6_y_arm = parameters[65] * u6_yx_arm - parameters[66] * minus_u6_yy_arm;
+        let force5_x_arm = u5_xy_arm * my_5_plus_mz_6 - parameters[51] * minus_u5_xx_arm
+            - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
+        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let force6_z_arm = parameters[65] * u6_zx_arm + parameters[66] * u6_zy_arm;
+        let force5_y_arm = parameters[51] * u5_yx_arm - minus_u5_yy_arm * my_5_plus_mz_6
+            + force6_z_arm;
+        let minus_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
+            - (parameters[37] * minus_u4_xx_arm + minus_u4_xy_arm * my_4_minus_mz_5);
+        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let force5_z_arm = parameters[51] * u5_zx_arm + u5_zy_arm * my_5_plus_mz_6
+            - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
+        let force4_y_arm = parameters[37] * u4_yx_arm - minus_u4_yy_arm * my_4_minus_mz_5
+            - force5_z_arm;
+        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+            + c4_arm * force4_y_arm;
+        let moment3_x_arm = t12_arm + a3_z_arm * t13_arm + c4_arm * moment4_x_arm
+            - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+        let t24_arm = w3_x_w3_z_arm * (t10_arm - t11_arm) + parameters[18] * u3_zy_arm
+            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
+            - parameters[21] * u3_xy_arm - parameters[23] * a3_z_arm;
+        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
+        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
+        let t25_arm = wd4_z_arm * zz_4_plus_yy_5 + minus_w4_x_w4_y_arm * t14_arm
+            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
+            + parameters[33] * minus_u4_yz_arm + parameters[35] * u4_xz_arm;
+        let moment4_z_arm = t25_arm
+            - (parameters[37] * a5_z_arm + a4_x_arm * my_4_minus_mz_5)
+            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+        let moment3_y_arm = t24_arm + moment4_z_arm;
+        let moment2_x_arm = t7_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
+        let force3_z_arm = parameters[23] * u3_zx_arm + u3_zy_arm * t13_arm
+            - s4_force4_x_plus_c4_force4_y_arm;
+        let moment2_y_arm = qd2_w2_x_arm * (t5_arm - t6_arm) + parameters[6] * u2_zy_arm
+            + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
+            - parameters[9] * u2_xy_arm + s3_arm * moment3_x_arm + c3_arm * moment3_y_arm
+            - D3 * force3_z_arm;
+        let moment1_z_arm = joint_accelerations[0] * (parameters[0] + t4_arm)
+            + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+        let tau_1_arm = joint_accelerations[0] * parameters[1]
+            + joint_velocities[0] * parameters[2]
+            + ::overact::math::signed(parameters[3], joint_velocities[0])
+            + parameters[4];
+        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+        let t26_arm = joint_accelerations[1] * t6_arm - w2_x_w2_y_arm * t5_arm
+            + parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+            + minus_u2_yz_arm * xz_2_minus_d3_mz_3 + parameters[9] * u2_xz_arm;
+        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+            - s4_arm * force4_y_arm;
+        let force3_x_arm = u3_xy_arm * t13_arm - parameters[23] * minus_u3_xx_arm
+            + c4_force4_x_minus_s4_force4_y_arm;
+        let force4_z_arm = parameters[37] * u4_zx_arm + u4_zy_arm * my_4_minus_mz_5
+            + s5_arm * force5_x_arm + c5_arm * force5_y_arm;
+        let force3_y_arm = parameters[23] * u3_yx_arm - minus_u3_yy_arm * t13_arm
+            + force4_z_arm;
+        let t27_arm = t26_arm + a2_y_arm * (parameters[11] + D3 * t2_arm)
+            - parameters[12] * a2_x_arm
+            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+        let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
+        let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
+        let t28_arm = wd3_z_arm * t11_arm - w3_x_w3_y_arm * t10_arm
+            + parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+            - parameters[19] * u3_yz_arm + parameters[21] * u3_xz_arm;
+        let moment3_z_arm = t28_arm + parameters[23] * a3_y_arm - a3_x_arm * t13_arm
+            - D3 * c4_force4_x_minus_s4_force4_y_arm
+            - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+        let moment2_z_arm = t27_arm + moment3_z_arm;
         let tau_2_arm = joint_accelerations[1] * parameters[13]
             + joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
             + parameters[16];
-        let v3_by_2_x_arm = D3 * s3_arm;
-        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
-        let force3_x_arm = parameters[24] * u3_xy_arm - parameters[23] * minus_u3_xx_arm
-            + parameters[25] * u3_xz_arm + parameters[26] * a3_x_arm;
-        let v3_by_2_y_arm = D3 * c3_arm;
-        let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
-        let force3_y_arm = parameters[23] * u3_yx_arm - parameters[24] * minus_u3_yy_arm
-            + parameters[25] * u3_yz_arm + parameters[26] * a3_y_arm;
-        let t19 = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-            - parameters[17] * w3_x_w3_y_arm - parameters[19] * u3_yz_arm
-            + parameters[20] * w3_x_w3_y_arm + parameters[21] * u3_xz_arm;
-        let moment3_z_arm = t19 + parameters[22] * wd3_z_arm + parameters[23] * a3_y_arm
-            - parameters[24] * a3_x_arm;
-        let v3_by_2_x_minus_d3_arm = v3_by_2_x_arm - D3;
-        let v4_by_2_x_arm = c4_arm * v3_by_2_x_minus_d3_arm;
-        let v5_by_2_z_arm = s4_arm * v3_by_2_x_minus_d3_arm;
-        let force4_z_arm = parameters[37] * u4_zx_arm + parameters[38] * u4_zy_arm
-            - parameters[39] * minus_u3_yy_arm + parameters[40] * a4_z_arm;
-        let s4_moment4_x_plus_c4_moment4_y_arm = s4_arm * moment4_x_arm
-            + c4_arm * moment4_y_arm;
-        let t20 = moment2_z_arm + tau_2_arm + v3_by_2_x_arm * force3_x_arm
-            + v3_by_2_y_arm * force3_y_arm + moment3_z_arm + v4_by_2_x_arm * force4_x_arm
-            - v5_by_2_z_arm * force4_y_arm + v3_by_2_y_arm * force4_z_arm
-            - s4_moment4_x_plus_c4_moment4_y_arm;
-        let v5_by_2_x_arm = c5_arm * v4_by_2_x_arm + s5_arm * v3_by_2_y_arm;
-        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm - s5_arm * v4_by_2_x_arm;
-        let w5_by_2_y_arm = s4_arm * s5_arm;
-        let t21 = w5_by_2_y_arm * moment5_y_arm - minus_w5_by_2_x_arm * moment5_x_arm
-            + c4_arm * moment5_z_arm;
-        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm - s6_arm * v5_by_2_z_arm;
-        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm + c6_arm * v5_by_2_z_arm;
-        let t22 = w6_by_2_y_arm * moment6_y_arm - minus_w6_by_2_x_arm * moment6_x_arm
-            + w5_by_2_y_arm * moment6_z_arm;
-        let force_on_u2_arm = t20 + v5_by_2_x_arm * force5_x_arm
-            + v5_by_2_y_arm * force5_y_arm + v5_by_2_z_arm * force5_z_arm + t21
-            + v6_by_2_x_arm * force6_x_arm - minus_v6_by_2_y_arm * force6_y_arm
-            + v5_by_2_y_arm * force6_z_arm + t22;
+        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
         let tau_3_arm = joint_accelerations[2] * parameters[27]
             + joint_velocities[2] * parameters[28]
             + ::overact::math::signed(parameters[29], joint_velocities[2])
             + parameters[30];
-        let v4_by_3_y_arm = D3 * s4_arm;
-        let minus_v4_by_3_x_arm = D3 * c4_arm;
-        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
-        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
-        let t23 = moment3_z_arm + tau_3_arm + v4_by_3_y_arm * force4_y_arm
-            - minus_v4_by_3_x_arm * force4_x_arm - s4_moment4_x_plus_c4_moment4_y_arm
-            + v5_by_3_y_arm * force5_y_arm - minus_v5_by_3_x_arm * force5_x_arm
-            - v4_by_3_y_arm * force5_z_arm + t21;
-        let v6_by_3_x_arm = s6_arm * v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_arm * v4_by_3_y_arm;
-        let force_on_u3_arm = t23 + v6_by_3_x_arm * force6_x_arm
-            + v6_by_3_y_arm * force6_y_arm + v5_by_3_y_arm * force6_z_arm + t22;
+        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
         let tau_4_arm = joint_accelerations[3] * parameters[41]
             + joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
             + parameters[44];
-        let w6_by_4_x_arm = s5_arm * c6_arm;
-        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
-        let force_on_u4_arm = moment4_z_arm + tau_4_arm + s5_arm * moment5_x_arm
-            + c5_arm * moment5_y_arm + w6_by_4_x_arm * moment6_x_arm
-            - minus_w6_by_4_y_arm * moment6_y_arm + c5_arm * moment6_z_arm;
+        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
         let tau_5_arm = joint_accelerations[4] * parameters[55]
             + joint_velocities[4] * parameters[56]
             + ::overact::math::signed(parameters[57], joint_velocities[4])
             + parameters[58];
-        let force_on_u5_arm = moment5_z_arm + tau_5_arm
-            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
         let tau_6_arm = joint_accelerations[5] * parameters[69]
             + joint_velocities[5] * parameters[70]
             + ::overact::math::signed(parameters[71], joint_velocities[5])
@@ -1718,7 +1669,7 @@ impl Rx90 {
     ///
     /// Output: 6 x 6.
     ///
-    /// 717 operations (320 additions, 397 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 706 intermediates.
+    /// 244 operations (126 additions, 118 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 233 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1730,319 +1681,166 @@ impl Rx90 {
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
         // --- sines and cosines
-        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
-        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[3], joints[4], joints[5],
+        let [(s5_arm, c5_arm), (s6_arm, c6_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+        (s2_arm, c2_arm)] = ::overact::math::sin_cos_all([
+            joints[4], joints[5], joints[2], joints[3], joints[1],
         ]);
-        let t1 = parameters[0] + parameters[1]
-            + s2_arm * (s2_arm * parameters[5] + c2_arm * parameters[6])
-            + c2_arm * (s2_arm * parameters[6] + c2_arm * parameters[8]);
-        let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
-        let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let minus_v3_by_1_z_arm = D3 * c2_arm;
-        let t2 = s23_arm
-            * (s23_arm * parameters[17] + c23_arm * parameters[18]
-                - parameters[24] * minus_v3_by_1_z_arm)
-            + c23_arm
-                * (s23_arm * parameters[18] + c23_arm * parameters[20]
-                    + parameters[23] * minus_v3_by_1_z_arm);
         // --- arm
-        let w4_by_1_x_arm = s23_arm * c4_arm;
-        let w5_by_1_z_arm = s23_arm * s4_arm;
-        let t1_arm = D3 * (s23_arm - c2_arm);
-        let v5_by_1_z_arm = c4_arm * t1_arm;
-        let minus_v4_by_1_x_arm = s4_arm * t1_arm;
-        let t3 = w4_by_1_x_arm
-            * (w4_by_1_x_arm * parameters[31] - w5_by_1_z_arm * parameters[32]
-                + c23_arm * parameters[33] + parameters[39] * v5_by_1_z_arm)
-            - w5_by_1_z_arm
-                * (w4_by_1_x_arm * parameters[32] - w5_by_1_z_arm * parameters[34]
-                    + c23_arm * parameters[35] - parameters[39] * minus_v4_by_1_x_arm);
-        let t4 = w4_by_1_x_arm * parameters[33] - w5_by_1_z_arm * parameters[35]
-            + c23_arm * parameters[36] - parameters[37] * v5_by_1_z_arm
-            + parameters[38] * minus_v4_by_1_x_arm;
-        let t5 = v5_by_1_z_arm
-            * (c23_arm * parameters[37] - w4_by_1_x_arm * parameters[39]
-                - parameters[40] * v5_by_1_z_arm)
-            - minus_v4_by_1_x_arm
-                * (parameters[40] * minus_v4_by_1_x_arm + c23_arm * parameters[38]
-                    + w5_by_1_z_arm * parameters[39]);
-        let t6 = t1 + t2
-            - minus_v3_by_1_z_arm
-                * (s23_arm * parameters[24] - c23_arm * parameters[23]
-                    - parameters[26] * minus_v3_by_1_z_arm) + t3 + c23_arm * t4 - t5;
-        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
-        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
-        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
-        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
-        let t7 = v5_by_1_y_arm
-            * (w5_by_1_z_arm * parameters[51] - w5_by_1_x_arm * parameters[53]
-                + parameters[54] * v5_by_1_y_arm)
-            - minus_v5_by_1_x_arm
-                * (w5_by_1_y_arm * parameters[53] - w5_by_1_z_arm * parameters[52]
-                    - parameters[54] * minus_v5_by_1_x_arm);
-        let t8 = w5_by_1_x_arm
-            * (w5_by_1_x_arm * parameters[45] + w5_by_1_y_arm * parameters[46]
-                + w5_by_1_z_arm * parameters[47] + parameters[52] * v5_by_1_z_arm
-                - parameters[53] * v5_by_1_y_arm);
-        let t9 = w5_by_1_y_arm
-            * (w5_by_1_x_arm * parameters[46] + w5_by_1_y_arm * parameters[48]
-                + w5_by_1_z_arm * parameters[49] - parameters[51] * v5_by_1_z_arm
-                - parameters[53] * minus_v5_by_1_x_arm);
-        let t10 = w5_by_1_x_arm * parameters[47] + w5_by_1_y_arm * parameters[49]
-            + w5_by_1_z_arm * parameters[50] + parameters[51] * v5_by_1_y_arm
-            + parameters[52] * minus_v5_by_1_x_arm;
-        let t11 = t7
-            + v5_by_1_z_arm
-                * (w5_by_1_x_arm * parameters[52] - w5_by_1_y_arm * parameters[51]
-                    + parameters[54] * v5_by_1_z_arm) + t8 + t9 + w5_by_1_z_arm * t10;
-        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
-        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
-        let v6_by_1_y_arm = t1_arm * w6_by_2_y_arm;
-        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
-        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
-        let minus_v6_by_1_x_arm = t1_arm * minus_w6_by_2_x_arm;
-        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
-        let t12 = v6_by_1_y_arm
-            * (w5_by_1_y_arm * parameters[65] - w6_by_1_x_arm * parameters[67]
-                + parameters[68] * v6_by_1_y_arm)
-            + minus_v6_by_1_x_arm
-                * (parameters[68] * minus_v6_by_1_x_arm + w5_by_1_y_arm * parameters[66]
-                    + minus_w6_by_1_y_arm * parameters[67]);
-        let t13 = w6_by_1_x_arm
-            * (w6_by_1_x_arm * parameters[59] - minus_w6_by_1_y_arm * parameters[60]
-                + w5_by_1_y_arm * parameters[61] + parameters[66] * v5_by_1_y_arm
-                - parameters[67] * v6_by_1_y_arm);
-        let t14 = minus_w6_by_1_y_arm
-            * (w6_by_1_x_arm * parameters[60] - minus_w6_by_1_y_arm * parameters[62]
-                + w5_by_1_y_arm * parameters[63] - parameters[65] * v5_by_1_y_arm
-                - parameters[67] * minus_v6_by_1_x_arm);
-        let t15 = w6_by_1_x_arm * parameters[61] - minus_w6_by_1_y_arm * parameters[63]
-            + w5_by_1_y_arm * parameters[64] + parameters[65] * v6_by_1_y_arm
-            + parameters[66] * minus_v6_by_1_x_arm;
-        let t16 = t12
-            + v5_by_1_y_arm
-                * (minus_w6_by_1_y_arm * parameters[65] + w6_by_1_x_arm * parameters[66]
-                    + parameters[68] * v5_by_1_y_arm) + t13 - t14 + w5_by_1_y_arm * t15;
-        let v3_by_2_y_arm = D3 * c3_arm;
-        let v3_by_2_x_arm = D3 * s3_arm;
-        let t17 = s2_arm * parameters[7] + c2_arm * parameters[9]
-            + s23_arm * (parameters[19] - parameters[25] * v3_by_2_y_arm)
-            + c23_arm * (parameters[21] + parameters[25] * v3_by_2_x_arm);
-        let s4_xx_4_plus_c4_xy_4_arm = s4_arm * parameters[31] + c4_arm * parameters[32];
-        let v3_by_2_x_minus_d3_arm = v3_by_2_x_arm - D3;
-        let v5_by_2_z_arm = s4_arm * v3_by_2_x_minus_d3_arm;
-        let t18 = parameters[38] * v3_by_2_y_arm - s4_xx_4_plus_c4_xy_4_arm
-            + parameters[39] * v5_by_2_z_arm;
-        let v4_by_2_x_arm = c4_arm * v3_by_2_x_minus_d3_arm;
-        let s4_xy_4_plus_c4_yy_4_arm = s4_arm * parameters[32] + c4_arm * parameters[34];
-        let t19 = parameters[39] * v4_by_2_x_arm
-            - (s4_xy_4_plus_c4_yy_4_arm + parameters[37] * v3_by_2_y_arm);
-        let s4_xz_4_plus_c4_yz_4_arm = s4_arm * parameters[33] + c4_arm * parameters[35];
-        let t20 = s4_xz_4_plus_c4_yz_4_arm + parameters[37] * v5_by_2_z_arm
-            + parameters[38] * v4_by_2_x_arm;
-        let w5_by_2_y_arm = s4_arm * s5_arm;
-        let t21 = parameters[46] * w5_by_2_y_arm - parameters[45] * minus_w5_by_2_x_arm
-            + c4_arm * parameters[47];
-        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm - s5_arm * v4_by_2_x_arm;
-        let t22 = t21 + parameters[52] * v5_by_2_z_arm - parameters[53] * v5_by_2_y_arm;
-        let t23 = parameters[48] * w5_by_2_y_arm - parameters[46] * minus_w5_by_2_x_arm
-            + c4_arm * parameters[49];
-        let v5_by_2_x_arm = c5_arm * v4_by_2_x_arm + s5_arm * v3_by_2_y_arm;
-        let t24 = t23 - parameters[51] * v5_by_2_z_arm + parameters[53] * v5_by_2_x_arm;
-        let t25 = parameters[49] * w5_by_2_y_arm - parameters[47] * minus_w5_by_2_x_arm
-            + c4_arm * parameters[50];
-        let t26 = t25 + parameters[51] * v5_by_2_y_arm - parameters[52] * v5_by_2_x_arm;
-        let t27 = t17 + w4_by_1_x_arm * t18 - w5_by_1_z_arm * t19 - c23_arm * t20
-            + w5_by_1_x_arm * t22 + w5_by_1_y_arm * t24 + w5_by_1_z_arm * t26;
-        let t28 = parameters[60] * w6_by_2_y_arm - parameters[59] * minus_w6_by_2_x_arm
-            + parameters[61] * w5_by_2_y_arm;
-        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm + c6_arm * v5_by_2_z_arm;
-        let t29 = t28 + parameters[66] * v5_by_2_y_arm
-            + parameters[67] * minus_v6_by_2_y_arm;
-        let t30 = parameters[62] * w6_by_2_y_arm - parameters[60] * minus_w6_by_2_x_arm
-            + parameters[63] * w5_by_2_y_arm;
-        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm - s6_arm * v5_by_2_z_arm;
-        let t31 = t30 - parameters[65] * v5_by_2_y_arm + parameters[67] * v6_by_2_x_arm;
-        let t32 = parameters[63] * w6_by_2_y_arm - parameters[61] * minus_w6_by_2_x_arm
-            + parameters[64] * w5_by_2_y_arm;
-        let t33 = t32 - parameters[65] * minus_v6_by_2_y_arm
-            - parameters[66] * v6_by_2_x_arm;
-        let t34 = t27 + w6_by_1_x_arm * t29 - minus_w6_by_1_y_arm * t31
-            + w5_by_1_y_arm * t33;
-        let c4_mz_4_arm = c4_arm * parameters[39];
-        let t35 = s4_xy_4_plus_c4_yy_4_arm + D3 * c4_mz_4_arm;
-        let s4_mz_4_arm = s4_arm * parameters[39];
-        let t36 = s4_xx_4_plus_c4_xy_4_arm + D3 * s4_mz_4_arm;
-        let v4_by_3_y_arm = D3 * s4_arm;
-        let minus_v4_by_3_x_arm = D3 * c4_arm;
-        let t37 = parameters[37] * v4_by_3_y_arm - s4_xz_4_plus_c4_yz_4_arm
-            + parameters[38] * minus_v4_by_3_x_arm;
-        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
-        let t38 = t21 - parameters[52] * v4_by_3_y_arm - parameters[53] * v5_by_3_y_arm;
-        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
-        let t39 = t23 + parameters[51] * v4_by_3_y_arm
-            - parameters[53] * minus_v5_by_3_x_arm;
-        let t40 = t25 + parameters[51] * v5_by_3_y_arm
-            + parameters[52] * minus_v5_by_3_x_arm;
-        let t41 = s23_arm * parameters[19] + c23_arm * parameters[21]
-            + w5_by_1_z_arm * t35 - w4_by_1_x_arm * t36 + c23_arm * t37
-            + w5_by_1_x_arm * t38 + w5_by_1_y_arm * t39 + w5_by_1_z_arm * t40;
-        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_arm * v4_by_3_y_arm;
-        let t42 = t28 + parameters[66] * v5_by_3_y_arm - parameters[67] * v6_by_3_y_arm;
-        let v6_by_3_x_arm = s6_arm * v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-        let t43 = t30 - parameters[65] * v5_by_3_y_arm + parameters[67] * v6_by_3_x_arm;
-        let t44 = t32 + parameters[65] * v6_by_3_y_arm - parameters[66] * v6_by_3_x_arm;
-        let t45 = t41 + w6_by_1_x_arm * t42 - minus_w6_by_1_y_arm * t43
-            + w5_by_1_y_arm * t44;
-        let s5_my_5_minus_c5_mx_5_arm = s5_arm * parameters[52]
-            - c5_arm * parameters[51];
-        let s5_xx_5_plus_c5_xy_5_arm = s5_arm * parameters[45] + c5_arm * parameters[46];
-        let s5_xy_5_plus_c5_yy_5_arm = s5_arm * parameters[46] + c5_arm * parameters[48];
-        let s5_xz_5_plus_c5_yz_5_arm = s5_arm * parameters[47] + c5_arm * parameters[49];
-        let t46 = t4 + v5_by_1_z_arm * s5_my_5_minus_c5_mx_5_arm
-            - minus_v4_by_1_x_arm * parameters[53]
-            + w5_by_1_x_arm * s5_xx_5_plus_c5_xy_5_arm
-            + w5_by_1_y_arm * s5_xy_5_plus_c5_yy_5_arm
-            + w5_by_1_z_arm * s5_xz_5_plus_c5_yz_5_arm;
-        let w6_by_4_x_arm = s5_arm * c6_arm;
-        let c5_mx_6_minus_mz_6_w6_by_4_x_arm = c5_arm * parameters[65]
-            - parameters[67] * w6_by_4_x_arm;
-        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
-        let c5_my_6_minus_mz_6_w6_by_4_y_arm = c5_arm * parameters[66]
-            + parameters[67] * minus_w6_by_4_y_arm;
-        let t47 = parameters[65] * minus_w6_by_4_y_arm + parameters[66] * w6_by_4_x_arm;
-        let t48 = parameters[59] * w6_by_4_x_arm - parameters[60] * minus_w6_by_4_y_arm
-            + c5_arm * parameters[61];
-        let t49 = parameters[60] * w6_by_4_x_arm - parameters[62] * minus_w6_by_4_y_arm
-            + c5_arm * parameters[63];
-        let t50 = parameters[61] * w6_by_4_x_arm - parameters[63] * minus_w6_by_4_y_arm
-            + c5_arm * parameters[64];
-        let t51 = v6_by_1_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm
-            + minus_v6_by_1_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm
-            + v5_by_1_y_arm * t47 + w6_by_1_x_arm * t48 - minus_w6_by_1_y_arm * t49
-            + w5_by_1_y_arm * t50;
-        let t52 = t46 + t51;
-        let c6_mx_6_minus_s6_my_6_arm = c6_arm * parameters[65]
-            - s6_arm * parameters[66];
-        let s6_xy_6_plus_c6_yy_6_arm = s6_arm * parameters[60] + c6_arm * parameters[62];
-        let s6_xx_6_plus_c6_xy_6_arm = s6_arm * parameters[59] + c6_arm * parameters[60];
-        let s6_xz_6_plus_c6_yz_6_arm = s6_arm * parameters[61] + c6_arm * parameters[63];
-        let t53 = t10 + minus_v5_by_1_x_arm * parameters[67]
-            + v5_by_1_y_arm * c6_mx_6_minus_s6_my_6_arm
-            + minus_w6_by_1_y_arm * s6_xy_6_plus_c6_yy_6_arm
-            - w6_by_1_x_arm * s6_xx_6_plus_c6_xy_6_arm
-            - w5_by_1_y_arm * s6_xz_6_plus_c6_yz_6_arm;
-        let t54 = parameters[22] + parameters[23] * v3_by_2_y_arm
-            - parameters[24] * v3_by_2_x_arm;
-        let t55 = parameters[10] + parameters[13]
-            + v3_by_2_x_arm * (parameters[26] * v3_by_2_x_arm - parameters[24])
-            + v3_by_2_y_arm * (parameters[23] + parameters[26] * v3_by_2_y_arm) + t54;
-        let c4_mx_4_minus_s4_my_4_arm = c4_arm * parameters[37]
-            - s4_arm * parameters[38];
-        let t56 = v4_by_2_x_arm * (parameters[40] * v4_by_2_x_arm - c4_mz_4_arm)
-            - v5_by_2_z_arm * (s4_mz_4_arm - parameters[40] * v5_by_2_z_arm)
-            + v3_by_2_y_arm
-                * (c4_mx_4_minus_s4_my_4_arm + parameters[40] * v3_by_2_y_arm);
-        let mz_5_w5_by_2_y_minus_c4_my_5_arm = parameters[53] * w5_by_2_y_arm
-            - c4_arm * parameters[52];
-        let c4_mx_5_minus_mz_5_w5_by_2_x_arm = c4_arm * parameters[51]
-            + parameters[53] * minus_w5_by_2_x_arm;
-        let t57 = parameters[52] * minus_w5_by_2_x_arm + parameters[51] * w5_by_2_y_arm;
-        let t58 = v5_by_2_x_arm
-            * (mz_5_w5_by_2_y_minus_c4_my_5_arm + parameters[54] * v5_by_2_x_arm)
-            + v5_by_2_y_arm
-                * (c4_mx_5_minus_mz_5_w5_by_2_x_arm + parameters[54] * v5_by_2_y_arm)
-            + v5_by_2_z_arm * (parameters[54] * v5_by_2_z_arm - t57);
-        let t59 = t55 + t56 - (s4_arm * t18 + c4_arm * t19) + t58 + w5_by_2_y_arm * t24
-            - minus_w5_by_2_x_arm * t22 + c4_arm * t26;
-        let t60 = parameters[66] * w5_by_2_y_arm - parameters[67] * w6_by_2_y_arm;
-        let t61 = parameters[65] * w5_by_2_y_arm + parameters[67] * minus_w6_by_2_x_arm;
-        let t62 = parameters[65] * w6_by_2_y_arm + parameters[66] * minus_w6_by_2_x_arm;
-        let t63 = v6_by_2_x_arm * (parameters[68] * v6_by_2_x_arm - t60)
-            - minus_v6_by_2_y_arm * (t61 - parameters[68] * minus_v6_by_2_y_arm)
-            + v5_by_2_y_arm * (parameters[68] * v5_by_2_y_arm - t62);
-        let c4_mz_4_minus_m_4_v4_by_3_x_arm = parameters[40] * minus_v4_by_3_x_arm
-            + c4_mz_4_arm;
-        let s4_mz_4_plus_m_4_v4_by_3_y_arm = s4_mz_4_arm
-            + parameters[40] * v4_by_3_y_arm;
-        let t64 = s4_arm * t36 + c4_arm * t35;
-        let t65 = mz_5_w5_by_2_y_minus_c4_my_5_arm
-            - parameters[54] * minus_v5_by_3_x_arm;
-        let t66 = c4_mx_5_minus_mz_5_w5_by_2_x_arm + parameters[54] * v5_by_3_y_arm;
-        let t67 = t57 + parameters[54] * v4_by_3_y_arm;
-        let t68 = w5_by_2_y_arm * t39 - minus_w5_by_2_x_arm * t38 + c4_arm * t40;
-        let t69 = t54 + v3_by_2_y_arm * c4_mx_4_minus_s4_my_4_arm
-            - (v4_by_2_x_arm * c4_mz_4_minus_m_4_v4_by_3_x_arm
-                + v5_by_2_z_arm * s4_mz_4_plus_m_4_v4_by_3_y_arm) + t64
-            + v5_by_2_x_arm * t65 + v5_by_2_y_arm * t66 - v5_by_2_z_arm * t67 + t68;
-        let t70 = parameters[68] * v6_by_3_x_arm - t60;
-        let t71 = t61 + parameters[68] * v6_by_3_y_arm;
-        let t72 = parameters[68] * v5_by_3_y_arm - t62;
-        let t73 = w6_by_2_y_arm * t43 - minus_w6_by_2_x_arm * t42 + w5_by_2_y_arm * t44;
-        let t74 = t69 + v6_by_2_x_arm * t70 - minus_v6_by_2_y_arm * t71
-            + v5_by_2_y_arm * t72 + t73;
-        let t75 = w5_by_2_y_arm * s5_xy_5_plus_c5_yy_5_arm
-            - minus_w5_by_2_x_arm * s5_xx_5_plus_c5_xy_5_arm
-            + c4_arm * s5_xz_5_plus_c5_yz_5_arm;
-        let t76 = w6_by_2_y_arm * t49 - minus_w6_by_2_x_arm * t48 + w5_by_2_y_arm * t50;
-        let t77 = parameters[53] * v4_by_2_x_arm
-            + v5_by_2_z_arm * s5_my_5_minus_c5_mx_5_arm + t75 - t20 + v5_by_2_y_arm * t47
-            - (v6_by_2_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm
-                + minus_v6_by_2_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm) + t76;
-        let t78 = minus_w6_by_2_x_arm * s6_xx_6_plus_c6_xy_6_arm
-            - w6_by_2_y_arm * s6_xy_6_plus_c6_yy_6_arm
-            - w5_by_2_y_arm * s6_xz_6_plus_c6_yz_6_arm;
-        let t79 = t26 + v5_by_2_y_arm * c6_mx_6_minus_s6_my_6_arm
-            - parameters[67] * v5_by_2_x_arm + t78;
-        let t80 = parameters[22] + parameters[27]
-            + v4_by_3_y_arm * s4_mz_4_plus_m_4_v4_by_3_y_arm
-            + minus_v4_by_3_x_arm * c4_mz_4_minus_m_4_v4_by_3_x_arm + t64
-            + v5_by_3_y_arm * t66 - minus_v5_by_3_x_arm * t65 + v4_by_3_y_arm * t67
-            + t68;
-        let t81 = t37 + t75
-            - (parameters[53] * minus_v4_by_3_x_arm
-                + v4_by_3_y_arm * s5_my_5_minus_c5_mx_5_arm)
-            + v6_by_3_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm
-            - v6_by_3_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm + v5_by_3_y_arm * t47
-            + t76;
-        let t82 = t40 + parameters[67] * minus_v5_by_3_x_arm
-            + v5_by_3_y_arm * c6_mx_6_minus_s6_my_6_arm + t78;
-        let t83 = parameters[36] + parameters[41] + s5_arm * s5_xx_5_plus_c5_xy_5_arm
-            + c5_arm * s5_xy_5_plus_c5_yy_5_arm + w6_by_4_x_arm * t48
-            - minus_w6_by_4_y_arm * t49 + c5_arm * t50;
-        let t84 = s5_xz_5_plus_c5_yz_5_arm
-            + minus_w6_by_4_y_arm * s6_xy_6_plus_c6_yy_6_arm
-            - w6_by_4_x_arm * s6_xx_6_plus_c6_xy_6_arm
-            - c5_arm * s6_xz_6_plus_c6_yz_6_arm;
+        let inertia5_yy_arm = parameters[48] + parameters[64];
+        let t1_arm = s6_arm * (parameters[59] - parameters[62])
+            + c6_arm * (2.0 * parameters[60]);
+        let t2_arm = s6_arm * t1_arm;
+        let inertia5_xx_arm = parameters[45] + parameters[59] - t2_arm;
+        let moment5_x_by_6_arm = c6_arm * parameters[61] - s6_arm * parameters[63];
+        let inertia5_xy_arm = parameters[46] + moment5_x_by_6_arm;
+        let t3_arm = s5_arm * (inertia5_xx_arm - inertia5_yy_arm)
+            + c5_arm * (2.0 * inertia5_xy_arm);
+        let t4_arm = s5_arm * t3_arm;
+        let inertia4_zz_arm = parameters[36] + inertia5_yy_arm + t4_arm;
+        let inertia3_yy_arm = parameters[20] + inertia4_zz_arm;
+        let inertia4_xx_arm = parameters[31] + inertia5_xx_arm - t4_arm;
+        let inertia5_zz_arm = parameters[50] + parameters[62] + t2_arm;
+        let inertia4_yy_arm = parameters[34] + inertia5_zz_arm;
+        let inertia5_xz_arm = parameters[47] - (c6_arm * t1_arm - parameters[60]);
+        let minus_moment5_z_by_6_arm = s6_arm * parameters[61] + c6_arm * parameters[63];
+        let inertia5_yz_arm = parameters[49] - minus_moment5_z_by_6_arm;
+        let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm - s5_arm * inertia5_yz_arm;
+        let inertia4_xy_arm = parameters[32] - moment4_x_by_5_arm;
+        let t5_arm = s4_arm * (inertia4_xx_arm - inertia4_yy_arm)
+            + c4_arm * (2.0 * inertia4_xy_arm);
+        let t6_arm = s4_arm * t5_arm;
+        let minus_force5_z_by_6_arm = c6_arm * parameters[65] - s6_arm * parameters[66];
+        let first5_x_arm = parameters[51] + minus_force5_z_by_6_arm;
+        let first5_y_arm = parameters[52] + parameters[67];
+        let minus_force4_x_by_5_arm = s5_arm * first5_x_arm + c5_arm * first5_y_arm;
+        let first4_z_arm = parameters[39] + minus_force4_x_by_5_arm;
+        let mass5_arm = parameters[54] + parameters[68];
+        let mass4_arm = parameters[40] + mass5_arm;
+        let first4_z_plus_d3_mass4_arm = first4_z_arm + D3 * mass4_arm;
+        let t7_arm = D3 * (first4_z_arm + first4_z_plus_d3_mass4_arm);
+        let inertia3_xx_arm = parameters[17] + inertia4_xx_arm - t6_arm + t7_arm;
+        let inertia4_xz_arm = parameters[33] + c5_arm * t3_arm - inertia5_xy_arm;
+        let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm + c5_arm * inertia5_yz_arm;
+        let inertia4_yz_arm = parameters[35] - moment4_z_by_5_arm;
+        let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * first5_y_arm;
+        let first4_x_arm = parameters[37] + force4_z_by_5_arm;
+        let minus_force5_x_by_6_arm = s6_arm * parameters[65] + c6_arm * parameters[66];
+        let first5_z_arm = parameters[53] - minus_force5_x_by_6_arm;
+        let first4_y_arm = parameters[38] - first5_z_arm;
+        let minus_force3_z_by_4_arm = c4_arm * first4_x_arm - s4_arm * first4_y_arm;
+        let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
+        let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm - s4_arm * inertia4_yz_arm
+            - minus_d3_force3_z_by_4_arm;
+        let inertia3_xy_arm = parameters[18] + moment3_x_by_4_arm;
+        let t8_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
+            + c3_arm * (2.0 * inertia3_xy_arm);
+        let t9_arm = s3_arm * t8_arm;
+        let first3_x_arm = parameters[23] + minus_force3_z_by_4_arm;
+        let first3_y_arm = first4_z_plus_d3_mass4_arm + parameters[24];
+        let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
+        let mass3_arm = parameters[26] + mass4_arm;
+        let t10_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + D3 * mass3_arm);
+        let inertia2_yy_arm = parameters[8] + inertia3_yy_arm + t9_arm + t10_arm;
+        let inertia2_xx_arm = parameters[5] + inertia3_xx_arm - t9_arm;
+        let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
+        let inertia2_xy_arm = parameters[6] + c3_arm * t8_arm - inertia3_xy_arm
+            - D3 * minus_force2_x_by_3_arm;
+        let inertia1_zz_arm = parameters[0] + inertia2_yy_arm
+            + s2_arm
+                * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
+                    + c2_arm * (2.0 * inertia2_xy_arm));
+        let masses_arm_1_1 = inertia1_zz_arm + parameters[1];
+        let inertia3_xz_arm = parameters[19] - (c4_arm * t5_arm - inertia4_xy_arm);
+        let minus_force3_x_by_4_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
+        let minus_d3_force3_x_by_4_arm = D3 * minus_force3_x_by_4_arm;
+        let moment3_z_by_4_arm = minus_d3_force3_x_by_4_arm
+            - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
+        let inertia3_yz_arm = parameters[21] + moment3_z_by_4_arm;
+        let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm - s3_arm * inertia3_yz_arm;
+        let first3_z_arm = parameters[25] - minus_force3_x_by_4_arm;
+        let inertia2_xz_arm = parameters[7] + moment2_x_by_3_arm - D3 * first3_z_arm;
+        let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm + c3_arm * inertia3_yz_arm;
+        let inertia2_yz_arm = parameters[9] + moment2_y_by_3_arm;
+        let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm + c2_arm * inertia2_yz_arm;
+        let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
+            + c2_arm * moment2_y_by_3_arm;
+        let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm - s3_arm * inertia4_zz_arm;
+        let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm + c3_arm * inertia4_zz_arm
+            + minus_d3_force3_z_by_4_arm;
+        let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
+            + c2_arm * moment2_y_by_4_arm;
+        let force3_z_by_5_arm = s4_arm * minus_force4_x_by_5_arm;
+        let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
+        let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm + s4_arm * inertia5_zz_arm
+            + d3_force3_z_by_5_arm;
+        let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
+            - s3_arm * moment4_z_by_5_arm;
+        let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
+            + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
+        let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
+            + c2_arm * moment2_y_by_5_arm;
+        let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm - s5_arm * parameters[64];
+        let minus_force4_x_by_6_arm = c5_arm * minus_force5_x_by_6_arm;
+        let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
+            - s4_arm * minus_force4_x_by_6_arm;
+        let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
+        let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
+            - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
+        let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm + c5_arm * parameters[64];
+        let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
+            - s3_arm * moment4_z_by_6_arm;
+        let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
+            + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
+        let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
+            + c2_arm * moment2_y_by_6_arm;
+        let inertia3_zz_arm = parameters[22] + inertia4_yy_arm + t6_arm + t7_arm;
+        let inertia2_zz_arm = parameters[10] + inertia3_zz_arm + t10_arm;
+        let masses_arm_2_2 = inertia2_zz_arm + parameters[13];
+        let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
+        let moment2_z_by_4_arm = moment3_z_by_4_arm
+            - s3_arm * minus_d3_force3_x_by_4_arm;
+        let minus_force3_x_by_5_arm = c4_arm * minus_force4_x_by_5_arm;
+        let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
+            - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
+        let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
+            - s3_arm * minus_force3_x_by_5_arm;
+        let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
+        let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
+            + s4_arm * minus_force5_z_by_6_arm;
+        let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
+            - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
+        let minus_force4_z_by_6_arm = s5_arm * minus_force5_x_by_6_arm;
+        let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
+            + c3_arm * minus_force4_z_by_6_arm;
+        let moment2_z_by_6_arm = moment3_z_by_6_arm - D3 * minus_force2_y_by_6_arm;
+        let masses_arm_3_3 = inertia3_zz_arm + parameters[27];
+        let masses_arm_4_4 = inertia4_zz_arm + parameters[41];
+        let masses_arm_5_5 = inertia5_zz_arm + parameters[55];
+        let masses_arm_6_6 = parameters[64] + parameters[69];
         ::core::result::Result::Ok([
-            [t6 + t11 + t16, t34, t45, t52, t53, t15],
             [
-                t34,
-                t59 + t63 + w6_by_2_y_arm * t31 - minus_w6_by_2_x_arm * t29
-                    + w5_by_2_y_arm * t33,
-                t74,
-                t77,
-                t79,
-                t33,
+                masses_arm_1_1, minus_inertia1_yz_arm, moment1_z_by_3_arm, moment1_z_by_4_arm,
+                moment1_z_by_5_arm, moment1_z_by_6_arm,
             ],
             [
-                t45, t74,
-                t80 + v6_by_3_x_arm * t70 + v6_by_3_y_arm * t71 + v5_by_3_y_arm * t72
-                    + t73,
-                t81,
-                t82,
-                t44,
-            ],
-            [t52, t77, t81, t83, t84, t50],
-            [
-                t53, t79, t82, t84,
-                parameters[50] + parameters[55] + s6_arm * s6_xx_6_plus_c6_xy_6_arm
-                    + c6_arm * s6_xy_6_plus_c6_yy_6_arm,
-                -s6_xz_6_plus_c6_yz_6_arm,
+                minus_inertia1_yz_arm, masses_arm_2_2, moment2_z_by_3_arm, moment2_z_by_4_arm,
+                moment2_z_by_5_arm, moment2_z_by_6_arm,
             ],
             [
-                t15, t33, t44, t50, -s6_xz_6_plus_c6_yz_6_arm, parameters[64] + parameters[69],
+                moment1_z_by_3_arm, moment2_z_by_3_arm, masses_arm_3_3, moment3_z_by_4_arm,
+                moment3_z_by_5_arm, moment3_z_by_6_arm,
+            ],
+            [
+                moment1_z_by_4_arm, moment2_z_by_4_arm, moment3_z_by_4_arm, masses_arm_4_4,
+                moment4_z_by_5_arm, moment4_z_by_6_arm,
+            ],
+            [
+                moment1_z_by_5_arm, moment2_z_by_5_arm, moment3_z_by_5_arm, moment4_z_by_5_arm,
+                masses_arm_5_5, -minus_moment5_z_by_6_arm,
+            ],
+            [
+                moment1_z_by_6_arm, moment2_z_by_6_arm, moment3_z_by_6_arm, moment4_z_by_6_arm,
+                -minus_moment5_z_by_6_arm, masses_arm_6_6,
             ],
         ])
     }
@@ -2055,7 +1853,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 656 operations (297 additions, 359 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 666 intermediates.
+    /// 492 operations (247 additions, 245 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 502 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -2072,6 +1870,8 @@ impl Rx90 {
         )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
+        /// d3²
+        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
         /// 2 d3
         const TWICE_D3: ::core::primitive::f64 = 0.9;
         // --- sines and cosines
@@ -2079,43 +1879,61 @@ impl Rx90 {
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let tau_1_arm = joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0])
-            + parameters[4];
         // --- arm
         let w2_y_arm = c2_arm * joint_velocities[0];
         let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+        let t1_arm = parameters[40] + parameters[54] + parameters[68];
+        let t2_arm = parameters[26] + t1_arm;
+        let t3_arm = D3_SQUARED * t2_arm;
+        let t4_arm = parameters[5] + parameters[20]
+            - (parameters[8] + parameters[20] + t3_arm);
+        let t5_arm = parameters[10] + t3_arm;
         let w2_x_arm = s2_arm * joint_velocities[0];
         let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
         let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
         let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+        let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
         let w2_y_squared_arm = w2_y_arm * w2_y_arm;
         let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t1 = parameters[5] * bias_wd2_x_arm - parameters[6] * bias_u2_zx_arm
-            + parameters[7] * bias_u2_xy_arm - parameters[8] * bias_wd2_x_arm
+        let t6_arm = bias_wd2_x_arm * t4_arm + bias_wd2_x_arm * t5_arm
+            - parameters[6] * bias_u2_zx_arm + bias_u2_xy_arm * xz_2_minus_d3_mz_3
             + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
-        let moment2_x_arm = t1 + parameters[10] * bias_wd2_x_arm;
-        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let t2 = parameters[5] * minus_bias_wd2_y_arm + parameters[6] * bias_u2_zy_arm
-            + parameters[7] * (rate_2_squared_arm - w2_x_squared_arm)
-            - parameters[8] * minus_bias_wd2_y_arm - parameters[9] * bias_u2_xy_arm;
-        let moment2_y_arm = t2 - parameters[10] * minus_bias_wd2_y_arm;
-        let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
-        let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let w3_y_arm = joint_velocities[0] * c23_arm;
+        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
         let w3_z_arm = joint_velocities[1] + joint_velocities[2];
         let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let w3_x_arm = joint_velocities[0] * s23_arm;
+        let t7_arm = parameters[39] + D3 * t1_arm;
+        let t8_arm = D3 * (parameters[39] + t7_arm);
+        let t9_arm = parameters[17] + parameters[34] + t8_arm - parameters[20];
+        let t10_arm = parameters[22] + parameters[34] + t8_arm;
+        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
         let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
         let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
         let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
         let w3_y_squared_arm = w3_y_arm * w3_y_arm;
         let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t3 = parameters[17] * bias_wd3_x_arm - parameters[18] * bias_u3_zx_arm
-            + parameters[19] * bias_u3_xy_arm - parameters[20] * bias_wd3_x_arm
+        let t11_arm = bias_wd3_x_arm * t9_arm + bias_wd3_x_arm * t10_arm
+            - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
             + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
         let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+        let t12_arm = t7_arm + parameters[24];
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let t13_arm = parameters[31] + parameters[48] - parameters[34];
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let zz_4_plus_yy_5 = parameters[36] + parameters[48];
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
+        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let t14_arm = bias_wd4_x_arm * t13_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
+            - parameters[32] * bias_u4_zx_arm - parameters[33] * minus_bias_u4_yx_arm
+            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
         let bias_a2_y_arm = 9.81 * c2_arm;
         let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
         let bias_a2_x_arm = 9.81 * s2_arm;
@@ -2123,267 +1941,197 @@ impl Rx90 {
         let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
         let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
             - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
-        let moment3_x_arm = t3 + parameters[22] * bias_wd3_x_arm
-            + parameters[24] * bias_a3_z_arm - parameters[25] * bias_a3_y_arm;
-        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
         let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let t4 = parameters[17] * minus_bias_wd3_y_arm + parameters[18] * bias_u3_zy_arm
-            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
-            - parameters[20] * minus_bias_wd3_y_arm - parameters[21] * bias_u3_xy_arm;
-        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
-            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
-        let moment3_y_arm = t4 - parameters[22] * minus_bias_wd3_y_arm
-            - parameters[23] * bias_a3_z_arm + parameters[25] * bias_a3_x_arm;
-        let minus_v3_by_1_z_arm = D3 * c2_arm;
-        let rate_1_squared_arm = joint_velocities[0] * joint_velocities[0];
-        let force3_z_arm = parameters[23] * bias_u3_zx_arm
-            + parameters[24] * bias_u3_zy_arm - parameters[25] * rate_1_squared_arm
-            + parameters[26] * bias_a3_z_arm;
-        let t5 = tau_1_arm + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm
-            + s23_arm * moment3_x_arm + c23_arm * moment3_y_arm
-            - minus_v3_by_1_z_arm * force3_z_arm;
-        let t1_arm = D3 * (s23_arm - c2_arm);
-        let v5_by_1_z_arm = c4_arm * t1_arm;
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
-        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
-        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
-        let t2_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
-        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t2_arm;
-        let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
-            + parameters[38] * minus_bias_u4_yy_arm
-            + parameters[39] * minus_bias_u4_yz_arm + parameters[40] * bias_a5_z_arm;
-        let minus_v4_by_1_x_arm = s4_arm * t1_arm;
-        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
-        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
-        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t2_arm;
-        let force4_x_arm = parameters[38] * bias_u4_xy_arm
-            - parameters[37] * minus_bias_u4_xx_arm + parameters[39] * bias_u4_xz_arm
-            + parameters[40] * bias_a4_x_arm;
-        let w4_by_1_x_arm = s23_arm * c4_arm;
-        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
-        let t6 = parameters[31] * bias_wd4_x_arm - parameters[32] * bias_u4_zx_arm
-            - parameters[33] * minus_bias_u4_yx_arm
-            + parameters[34] * minus_w4_y_w4_z_arm
-            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
         let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
         let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
-        let moment4_x_arm = t6 - parameters[36] * minus_w4_y_w4_z_arm
-            + parameters[38] * bias_a4_z_arm + parameters[39] * bias_a5_z_arm;
-        let w5_by_1_z_arm = s23_arm * s4_arm;
-        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
-        let t7 = parameters[31] * w4_x_w4_z_arm + parameters[32] * bias_u4_zy_arm
-            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
-            - parameters[34] * bias_wd5_z_arm - parameters[35] * bias_u4_xy_arm;
-        let moment4_y_arm = t7 - parameters[36] * w4_x_w4_z_arm
-            - parameters[37] * bias_a4_z_arm + parameters[39] * bias_a4_x_arm;
-        let t8 = parameters[31] * minus_w4_x_w4_y_arm
-            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
-            + parameters[33] * minus_bias_u4_yz_arm
-            - parameters[34] * minus_w4_x_w4_y_arm + parameters[35] * bias_u4_xz_arm;
-        let moment4_z_arm = t8 - parameters[36] * minus_bias_wd3_y_arm
-            - parameters[37] * bias_a5_z_arm - parameters[38] * bias_a4_x_arm;
-        let t9 = t5 + v5_by_1_z_arm * minus_force4_y_arm
-            - minus_v4_by_1_x_arm * force4_x_arm + w4_by_1_x_arm * moment4_x_arm
-            - w5_by_1_z_arm * moment4_y_arm + c23_arm * moment4_z_arm;
-        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let my_4_minus_mz_5 = parameters[38] - parameters[53];
         let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
-        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
         let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
             + joint_velocities[4] * w5_y_arm;
-        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
-        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-        let force5_y_arm = parameters[51] * bias_u5_yx_arm
-            - parameters[52] * minus_bias_u5_yy_arm + parameters[53] * bias_u5_yz_arm
-            + parameters[54] * bias_a5_y_arm;
-        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
-        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let t15_arm = parameters[45] + parameters[62] - parameters[48];
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let zz_5_plus_yy_6 = parameters[50] + parameters[62];
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
         let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
         let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
             + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
-        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
-        let force5_x_arm = parameters[52] * bias_u5_xy_arm
-            - parameters[51] * minus_bias_u5_xx_arm + parameters[53] * bias_u5_xz_arm
-            + parameters[54] * bias_a5_x_arm;
         let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
-        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
-        let force5_z_arm = parameters[51] * bias_u5_zx_arm
-            + parameters[52] * bias_u5_zy_arm - parameters[53] * minus_bias_u4_yy_arm
-            + parameters[54] * bias_a5_z_arm;
-        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
-        let t10 = parameters[45] * bias_wd5_x_arm - parameters[46] * bias_u5_zx_arm
-            + parameters[47] * bias_u5_yx_arm - parameters[48] * w5_y_w5_z_arm
+        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let t16_arm = bias_wd5_x_arm * t15_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
+            - parameters[46] * bias_u5_zx_arm + parameters[47] * bias_u5_yx_arm
             + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
-        let moment5_x_arm = t10 + parameters[50] * w5_y_w5_z_arm
-            + parameters[52] * bias_a5_z_arm - parameters[53] * bias_a5_y_arm;
-        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
-        let t11 = parameters[45] * w5_x_w5_z_arm + parameters[46] * bias_u5_zy_arm
-            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
-            - parameters[48] * minus_bias_wd5_y_arm - parameters[49] * bias_u5_xy_arm;
-        let moment5_y_arm = t11 - parameters[50] * w5_x_w5_z_arm
-            - parameters[51] * bias_a5_z_arm + parameters[53] * bias_a5_x_arm;
-        let t12 = parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
-            - parameters[45] * w5_x_w5_y_arm - parameters[47] * bias_u5_yz_arm
-            + parameters[48] * w5_x_w5_y_arm + parameters[49] * bias_u5_xz_arm;
-        let moment5_z_arm = t12 + parameters[50] * bias_wd5_z_arm
-            + parameters[51] * bias_a5_y_arm - parameters[52] * bias_a5_x_arm;
-        let t13 = v5_by_1_y_arm * force5_y_arm - minus_v5_by_1_x_arm * force5_x_arm
-            + v5_by_1_z_arm * force5_z_arm + w5_by_1_x_arm * moment5_x_arm
-            + w5_by_1_y_arm * moment5_y_arm + w5_by_1_z_arm * moment5_z_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
+        let t17_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t17_arm;
+        let my_5_plus_mz_6 = parameters[52] + parameters[67];
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let xx_6_minus_yy_6 = parameters[59] - parameters[62];
         let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
         let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
         let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
             + joint_velocities[5] * w6_x_arm;
         let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
-        let force6_z_arm = parameters[65] * bias_u6_zx_arm
-            + parameters[66] * bias_u6_zy_arm - parameters[67] * minus_bias_u5_yy_arm
-            + parameters[68] * bias_a5_y_arm;
-        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
-        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
-        let minus_v6_by_1_x_arm = t1_arm * minus_w6_by_2_x_arm;
         let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
-        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
         let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
         let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-        let force6_x_arm = parameters[66] * bias_u6_xy_arm
-            - parameters[65] * minus_bias_u6_xx_arm + parameters[67] * bias_u6_xz_arm
-            + parameters[68] * bias_a6_x_arm;
-        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
-        let v6_by_1_y_arm = t1_arm * w6_by_2_y_arm;
-        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
-        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
-        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
-        let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
-            + parameters[66] * minus_bias_u6_yy_arm
-            + parameters[67] * minus_bias_u6_yz_arm
-            + parameters[68] * minus_bias_a6_y_arm;
-        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
-        let t14 = parameters[59] * bias_wd6_x_arm - parameters[60] * bias_u6_zx_arm
+        let t18_arm = bias_wd6_x_arm * xx_6_minus_yy_6
+            - parameters[64] * minus_w6_y_w6_z_arm - parameters[60] * bias_u6_zx_arm
             - parameters[61] * minus_bias_u6_yx_arm
-            + parameters[62] * minus_w6_y_w6_z_arm
             + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
-        let moment6_x_arm = t14 - parameters[64] * minus_w6_y_w6_z_arm
-            + parameters[66] * bias_a5_y_arm + parameters[67] * minus_bias_a6_y_arm;
-        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
-        let t15 = parameters[59] * w6_x_w6_z_arm + parameters[60] * bias_u6_zy_arm
+        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t17_arm;
+        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+        let moment6_x_arm = t18_arm + parameters[66] * bias_a5_y_arm;
+        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+        let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
+            + parameters[60] * bias_u6_zy_arm
             + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
-            - parameters[62] * minus_bias_wd6_y_arm - parameters[63] * bias_u6_xy_arm;
-        let moment6_y_arm = t15 - parameters[64] * w6_x_w6_z_arm
-            - parameters[65] * bias_a5_y_arm + parameters[67] * bias_a6_x_arm;
-        let t16 = parameters[59] * minus_w6_x_w6_y_arm
+            - parameters[63] * bias_u6_xy_arm - parameters[65] * bias_a5_y_arm;
+        let moment5_x_arm = t16_arm + bias_a5_z_arm * my_5_plus_mz_6
+            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+        let t19_arm = w5_x_w5_z_arm * (t15_arm - zz_5_plus_yy_6)
+            + parameters[46] * bias_u5_zy_arm
+            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
+            - parameters[49] * bias_u5_xy_arm - parameters[51] * bias_a5_z_arm;
+        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+        let t20_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
+            - parameters[64] * minus_bias_wd5_y_arm
             + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
-            + parameters[61] * minus_bias_u6_yz_arm
-            - parameters[62] * minus_w6_x_w6_y_arm + parameters[63] * bias_u6_xz_arm;
-        let moment6_z_arm = t16 - parameters[64] * minus_bias_wd5_y_arm
-            - parameters[65] * minus_bias_a6_y_arm - parameters[66] * bias_a6_x_arm;
-        let t17 = v5_by_1_y_arm * force6_z_arm
-            - (minus_v6_by_1_x_arm * force6_x_arm + v6_by_1_y_arm * minus_force6_y_arm)
-            + w6_by_1_x_arm * moment6_x_arm - minus_w6_by_1_y_arm * moment6_y_arm
-            + w5_by_1_y_arm * moment6_z_arm;
-        let force_on_u1_arm = t9 + t13 + t17;
-        let moment2_z_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-            - parameters[5] * bias_u2_xy_arm + parameters[8] * bias_u2_xy_arm
-            + parameters[11] * bias_a2_y_arm - parameters[12] * bias_a2_x_arm;
+            + parameters[61] * minus_bias_u6_yz_arm + parameters[63] * bias_u6_xz_arm;
+        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
+        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+        let moment6_z_arm = t20_arm
+            - (parameters[65] * minus_bias_a6_y_arm + parameters[66] * bias_a6_x_arm);
+        let moment5_y_arm = t19_arm + moment6_z_arm;
+        let moment4_x_arm = t14_arm + bias_a4_z_arm * my_4_minus_mz_5
+            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+        let t21_arm = w4_x_w4_z_arm * (t13_arm - zz_4_plus_yy_5)
+            + parameters[32] * bias_u4_zy_arm
+            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
+            - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
+        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+        let t22_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t15_arm
+            + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
+            - parameters[47] * bias_u5_yz_arm + parameters[49] * bias_u5_xz_arm;
+        let moment5_z_arm = t22_arm + parameters[51] * bias_a5_y_arm
+            - bias_a5_x_arm * my_5_plus_mz_6
+            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let moment4_y_arm = t21_arm - moment5_z_arm;
+        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let force6_x_arm = parameters[66] * bias_u6_xy_arm
+            - parameters[65] * minus_bias_u6_xx_arm;
+        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
+            + parameters[66] * minus_bias_u6_yy_arm;
+        let force5_x_arm = bias_u5_xy_arm * my_5_plus_mz_6
+            - parameters[51] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+            + s6_arm * minus_force6_y_arm;
+        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let force6_z_arm = parameters[65] * bias_u6_zx_arm
+            + parameters[66] * bias_u6_zy_arm;
+        let force5_y_arm = parameters[51] * bias_u5_yx_arm
+            - minus_bias_u5_yy_arm * my_5_plus_mz_6 + force6_z_arm;
+        let force4_x_arm = bias_u4_xy_arm * my_4_minus_mz_5
+            - parameters[37] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+            - s5_arm * force5_y_arm;
+        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let force5_z_arm = parameters[51] * bias_u5_zx_arm
+            + bias_u5_zy_arm * my_5_plus_mz_6
+            - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
+        let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
+            + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
+        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+            - c4_arm * minus_force4_y_arm;
+        let moment3_x_arm = t11_arm + bias_a3_z_arm * t12_arm + c4_arm * moment4_x_arm
+            - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+        let t23_arm = minus_bias_wd3_y_arm * (t9_arm - t10_arm)
+            + parameters[18] * bias_u3_zy_arm
+            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
+            - parameters[21] * bias_u3_xy_arm - parameters[23] * bias_a3_z_arm;
+        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+        let t24_arm = minus_w4_x_w4_y_arm * t13_arm
+            - minus_bias_wd3_y_arm * zz_4_plus_yy_5
+            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
+            + parameters[33] * minus_bias_u4_yz_arm + parameters[35] * bias_u4_xz_arm;
+        let moment4_z_arm = t24_arm
+            - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
+            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+        let moment3_y_arm = t23_arm + moment4_z_arm;
+        let moment2_x_arm = t6_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let force3_z_arm = parameters[23] * bias_u3_zx_arm + bias_u3_zy_arm * t12_arm
+            - s4_force4_x_plus_c4_force4_y_arm;
+        let moment2_y_arm = minus_bias_wd2_y_arm * (t4_arm - t5_arm)
+            + parameters[6] * bias_u2_zy_arm
+            + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
+            - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+        let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+        let tau_1_arm = joint_velocities[0] * parameters[2]
+            + ::overact::math::signed(parameters[3], joint_velocities[0])
+            + parameters[4];
+        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+        let t25_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+            - bias_u2_xy_arm * t4_arm + bias_a2_y_arm * (parameters[11] + D3 * t2_arm)
+            - parameters[12] * bias_a2_x_arm;
+        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+            + s4_arm * minus_force4_y_arm;
+        let force3_x_arm = bias_u3_xy_arm * t12_arm
+            - parameters[23] * minus_bias_u3_xx_arm + c4_force4_x_minus_s4_force4_y_arm;
+        let force4_z_arm = parameters[37] * bias_u4_zx_arm
+            + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
+            + c5_arm * force5_y_arm;
+        let force3_y_arm = parameters[23] * bias_u3_xy_arm
+            - minus_bias_u3_yy_arm * t12_arm + force4_z_arm;
+        let t26_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+            - bias_u3_xy_arm * t9_arm + parameters[23] * bias_a3_y_arm
+            - bias_a3_x_arm * t12_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
+        let moment3_z_arm = t26_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+        let moment2_z_arm = t25_arm
+            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm) + moment3_z_arm;
         let tau_2_arm = joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
             + parameters[16];
-        let v3_by_2_x_arm = D3 * s3_arm;
-        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let force3_x_arm = parameters[24] * bias_u3_xy_arm
-            - parameters[23] * minus_bias_u3_xx_arm + parameters[26] * bias_a3_x_arm;
-        let v3_by_2_y_arm = D3 * c3_arm;
-        let force3_y_arm = parameters[23] * bias_u3_xy_arm
-            - parameters[24] * minus_bias_u3_yy_arm + parameters[26] * bias_a3_y_arm;
-        let moment3_z_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-            - parameters[17] * bias_u3_xy_arm + parameters[20] * bias_u3_xy_arm
-            + parameters[23] * bias_a3_y_arm - parameters[24] * bias_a3_x_arm;
-        let v3_by_2_x_minus_d3_arm = v3_by_2_x_arm - D3;
-        let v4_by_2_x_arm = c4_arm * v3_by_2_x_minus_d3_arm;
-        let v5_by_2_z_arm = s4_arm * v3_by_2_x_minus_d3_arm;
-        let force4_z_arm = parameters[37] * bias_u4_zx_arm
-            + parameters[38] * bias_u4_zy_arm - parameters[39] * minus_bias_u3_yy_arm
-            + parameters[40] * bias_a4_z_arm;
-        let s4_moment4_x_plus_c4_moment4_y_arm = s4_arm * moment4_x_arm
-            + c4_arm * moment4_y_arm;
-        let t18 = moment2_z_arm + tau_2_arm + v3_by_2_x_arm * force3_x_arm
-            + v3_by_2_y_arm * force3_y_arm + moment3_z_arm + v4_by_2_x_arm * force4_x_arm
-            + v5_by_2_z_arm * minus_force4_y_arm + v3_by_2_y_arm * force4_z_arm
-            - s4_moment4_x_plus_c4_moment4_y_arm;
-        let v5_by_2_x_arm = c5_arm * v4_by_2_x_arm + s5_arm * v3_by_2_y_arm;
-        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm - s5_arm * v4_by_2_x_arm;
-        let w5_by_2_y_arm = s4_arm * s5_arm;
-        let t19 = w5_by_2_y_arm * moment5_y_arm - minus_w5_by_2_x_arm * moment5_x_arm
-            + c4_arm * moment5_z_arm;
-        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm - s6_arm * v5_by_2_z_arm;
-        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm + c6_arm * v5_by_2_z_arm;
-        let t20 = w6_by_2_y_arm * moment6_y_arm - minus_w6_by_2_x_arm * moment6_x_arm
-            + w5_by_2_y_arm * moment6_z_arm;
-        let force_on_u2_arm = t18 + v5_by_2_x_arm * force5_x_arm
-            + v5_by_2_y_arm * force5_y_arm + v5_by_2_z_arm * force5_z_arm + t19
-            + v6_by_2_x_arm * force6_x_arm + minus_v6_by_2_y_arm * minus_force6_y_arm
-            + v5_by_2_y_arm * force6_z_arm + t20;
+        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
         let tau_3_arm = joint_velocities[2] * parameters[28]
             + ::overact::math::signed(parameters[29], joint_velocities[2])
             + parameters[30];
-        let minus_v4_by_3_x_arm = D3 * c4_arm;
-        let v4_by_3_y_arm = D3 * s4_arm;
-        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
-        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
-        let t21 = moment3_z_arm + tau_3_arm
-            - (minus_v4_by_3_x_arm * force4_x_arm + v4_by_3_y_arm * minus_force4_y_arm
-                + s4_moment4_x_plus_c4_moment4_y_arm) + v5_by_3_y_arm * force5_y_arm
-            - minus_v5_by_3_x_arm * force5_x_arm - v4_by_3_y_arm * force5_z_arm + t19;
-        let v6_by_3_x_arm = s6_arm * v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_arm * v4_by_3_y_arm;
-        let force_on_u3_arm = t21 + v6_by_3_x_arm * force6_x_arm
-            - v6_by_3_y_arm * minus_force6_y_arm + v5_by_3_y_arm * force6_z_arm + t20;
+        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
         let tau_4_arm = joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
             + parameters[44];
-        let w6_by_4_x_arm = s5_arm * c6_arm;
-        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
-        let force_on_u4_arm = moment4_z_arm + tau_4_arm + s5_arm * moment5_x_arm
-            + c5_arm * moment5_y_arm + w6_by_4_x_arm * moment6_x_arm
-            - minus_w6_by_4_y_arm * moment6_y_arm + c5_arm * moment6_z_arm;
+        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
         let tau_5_arm = joint_velocities[4] * parameters[56]
             + ::overact::math::signed(parameters[57], joint_velocities[4])
             + parameters[58];
-        let force_on_u5_arm = moment5_z_arm + tau_5_arm
-            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
         let tau_6_arm = joint_velocities[5] * parameters[70]
             + ::overact::math::signed(parameters[71], joint_velocities[5])
             + parameters[72];
@@ -2403,7 +2151,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 1469 operations (672 additions, 791 multiplications, 6 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 1479 intermediates.
+    /// 889 operations (438 additions, 445 multiplications, 6 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 899 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2421,6 +2169,8 @@ impl Rx90 {
         )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
+        /// d3²
+        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
         /// 2 d3
         const TWICE_D3: ::core::primitive::f64 = 0.9;
         // --- sines and cosines
@@ -2428,43 +2178,65 @@ impl Rx90 {
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let tau_1_arm = joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0])
-            + parameters[4];
         // --- arm
         let w2_y_arm = c2_arm * joint_velocities[0];
         let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+        let mass5_arm = parameters[54] + parameters[68];
+        let mass4_arm = parameters[40] + mass5_arm;
+        let mass3_arm = parameters[26] + mass4_arm;
+        let d3_squared_mass3_arm = D3_SQUARED * mass3_arm;
+        let t1_arm = parameters[5] + parameters[20]
+            - (parameters[8] + parameters[20] + d3_squared_mass3_arm);
+        let zz_2_plus_d3_squared_mass3_arm = parameters[10] + d3_squared_mass3_arm;
         let w2_x_arm = s2_arm * joint_velocities[0];
         let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
         let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
         let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+        let d3_mz_3 = D3 * parameters[25];
+        let xz_2_minus_d3_mz_3 = parameters[7] - d3_mz_3;
         let w2_y_squared_arm = w2_y_arm * w2_y_arm;
         let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t1 = parameters[5] * bias_wd2_x_arm - parameters[6] * bias_u2_zx_arm
-            + parameters[7] * bias_u2_xy_arm - parameters[8] * bias_wd2_x_arm
+        let t2_arm = bias_wd2_x_arm * t1_arm
+            + bias_wd2_x_arm * zz_2_plus_d3_squared_mass3_arm
+            - parameters[6] * bias_u2_zx_arm + bias_u2_xy_arm * xz_2_minus_d3_mz_3
             + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
-        let moment2_x_arm = t1 + parameters[10] * bias_wd2_x_arm;
-        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
-        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let t2 = parameters[5] * minus_bias_wd2_y_arm + parameters[6] * bias_u2_zy_arm
-            + parameters[7] * (rate_2_squared_arm - w2_x_squared_arm)
-            - parameters[8] * minus_bias_wd2_y_arm - parameters[9] * bias_u2_xy_arm;
-        let moment2_y_arm = t2 - parameters[10] * minus_bias_wd2_y_arm;
-        let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
-        let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let w3_y_arm = joint_velocities[0] * c23_arm;
+        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
         let w3_z_arm = joint_velocities[1] + joint_velocities[2];
         let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let w3_x_arm = joint_velocities[0] * s23_arm;
+        let d3_mass4_arm = D3 * mass4_arm;
+        let t3_arm = D3 * (parameters[39] + parameters[39] + d3_mass4_arm);
+        let t4_arm = parameters[17] + parameters[34] + t3_arm - parameters[20];
+        let t5_arm = parameters[22] + parameters[34] + t3_arm;
+        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
         let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
         let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
         let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
         let w3_y_squared_arm = w3_y_arm * w3_y_arm;
         let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t3 = parameters[17] * bias_wd3_x_arm - parameters[18] * bias_u3_zx_arm
-            + parameters[19] * bias_u3_xy_arm - parameters[20] * bias_wd3_x_arm
+        let t6_arm = bias_wd3_x_arm * t4_arm + bias_wd3_x_arm * t5_arm
+            - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
             + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
         let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+        let my_3_plus_d3_mass4_arm = parameters[24] + d3_mass4_arm;
+        let t7_arm = my_3_plus_d3_mass4_arm + parameters[39];
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let t8_arm = parameters[31] + parameters[48] - parameters[34];
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let zz_4_plus_yy_5 = parameters[36] + parameters[48];
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
+        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let t9_arm = bias_wd4_x_arm * t8_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
+            - parameters[32] * bias_u4_zx_arm - parameters[33] * minus_bias_u4_yx_arm
+            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
         let bias_a2_y_arm = 9.81 * c2_arm;
         let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
         let bias_a2_x_arm = 9.81 * s2_arm;
@@ -2472,589 +2244,394 @@ impl Rx90 {
         let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
         let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
             - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
-        let moment3_x_arm = t3 + parameters[22] * bias_wd3_x_arm
-            + parameters[24] * bias_a3_z_arm - parameters[25] * bias_a3_y_arm;
-        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
         let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let t4 = parameters[17] * minus_bias_wd3_y_arm + parameters[18] * bias_u3_zy_arm
-            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
-            - parameters[20] * minus_bias_wd3_y_arm - parameters[21] * bias_u3_xy_arm;
-        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
-            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
-        let moment3_y_arm = t4 - parameters[22] * minus_bias_wd3_y_arm
-            - parameters[23] * bias_a3_z_arm + parameters[25] * bias_a3_x_arm;
-        let minus_v3_by_1_z_arm = D3 * c2_arm;
-        let rate_1_squared_arm = joint_velocities[0] * joint_velocities[0];
-        let force3_z_arm = parameters[23] * bias_u3_zx_arm
-            + parameters[24] * bias_u3_zy_arm - parameters[25] * rate_1_squared_arm
-            + parameters[26] * bias_a3_z_arm;
-        let t5 = tau_1_arm + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm
-            + s23_arm * moment3_x_arm + c23_arm * moment3_y_arm
-            - minus_v3_by_1_z_arm * force3_z_arm;
-        let t1_arm = D3 * (s23_arm - c2_arm);
-        let v5_by_1_z_arm = c4_arm * t1_arm;
-        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
-        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
-        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
-        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
-        let w4_z_arm = w3_y_arm + joint_velocities[3];
-        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
-            - joint_velocities[3] * minus_w4_y_arm;
-        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
-        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
-        let t2_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
-        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t2_arm;
-        let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
-            + parameters[38] * minus_bias_u4_yy_arm
-            + parameters[39] * minus_bias_u4_yz_arm + parameters[40] * bias_a5_z_arm;
-        let minus_v4_by_1_x_arm = s4_arm * t1_arm;
-        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
-        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
-        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
-        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
-        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t2_arm;
-        let force4_x_arm = parameters[38] * bias_u4_xy_arm
-            - parameters[37] * minus_bias_u4_xx_arm + parameters[39] * bias_u4_xz_arm
-            + parameters[40] * bias_a4_x_arm;
-        let w4_by_1_x_arm = s23_arm * c4_arm;
-        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
-        let t6 = parameters[31] * bias_wd4_x_arm - parameters[32] * bias_u4_zx_arm
-            - parameters[33] * minus_bias_u4_yx_arm
-            + parameters[34] * minus_w4_y_w4_z_arm
-            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
         let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
         let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
-        let moment4_x_arm = t6 - parameters[36] * minus_w4_y_w4_z_arm
-            + parameters[38] * bias_a4_z_arm + parameters[39] * bias_a5_z_arm;
-        let w5_by_1_z_arm = s23_arm * s4_arm;
-        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
-        let t7 = parameters[31] * w4_x_w4_z_arm + parameters[32] * bias_u4_zy_arm
-            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
-            - parameters[34] * bias_wd5_z_arm - parameters[35] * bias_u4_xy_arm;
-        let moment4_y_arm = t7 - parameters[36] * w4_x_w4_z_arm
-            - parameters[37] * bias_a4_z_arm + parameters[39] * bias_a4_x_arm;
-        let t8 = parameters[31] * minus_w4_x_w4_y_arm
-            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
-            + parameters[33] * minus_bias_u4_yz_arm
-            - parameters[34] * minus_w4_x_w4_y_arm + parameters[35] * bias_u4_xz_arm;
-        let moment4_z_arm = t8 - parameters[36] * minus_bias_wd3_y_arm
-            - parameters[37] * bias_a5_z_arm - parameters[38] * bias_a4_x_arm;
-        let t9 = t5 + v5_by_1_z_arm * minus_force4_y_arm
-            - minus_v4_by_1_x_arm * force4_x_arm + w4_by_1_x_arm * moment4_x_arm
-            - w5_by_1_z_arm * moment4_y_arm + c23_arm * moment4_z_arm;
-        let v5_by_1_y_arm = s5_arm * minus_v4_by_1_x_arm;
-        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let my_4_minus_mz_5 = parameters[38] - parameters[53];
         let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
-        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
-        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
-        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
-        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
         let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
             + joint_velocities[4] * w5_y_arm;
-        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
-        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-        let force5_y_arm = parameters[51] * bias_u5_yx_arm
-            - parameters[52] * minus_bias_u5_yy_arm + parameters[53] * bias_u5_yz_arm
-            + parameters[54] * bias_a5_y_arm;
-        let minus_v5_by_1_x_arm = c5_arm * minus_v4_by_1_x_arm;
-        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
-        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let t10_arm = parameters[45] + parameters[62] - parameters[48];
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let zz_5_plus_yy_6 = parameters[50] + parameters[62];
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
         let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
         let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
             + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
-        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
-        let force5_x_arm = parameters[52] * bias_u5_xy_arm
-            - parameters[51] * minus_bias_u5_xx_arm + parameters[53] * bias_u5_xz_arm
-            + parameters[54] * bias_a5_x_arm;
         let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
-        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
-        let force5_z_arm = parameters[51] * bias_u5_zx_arm
-            + parameters[52] * bias_u5_zy_arm - parameters[53] * minus_bias_u4_yy_arm
-            + parameters[54] * bias_a5_z_arm;
-        let w5_by_1_x_arm = w4_by_1_x_arm * c5_arm + c23_arm * s5_arm;
-        let t10 = parameters[45] * bias_wd5_x_arm - parameters[46] * bias_u5_zx_arm
-            + parameters[47] * bias_u5_yx_arm - parameters[48] * w5_y_w5_z_arm
+        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let t11_arm = bias_wd5_x_arm * t10_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
+            - parameters[46] * bias_u5_zx_arm + parameters[47] * bias_u5_yx_arm
             + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
-        let moment5_x_arm = t10 + parameters[50] * w5_y_w5_z_arm
-            + parameters[52] * bias_a5_z_arm - parameters[53] * bias_a5_y_arm;
-        let w5_by_1_y_arm = c23_arm * c5_arm - w4_by_1_x_arm * s5_arm;
-        let t11 = parameters[45] * w5_x_w5_z_arm + parameters[46] * bias_u5_zy_arm
-            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
-            - parameters[48] * minus_bias_wd5_y_arm - parameters[49] * bias_u5_xy_arm;
-        let moment5_y_arm = t11 - parameters[50] * w5_x_w5_z_arm
-            - parameters[51] * bias_a5_z_arm + parameters[53] * bias_a5_x_arm;
-        let t12 = parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
-            - parameters[45] * w5_x_w5_y_arm - parameters[47] * bias_u5_yz_arm
-            + parameters[48] * w5_x_w5_y_arm + parameters[49] * bias_u5_xz_arm;
-        let moment5_z_arm = t12 + parameters[50] * bias_wd5_z_arm
-            + parameters[51] * bias_a5_y_arm - parameters[52] * bias_a5_x_arm;
-        let t13 = v5_by_1_y_arm * force5_y_arm - minus_v5_by_1_x_arm * force5_x_arm
-            + v5_by_1_z_arm * force5_z_arm + w5_by_1_x_arm * moment5_x_arm
-            + w5_by_1_y_arm * moment5_y_arm + w5_by_1_z_arm * moment5_z_arm;
-        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
+        let t12_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t12_arm;
+        let first5_y_arm = parameters[52] + parameters[67];
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let xx_6_minus_yy_6 = parameters[59] - parameters[62];
         let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
         let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
         let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
             + joint_velocities[5] * w6_x_arm;
         let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
-        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
-        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
-            - joint_velocities[5] * minus_w6_y_arm;
-        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
-        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
-        let force6_z_arm = parameters[65] * bias_u6_zx_arm
-            + parameters[66] * bias_u6_zy_arm - parameters[67] * minus_bias_u5_yy_arm
-            + parameters[68] * bias_a5_y_arm;
-        let minus_w5_by_2_x_arm = s4_arm * c5_arm;
-        let minus_w6_by_2_x_arm = c6_arm * minus_w5_by_2_x_arm + c4_arm * s6_arm;
-        let minus_v6_by_1_x_arm = t1_arm * minus_w6_by_2_x_arm;
         let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
-        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
         let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
         let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-        let force6_x_arm = parameters[66] * bias_u6_xy_arm
-            - parameters[65] * minus_bias_u6_xx_arm + parameters[67] * bias_u6_xz_arm
-            + parameters[68] * bias_a6_x_arm;
-        let w6_by_2_y_arm = s6_arm * minus_w5_by_2_x_arm - c4_arm * c6_arm;
-        let v6_by_1_y_arm = t1_arm * w6_by_2_y_arm;
-        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
-        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
-        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
-        let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
-            + parameters[66] * minus_bias_u6_yy_arm
-            + parameters[67] * minus_bias_u6_yz_arm
-            + parameters[68] * minus_bias_a6_y_arm;
-        let w6_by_1_x_arm = w5_by_1_x_arm * c6_arm - w5_by_1_z_arm * s6_arm;
-        let t14 = parameters[59] * bias_wd6_x_arm - parameters[60] * bias_u6_zx_arm
+        let t13_arm = bias_wd6_x_arm * xx_6_minus_yy_6
+            - parameters[64] * minus_w6_y_w6_z_arm - parameters[60] * bias_u6_zx_arm
             - parameters[61] * minus_bias_u6_yx_arm
-            + parameters[62] * minus_w6_y_w6_z_arm
             + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
-        let moment6_x_arm = t14 - parameters[64] * minus_w6_y_w6_z_arm
-            + parameters[66] * bias_a5_y_arm + parameters[67] * minus_bias_a6_y_arm;
-        let minus_w6_by_1_y_arm = w5_by_1_x_arm * s6_arm + w5_by_1_z_arm * c6_arm;
-        let t15 = parameters[59] * w6_x_w6_z_arm + parameters[60] * bias_u6_zy_arm
+        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t12_arm;
+        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+        let moment6_x_arm = t13_arm + parameters[66] * bias_a5_y_arm;
+        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+        let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
+            + parameters[60] * bias_u6_zy_arm
             + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
-            - parameters[62] * minus_bias_wd6_y_arm - parameters[63] * bias_u6_xy_arm;
-        let moment6_y_arm = t15 - parameters[64] * w6_x_w6_z_arm
-            - parameters[65] * bias_a5_y_arm + parameters[67] * bias_a6_x_arm;
-        let t16 = parameters[59] * minus_w6_x_w6_y_arm
+            - parameters[63] * bias_u6_xy_arm - parameters[65] * bias_a5_y_arm;
+        let moment5_x_arm = t11_arm + bias_a5_z_arm * first5_y_arm
+            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+        let t14_arm = w5_x_w5_z_arm * (t10_arm - zz_5_plus_yy_6)
+            + parameters[46] * bias_u5_zy_arm
+            + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
+            - parameters[49] * bias_u5_xy_arm - parameters[51] * bias_a5_z_arm;
+        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+        let t15_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
+            - parameters[64] * minus_bias_wd5_y_arm
             + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
-            + parameters[61] * minus_bias_u6_yz_arm
-            - parameters[62] * minus_w6_x_w6_y_arm + parameters[63] * bias_u6_xz_arm;
-        let moment6_z_arm = t16 - parameters[64] * minus_bias_wd5_y_arm
-            - parameters[65] * minus_bias_a6_y_arm - parameters[66] * bias_a6_x_arm;
-        let t17 = v5_by_1_y_arm * force6_z_arm
-            - (minus_v6_by_1_x_arm * force6_x_arm + v6_by_1_y_arm * minus_force6_y_arm)
-            + w6_by_1_x_arm * moment6_x_arm - minus_w6_by_1_y_arm * moment6_y_arm
-            + w5_by_1_y_arm * moment6_z_arm;
-        let force_on_u1_arm = t9 + t13 + t17;
+            + parameters[61] * minus_bias_u6_yz_arm + parameters[63] * bias_u6_xz_arm;
+        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
+        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+        let moment6_z_arm = t15_arm
+            - (parameters[65] * minus_bias_a6_y_arm + parameters[66] * bias_a6_x_arm);
+        let moment5_y_arm = t14_arm + moment6_z_arm;
+        let moment4_x_arm = t9_arm + bias_a4_z_arm * my_4_minus_mz_5
+            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+        let t16_arm = w4_x_w4_z_arm * (t8_arm - zz_4_plus_yy_5)
+            + parameters[32] * bias_u4_zy_arm
+            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
+            - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
+        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+        let t17_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t10_arm
+            + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
+            - parameters[47] * bias_u5_yz_arm + parameters[49] * bias_u5_xz_arm;
+        let moment5_z_arm = t17_arm + parameters[51] * bias_a5_y_arm
+            - bias_a5_x_arm * first5_y_arm
+            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let moment4_y_arm = t16_arm - moment5_z_arm;
+        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let force6_x_arm = parameters[66] * bias_u6_xy_arm
+            - parameters[65] * minus_bias_u6_xx_arm;
+        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
+            + parameters[66] * minus_bias_u6_yy_arm;
+        let force5_x_arm = bias_u5_xy_arm * first5_y_arm
+            - parameters[51] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+            + s6_arm * minus_force6_y_arm;
+        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let force6_z_arm = parameters[65] * bias_u6_zx_arm
+            + parameters[66] * bias_u6_zy_arm;
+        let force5_y_arm = parameters[51] * bias_u5_yx_arm
+            - minus_bias_u5_yy_arm * first5_y_arm + force6_z_arm;
+        let force4_x_arm = bias_u4_xy_arm * my_4_minus_mz_5
+            - parameters[37] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+            - s5_arm * force5_y_arm;
+        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let force5_z_arm = parameters[51] * bias_u5_zx_arm
+            + bias_u5_zy_arm * first5_y_arm
+            - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
+        let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
+            + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
+        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+            - c4_arm * minus_force4_y_arm;
+        let moment3_x_arm = t6_arm + bias_a3_z_arm * t7_arm + c4_arm * moment4_x_arm
+            - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+        let t18_arm = minus_bias_wd3_y_arm * (t4_arm - t5_arm)
+            + parameters[18] * bias_u3_zy_arm
+            + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
+            - parameters[21] * bias_u3_xy_arm - parameters[23] * bias_a3_z_arm;
+        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+        let t19_arm = minus_w4_x_w4_y_arm * t8_arm
+            - minus_bias_wd3_y_arm * zz_4_plus_yy_5
+            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
+            + parameters[33] * minus_bias_u4_yz_arm + parameters[35] * bias_u4_xz_arm;
+        let moment4_z_arm = t19_arm
+            - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
+            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+        let moment3_y_arm = t18_arm + moment4_z_arm;
+        let moment2_x_arm = t2_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let force3_z_arm = parameters[23] * bias_u3_zx_arm + bias_u3_zy_arm * t7_arm
+            - s4_force4_x_plus_c4_force4_y_arm;
+        let moment2_y_arm = minus_bias_wd2_y_arm
+            * (t1_arm - zz_2_plus_d3_squared_mass3_arm) + parameters[6] * bias_u2_zy_arm
+            + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
+            - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+        let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+        let tau_1_arm = joint_velocities[0] * parameters[2]
+            + ::overact::math::signed(parameters[3], joint_velocities[0])
+            + parameters[4];
+        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
         let tau1_minus_force_on_u1_arm = torques[0] - force_on_u1_arm;
-        let t18 = parameters[0] + parameters[1]
-            + s2_arm * (s2_arm * parameters[5] + c2_arm * parameters[6])
-            + c2_arm * (s2_arm * parameters[6] + c2_arm * parameters[8]);
-        let t19 = s23_arm
-            * (s23_arm * parameters[17] + c23_arm * parameters[18]
-                - parameters[24] * minus_v3_by_1_z_arm)
-            + c23_arm
-                * (s23_arm * parameters[18] + c23_arm * parameters[20]
-                    + parameters[23] * minus_v3_by_1_z_arm);
-        let t20 = w4_by_1_x_arm
-            * (w4_by_1_x_arm * parameters[31] - w5_by_1_z_arm * parameters[32]
-                + c23_arm * parameters[33] + parameters[39] * v5_by_1_z_arm)
-            - w5_by_1_z_arm
-                * (w4_by_1_x_arm * parameters[32] - w5_by_1_z_arm * parameters[34]
-                    + c23_arm * parameters[35] - parameters[39] * minus_v4_by_1_x_arm);
-        let t21 = w4_by_1_x_arm * parameters[33] - w5_by_1_z_arm * parameters[35]
-            + c23_arm * parameters[36] - parameters[37] * v5_by_1_z_arm
-            + parameters[38] * minus_v4_by_1_x_arm;
-        let t22 = v5_by_1_z_arm
-            * (c23_arm * parameters[37] - w4_by_1_x_arm * parameters[39]
-                - parameters[40] * v5_by_1_z_arm)
-            - minus_v4_by_1_x_arm
-                * (parameters[40] * minus_v4_by_1_x_arm + c23_arm * parameters[38]
-                    + w5_by_1_z_arm * parameters[39]);
-        let t23 = t18 + t19
-            - minus_v3_by_1_z_arm
-                * (s23_arm * parameters[24] - c23_arm * parameters[23]
-                    - parameters[26] * minus_v3_by_1_z_arm) + t20 + c23_arm * t21 - t22;
-        let t24 = v5_by_1_y_arm
-            * (w5_by_1_z_arm * parameters[51] - w5_by_1_x_arm * parameters[53]
-                + parameters[54] * v5_by_1_y_arm)
-            - minus_v5_by_1_x_arm
-                * (w5_by_1_y_arm * parameters[53] - w5_by_1_z_arm * parameters[52]
-                    - parameters[54] * minus_v5_by_1_x_arm);
-        let t25 = w5_by_1_x_arm
-            * (w5_by_1_x_arm * parameters[45] + w5_by_1_y_arm * parameters[46]
-                + w5_by_1_z_arm * parameters[47] + parameters[52] * v5_by_1_z_arm
-                - parameters[53] * v5_by_1_y_arm);
-        let t26 = w5_by_1_y_arm
-            * (w5_by_1_x_arm * parameters[46] + w5_by_1_y_arm * parameters[48]
-                + w5_by_1_z_arm * parameters[49] - parameters[51] * v5_by_1_z_arm
-                - parameters[53] * minus_v5_by_1_x_arm);
-        let t27 = w5_by_1_x_arm * parameters[47] + w5_by_1_y_arm * parameters[49]
-            + w5_by_1_z_arm * parameters[50] + parameters[51] * v5_by_1_y_arm
-            + parameters[52] * minus_v5_by_1_x_arm;
-        let t28 = t24
-            + v5_by_1_z_arm
-                * (w5_by_1_x_arm * parameters[52] - w5_by_1_y_arm * parameters[51]
-                    + parameters[54] * v5_by_1_z_arm) + t25 + t26 + w5_by_1_z_arm * t27;
-        let t29 = v6_by_1_y_arm
-            * (w5_by_1_y_arm * parameters[65] - w6_by_1_x_arm * parameters[67]
-                + parameters[68] * v6_by_1_y_arm)
-            + minus_v6_by_1_x_arm
-                * (parameters[68] * minus_v6_by_1_x_arm + w5_by_1_y_arm * parameters[66]
-                    + minus_w6_by_1_y_arm * parameters[67]);
-        let t30 = w6_by_1_x_arm
-            * (w6_by_1_x_arm * parameters[59] - minus_w6_by_1_y_arm * parameters[60]
-                + w5_by_1_y_arm * parameters[61] + parameters[66] * v5_by_1_y_arm
-                - parameters[67] * v6_by_1_y_arm);
-        let t31 = minus_w6_by_1_y_arm
-            * (w6_by_1_x_arm * parameters[60] - minus_w6_by_1_y_arm * parameters[62]
-                + w5_by_1_y_arm * parameters[63] - parameters[65] * v5_by_1_y_arm
-                - parameters[67] * minus_v6_by_1_x_arm);
-        let mass_1_6 = w6_by_1_x_arm * parameters[61]
-            - minus_w6_by_1_y_arm * parameters[63] + w5_by_1_y_arm * parameters[64]
-            + parameters[65] * v6_by_1_y_arm + parameters[66] * minus_v6_by_1_x_arm;
-        let t32 = t29
-            + v5_by_1_y_arm
-                * (minus_w6_by_1_y_arm * parameters[65] + w6_by_1_x_arm * parameters[66]
-                    + parameters[68] * v5_by_1_y_arm) + t30 - t31
-            + w5_by_1_y_arm * mass_1_6;
-        let mass_1_1 = t23 + t28 + t32;
-        ::overact::guard::mass(mass_1_1)?;
-        let inv_pivot_1 = 1.0 / mass_1_1;
-        let v3_by_2_y_arm = D3 * c3_arm;
-        let v3_by_2_x_arm = D3 * s3_arm;
-        let t33 = s2_arm * parameters[7] + c2_arm * parameters[9]
-            + s23_arm * (parameters[19] - parameters[25] * v3_by_2_y_arm)
-            + c23_arm * (parameters[21] + parameters[25] * v3_by_2_x_arm);
-        let s4_xx_4_plus_c4_xy_4_arm = s4_arm * parameters[31] + c4_arm * parameters[32];
-        let v3_by_2_x_minus_d3_arm = v3_by_2_x_arm - D3;
-        let v5_by_2_z_arm = s4_arm * v3_by_2_x_minus_d3_arm;
-        let t34 = parameters[38] * v3_by_2_y_arm - s4_xx_4_plus_c4_xy_4_arm
-            + parameters[39] * v5_by_2_z_arm;
-        let v4_by_2_x_arm = c4_arm * v3_by_2_x_minus_d3_arm;
-        let s4_xy_4_plus_c4_yy_4_arm = s4_arm * parameters[32] + c4_arm * parameters[34];
-        let t35 = parameters[39] * v4_by_2_x_arm
-            - (s4_xy_4_plus_c4_yy_4_arm + parameters[37] * v3_by_2_y_arm);
-        let s4_xz_4_plus_c4_yz_4_arm = s4_arm * parameters[33] + c4_arm * parameters[35];
-        let t36 = s4_xz_4_plus_c4_yz_4_arm + parameters[37] * v5_by_2_z_arm
-            + parameters[38] * v4_by_2_x_arm;
-        let w5_by_2_y_arm = s4_arm * s5_arm;
-        let t37 = parameters[46] * w5_by_2_y_arm - parameters[45] * minus_w5_by_2_x_arm
-            + c4_arm * parameters[47];
-        let v5_by_2_y_arm = c5_arm * v3_by_2_y_arm - s5_arm * v4_by_2_x_arm;
-        let t38 = t37 + parameters[52] * v5_by_2_z_arm - parameters[53] * v5_by_2_y_arm;
-        let t39 = parameters[48] * w5_by_2_y_arm - parameters[46] * minus_w5_by_2_x_arm
-            + c4_arm * parameters[49];
-        let v5_by_2_x_arm = c5_arm * v4_by_2_x_arm + s5_arm * v3_by_2_y_arm;
-        let t40 = t39 - parameters[51] * v5_by_2_z_arm + parameters[53] * v5_by_2_x_arm;
-        let t41 = parameters[49] * w5_by_2_y_arm - parameters[47] * minus_w5_by_2_x_arm
-            + c4_arm * parameters[50];
-        let t42 = t41 + parameters[51] * v5_by_2_y_arm - parameters[52] * v5_by_2_x_arm;
-        let t43 = t33 + w4_by_1_x_arm * t34 - w5_by_1_z_arm * t35 - c23_arm * t36
-            + w5_by_1_x_arm * t38 + w5_by_1_y_arm * t40 + w5_by_1_z_arm * t42;
-        let t44 = parameters[60] * w6_by_2_y_arm - parameters[59] * minus_w6_by_2_x_arm
-            + parameters[61] * w5_by_2_y_arm;
-        let minus_v6_by_2_y_arm = s6_arm * v5_by_2_x_arm + c6_arm * v5_by_2_z_arm;
-        let t45 = t44 + parameters[66] * v5_by_2_y_arm
-            + parameters[67] * minus_v6_by_2_y_arm;
-        let t46 = parameters[62] * w6_by_2_y_arm - parameters[60] * minus_w6_by_2_x_arm
-            + parameters[63] * w5_by_2_y_arm;
-        let v6_by_2_x_arm = c6_arm * v5_by_2_x_arm - s6_arm * v5_by_2_z_arm;
-        let t47 = t46 - parameters[65] * v5_by_2_y_arm + parameters[67] * v6_by_2_x_arm;
-        let t48 = parameters[63] * w6_by_2_y_arm - parameters[61] * minus_w6_by_2_x_arm
-            + parameters[64] * w5_by_2_y_arm;
-        let mass_2_6 = t48 - parameters[65] * minus_v6_by_2_y_arm
-            - parameters[66] * v6_by_2_x_arm;
-        let mass_1_2 = t43 + w6_by_1_x_arm * t45 - minus_w6_by_1_y_arm * t47
-            + w5_by_1_y_arm * mass_2_6;
-        let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t49 = parameters[22] + parameters[23] * v3_by_2_y_arm
-            - parameters[24] * v3_by_2_x_arm;
-        let t50 = parameters[10] + parameters[13]
-            + v3_by_2_x_arm * (parameters[26] * v3_by_2_x_arm - parameters[24])
-            + v3_by_2_y_arm * (parameters[23] + parameters[26] * v3_by_2_y_arm) + t49;
-        let c4_mz_4_arm = c4_arm * parameters[39];
-        let s4_mz_4_arm = s4_arm * parameters[39];
-        let c4_mx_4_minus_s4_my_4_arm = c4_arm * parameters[37]
-            - s4_arm * parameters[38];
-        let t51 = v4_by_2_x_arm * (parameters[40] * v4_by_2_x_arm - c4_mz_4_arm)
-            - v5_by_2_z_arm * (s4_mz_4_arm - parameters[40] * v5_by_2_z_arm)
-            + v3_by_2_y_arm
-                * (c4_mx_4_minus_s4_my_4_arm + parameters[40] * v3_by_2_y_arm);
-        let mz_5_w5_by_2_y_minus_c4_my_5_arm = parameters[53] * w5_by_2_y_arm
-            - c4_arm * parameters[52];
-        let c4_mx_5_minus_mz_5_w5_by_2_x_arm = c4_arm * parameters[51]
-            + parameters[53] * minus_w5_by_2_x_arm;
-        let t52 = parameters[52] * minus_w5_by_2_x_arm + parameters[51] * w5_by_2_y_arm;
-        let t53 = v5_by_2_x_arm
-            * (mz_5_w5_by_2_y_minus_c4_my_5_arm + parameters[54] * v5_by_2_x_arm)
-            + v5_by_2_y_arm
-                * (c4_mx_5_minus_mz_5_w5_by_2_x_arm + parameters[54] * v5_by_2_y_arm)
-            + v5_by_2_z_arm * (parameters[54] * v5_by_2_z_arm - t52);
-        let t54 = t50 + t51 - (s4_arm * t34 + c4_arm * t35) + t53 + w5_by_2_y_arm * t40
-            - minus_w5_by_2_x_arm * t38 + c4_arm * t42;
-        let t55 = parameters[66] * w5_by_2_y_arm - parameters[67] * w6_by_2_y_arm;
-        let t56 = parameters[65] * w5_by_2_y_arm + parameters[67] * minus_w6_by_2_x_arm;
-        let t57 = parameters[65] * w6_by_2_y_arm + parameters[66] * minus_w6_by_2_x_arm;
-        let t58 = v6_by_2_x_arm * (parameters[68] * v6_by_2_x_arm - t55)
-            - minus_v6_by_2_y_arm * (t56 - parameters[68] * minus_v6_by_2_y_arm)
-            + v5_by_2_y_arm * (parameters[68] * v5_by_2_y_arm - t57);
-        let mass_2_2 = t54 + t58 + w6_by_2_y_arm * t47 - minus_w6_by_2_x_arm * t45
-            + w5_by_2_y_arm * mass_2_6;
-        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+        let inertia5_yy_arm = parameters[48] + parameters[64];
+        let t20_arm = s6_arm * xx_6_minus_yy_6 + c6_arm * (2.0 * parameters[60]);
+        let t21_arm = s6_arm * t20_arm;
+        let inertia5_xx_arm = parameters[45] + parameters[59] - t21_arm;
+        let moment5_x_by_6_arm = c6_arm * parameters[61] - s6_arm * parameters[63];
+        let inertia5_xy_arm = parameters[46] + moment5_x_by_6_arm;
+        let t22_arm = s5_arm * (inertia5_xx_arm - inertia5_yy_arm)
+            + c5_arm * (2.0 * inertia5_xy_arm);
+        let t23_arm = s5_arm * t22_arm;
+        let inertia4_zz_arm = parameters[36] + inertia5_yy_arm + t23_arm;
+        let inertia3_yy_arm = parameters[20] + inertia4_zz_arm;
+        let inertia4_xx_arm = parameters[31] + inertia5_xx_arm - t23_arm;
+        let inertia5_zz_arm = zz_5_plus_yy_6 + t21_arm;
+        let inertia4_yy_arm = parameters[34] + inertia5_zz_arm;
+        let inertia5_xz_arm = parameters[47] - (c6_arm * t20_arm - parameters[60]);
+        let minus_moment5_z_by_6_arm = s6_arm * parameters[61] + c6_arm * parameters[63];
+        let inertia5_yz_arm = parameters[49] - minus_moment5_z_by_6_arm;
+        let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm - s5_arm * inertia5_yz_arm;
+        let inertia4_xy_arm = parameters[32] - moment4_x_by_5_arm;
+        let t24_arm = s4_arm * (inertia4_xx_arm - inertia4_yy_arm)
+            + c4_arm * (2.0 * inertia4_xy_arm);
+        let t25_arm = s4_arm * t24_arm;
+        let minus_force5_z_by_6_arm = c6_arm * parameters[65] - s6_arm * parameters[66];
+        let first5_x_arm = parameters[51] + minus_force5_z_by_6_arm;
+        let minus_force4_x_by_5_arm = s5_arm * first5_x_arm + c5_arm * first5_y_arm;
+        let first4_z_arm = parameters[39] + minus_force4_x_by_5_arm;
+        let t26_arm = D3 * (first4_z_arm + first4_z_arm + d3_mass4_arm);
+        let inertia3_xx_arm = parameters[17] + inertia4_xx_arm - t25_arm + t26_arm;
+        let inertia4_xz_arm = parameters[33] + c5_arm * t22_arm - inertia5_xy_arm;
+        let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm + c5_arm * inertia5_yz_arm;
+        let inertia4_yz_arm = parameters[35] - moment4_z_by_5_arm;
+        let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * first5_y_arm;
+        let first4_x_arm = parameters[37] + force4_z_by_5_arm;
+        let minus_force5_x_by_6_arm = s6_arm * parameters[65] + c6_arm * parameters[66];
+        let first4_y_arm = my_4_minus_mz_5 + minus_force5_x_by_6_arm;
+        let minus_force3_z_by_4_arm = c4_arm * first4_x_arm - s4_arm * first4_y_arm;
+        let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
+        let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm - s4_arm * inertia4_yz_arm
+            - minus_d3_force3_z_by_4_arm;
+        let inertia3_xy_arm = parameters[18] + moment3_x_by_4_arm;
+        let t27_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
+            + c3_arm * (2.0 * inertia3_xy_arm);
+        let t28_arm = s3_arm * t27_arm;
+        let first3_x_arm = parameters[23] + minus_force3_z_by_4_arm;
+        let first3_y_arm = my_3_plus_d3_mass4_arm + first4_z_arm;
+        let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
+        let d3_mass3_arm = D3 * mass3_arm;
+        let t29_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + d3_mass3_arm);
+        let inertia2_yy_arm = parameters[8] + inertia3_yy_arm + t28_arm + t29_arm;
+        let inertia2_xx_arm = parameters[5] + inertia3_xx_arm - t28_arm;
+        let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
+        let inertia2_xy_arm = parameters[6] + c3_arm * t27_arm - inertia3_xy_arm
+            - D3 * minus_force2_x_by_3_arm;
+        let inertia1_zz_arm = parameters[0] + inertia2_yy_arm
+            + s2_arm
+                * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
+                    + c2_arm * (2.0 * inertia2_xy_arm));
+        let masses_arm_1_1 = inertia1_zz_arm + parameters[1];
+        ::overact::guard::mass(masses_arm_1_1)?;
+        let inv_pivot_1 = 1.0 / masses_arm_1_1;
+        let inertia3_xz_arm = parameters[19] - (c4_arm * t24_arm - inertia4_xy_arm);
+        let minus_force3_x_by_4_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
+        let minus_d3_force3_x_by_4_arm = D3 * minus_force3_x_by_4_arm;
+        let moment3_z_by_4_arm = minus_d3_force3_x_by_4_arm
+            - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
+        let inertia3_yz_arm = parameters[21] + moment3_z_by_4_arm;
+        let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm - s3_arm * inertia3_yz_arm;
+        let inertia2_xz_arm = parameters[7] + moment2_x_by_3_arm
+            - (d3_mz_3 - minus_d3_force3_x_by_4_arm);
+        let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm + c3_arm * inertia3_yz_arm;
+        let inertia2_yz_arm = parameters[9] + moment2_y_by_3_arm;
+        let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm + c2_arm * inertia2_yz_arm;
+        let l_2_1 = minus_inertia1_yz_arm * inv_pivot_1;
+        let inertia3_zz_arm = parameters[22] + inertia4_yy_arm + t25_arm + t26_arm;
+        let inertia2_zz_arm = parameters[10] + inertia3_zz_arm + t29_arm;
+        let masses_arm_2_2 = inertia2_zz_arm + parameters[13];
+        let pivot_2 = masses_arm_2_2 - minus_inertia1_yz_arm * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let inv_pivot_2 = 1.0 / pivot_2;
-        let moment2_z_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-            - parameters[5] * bias_u2_xy_arm + parameters[8] * bias_u2_xy_arm
-            + parameters[11] * bias_a2_y_arm - parameters[12] * bias_a2_x_arm;
+        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+            + s4_arm * minus_force4_y_arm;
+        let force3_x_arm = bias_u3_xy_arm * t7_arm
+            - parameters[23] * minus_bias_u3_xx_arm + c4_force4_x_minus_s4_force4_y_arm;
+        let force4_z_arm = parameters[37] * bias_u4_zx_arm
+            + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
+            + c5_arm * force5_y_arm;
+        let force3_y_arm = parameters[23] * bias_u3_xy_arm
+            - minus_bias_u3_yy_arm * t7_arm + force4_z_arm;
+        let t30_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+            - bias_u2_xy_arm * t1_arm + bias_a2_y_arm * (parameters[11] + d3_mass3_arm)
+            - parameters[12] * bias_a2_x_arm
+            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+        let t31_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+            - bias_u3_xy_arm * t4_arm + parameters[23] * bias_a3_y_arm
+            - bias_a3_x_arm * t7_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
+        let moment3_z_arm = t31_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+        let moment2_z_arm = t30_arm + moment3_z_arm;
         let tau_2_arm = joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
             + parameters[16];
-        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
-        let force3_x_arm = parameters[24] * bias_u3_xy_arm
-            - parameters[23] * minus_bias_u3_xx_arm + parameters[26] * bias_a3_x_arm;
-        let force3_y_arm = parameters[23] * bias_u3_xy_arm
-            - parameters[24] * minus_bias_u3_yy_arm + parameters[26] * bias_a3_y_arm;
-        let moment3_z_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-            - parameters[17] * bias_u3_xy_arm + parameters[20] * bias_u3_xy_arm
-            + parameters[23] * bias_a3_y_arm - parameters[24] * bias_a3_x_arm;
-        let force4_z_arm = parameters[37] * bias_u4_zx_arm
-            + parameters[38] * bias_u4_zy_arm - parameters[39] * minus_bias_u3_yy_arm
-            + parameters[40] * bias_a4_z_arm;
-        let s4_moment4_x_plus_c4_moment4_y_arm = s4_arm * moment4_x_arm
-            + c4_arm * moment4_y_arm;
-        let t59 = moment2_z_arm + tau_2_arm + v3_by_2_x_arm * force3_x_arm
-            + v3_by_2_y_arm * force3_y_arm + moment3_z_arm + v4_by_2_x_arm * force4_x_arm
-            + v5_by_2_z_arm * minus_force4_y_arm + v3_by_2_y_arm * force4_z_arm
-            - s4_moment4_x_plus_c4_moment4_y_arm;
-        let t60 = w5_by_2_y_arm * moment5_y_arm - minus_w5_by_2_x_arm * moment5_x_arm
-            + c4_arm * moment5_z_arm;
-        let t61 = w6_by_2_y_arm * moment6_y_arm - minus_w6_by_2_x_arm * moment6_x_arm
-            + w5_by_2_y_arm * moment6_z_arm;
-        let force_on_u2_arm = t59 + v5_by_2_x_arm * force5_x_arm
-            + v5_by_2_y_arm * force5_y_arm + v5_by_2_z_arm * force5_z_arm + t60
-            + v6_by_2_x_arm * force6_x_arm + minus_v6_by_2_y_arm * minus_force6_y_arm
-            + v5_by_2_y_arm * force6_z_arm + t61;
-        let t62 = torques[1] - force_on_u2_arm - tau1_minus_force_on_u1_arm * l_2_1;
-        let minus_v4_by_3_x_arm = D3 * c4_arm;
-        let c4_mz_4_minus_m_4_v4_by_3_x_arm = parameters[40] * minus_v4_by_3_x_arm
-            + c4_mz_4_arm;
-        let v4_by_3_y_arm = D3 * s4_arm;
-        let s4_mz_4_plus_m_4_v4_by_3_y_arm = s4_mz_4_arm
-            + parameters[40] * v4_by_3_y_arm;
-        let t63 = s4_xx_4_plus_c4_xy_4_arm + D3 * s4_mz_4_arm;
-        let t64 = s4_xy_4_plus_c4_yy_4_arm + D3 * c4_mz_4_arm;
-        let t65 = s4_arm * t63 + c4_arm * t64;
-        let minus_v5_by_3_x_arm = c5_arm * minus_v4_by_3_x_arm;
-        let t66 = mz_5_w5_by_2_y_minus_c4_my_5_arm
-            - parameters[54] * minus_v5_by_3_x_arm;
-        let v5_by_3_y_arm = s5_arm * minus_v4_by_3_x_arm;
-        let t67 = c4_mx_5_minus_mz_5_w5_by_2_x_arm + parameters[54] * v5_by_3_y_arm;
-        let t68 = t52 + parameters[54] * v4_by_3_y_arm;
-        let t69 = t39 + parameters[51] * v4_by_3_y_arm
-            - parameters[53] * minus_v5_by_3_x_arm;
-        let t70 = t37 - parameters[52] * v4_by_3_y_arm - parameters[53] * v5_by_3_y_arm;
-        let t71 = t41 + parameters[51] * v5_by_3_y_arm
-            + parameters[52] * minus_v5_by_3_x_arm;
-        let t72 = w5_by_2_y_arm * t69 - minus_w5_by_2_x_arm * t70 + c4_arm * t71;
-        let t73 = t49 + v3_by_2_y_arm * c4_mx_4_minus_s4_my_4_arm
-            - (v4_by_2_x_arm * c4_mz_4_minus_m_4_v4_by_3_x_arm
-                + v5_by_2_z_arm * s4_mz_4_plus_m_4_v4_by_3_y_arm) + t65
-            + v5_by_2_x_arm * t66 + v5_by_2_y_arm * t67 - v5_by_2_z_arm * t68 + t72;
-        let v6_by_3_x_arm = s6_arm * v4_by_3_y_arm - c6_arm * minus_v5_by_3_x_arm;
-        let t74 = parameters[68] * v6_by_3_x_arm - t55;
-        let v6_by_3_y_arm = s6_arm * minus_v5_by_3_x_arm + c6_arm * v4_by_3_y_arm;
-        let t75 = t56 + parameters[68] * v6_by_3_y_arm;
-        let t76 = parameters[68] * v5_by_3_y_arm - t57;
-        let t77 = t46 - parameters[65] * v5_by_3_y_arm + parameters[67] * v6_by_3_x_arm;
-        let t78 = t44 + parameters[66] * v5_by_3_y_arm - parameters[67] * v6_by_3_y_arm;
-        let mass_3_6 = t48 + parameters[65] * v6_by_3_y_arm
-            - parameters[66] * v6_by_3_x_arm;
-        let t79 = w6_by_2_y_arm * t77 - minus_w6_by_2_x_arm * t78
-            + w5_by_2_y_arm * mass_3_6;
-        let mass_2_3 = t73 + v6_by_2_x_arm * t74 - minus_v6_by_2_y_arm * t75
-            + v5_by_2_y_arm * t76 + t79;
-        let t80 = parameters[37] * v4_by_3_y_arm - s4_xz_4_plus_c4_yz_4_arm
-            + parameters[38] * minus_v4_by_3_x_arm;
-        let t81 = s23_arm * parameters[19] + c23_arm * parameters[21]
-            + w5_by_1_z_arm * t64 - w4_by_1_x_arm * t63 + c23_arm * t80
-            + w5_by_1_x_arm * t70 + w5_by_1_y_arm * t69 + w5_by_1_z_arm * t71;
-        let mass_1_3 = t81 + w6_by_1_x_arm * t78 - minus_w6_by_1_y_arm * t77
-            + w5_by_1_y_arm * mass_3_6;
-        let l_3_1 = mass_1_3 * inv_pivot_1;
-        let schur_2_3 = mass_2_3 - mass_1_2 * l_3_1;
+        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+        let t1 = torques[1] - force_on_u2_arm - tau1_minus_force_on_u1_arm * l_2_1;
+        let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
+        let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
+            + c2_arm * moment2_y_by_3_arm;
+        let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
+        let schur_2_3 = moment2_z_by_3_arm - minus_inertia1_yz_arm * l_3_1;
         let l_3_2 = schur_2_3 * inv_pivot_2;
-        let t82 = parameters[22] + parameters[27]
-            + v4_by_3_y_arm * s4_mz_4_plus_m_4_v4_by_3_y_arm
-            + minus_v4_by_3_x_arm * c4_mz_4_minus_m_4_v4_by_3_x_arm + t65
-            + v5_by_3_y_arm * t67 - minus_v5_by_3_x_arm * t66 + v4_by_3_y_arm * t68
-            + t72;
-        let mass_3_3 = t82 + v6_by_3_x_arm * t74 + v6_by_3_y_arm * t75
-            + v5_by_3_y_arm * t76 + t79;
-        let pivot_3 = mass_3_3 - mass_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        let masses_arm_3_3 = inertia3_zz_arm + parameters[27];
+        let pivot_3 = masses_arm_3_3 - moment1_z_by_3_arm * l_3_1 - schur_2_3 * l_3_2;
         ::overact::guard::mass(pivot_3)?;
         let inv_pivot_3 = 1.0 / pivot_3;
         let tau_3_arm = joint_velocities[2] * parameters[28]
             + ::overact::math::signed(parameters[29], joint_velocities[2])
             + parameters[30];
-        let t83 = moment3_z_arm + tau_3_arm
-            - (minus_v4_by_3_x_arm * force4_x_arm + v4_by_3_y_arm * minus_force4_y_arm
-                + s4_moment4_x_plus_c4_moment4_y_arm) + v5_by_3_y_arm * force5_y_arm
-            - minus_v5_by_3_x_arm * force5_x_arm - v4_by_3_y_arm * force5_z_arm + t60;
-        let force_on_u3_arm = t83 + v6_by_3_x_arm * force6_x_arm
-            - v6_by_3_y_arm * minus_force6_y_arm + v5_by_3_y_arm * force6_z_arm + t61;
-        let t84 = torques[2] - force_on_u3_arm - tau1_minus_force_on_u1_arm * l_3_1
-            - l_3_2 * t62;
-        let s5_xy_5_plus_c5_yy_5_arm = s5_arm * parameters[46] + c5_arm * parameters[48];
-        let s5_xx_5_plus_c5_xy_5_arm = s5_arm * parameters[45] + c5_arm * parameters[46];
-        let s5_xz_5_plus_c5_yz_5_arm = s5_arm * parameters[47] + c5_arm * parameters[49];
-        let t85 = w5_by_2_y_arm * s5_xy_5_plus_c5_yy_5_arm
-            - minus_w5_by_2_x_arm * s5_xx_5_plus_c5_xy_5_arm
-            + c4_arm * s5_xz_5_plus_c5_yz_5_arm;
-        let s5_my_5_minus_c5_mx_5_arm = s5_arm * parameters[52]
-            - c5_arm * parameters[51];
-        let w6_by_4_x_arm = s5_arm * c6_arm;
-        let c5_mx_6_minus_mz_6_w6_by_4_x_arm = c5_arm * parameters[65]
-            - parameters[67] * w6_by_4_x_arm;
-        let minus_w6_by_4_y_arm = s5_arm * s6_arm;
-        let c5_my_6_minus_mz_6_w6_by_4_y_arm = c5_arm * parameters[66]
-            + parameters[67] * minus_w6_by_4_y_arm;
-        let t86 = parameters[65] * minus_w6_by_4_y_arm + parameters[66] * w6_by_4_x_arm;
-        let t87 = parameters[60] * w6_by_4_x_arm - parameters[62] * minus_w6_by_4_y_arm
-            + c5_arm * parameters[63];
-        let t88 = parameters[59] * w6_by_4_x_arm - parameters[60] * minus_w6_by_4_y_arm
-            + c5_arm * parameters[61];
-        let mass_4_6 = parameters[61] * w6_by_4_x_arm
-            - parameters[63] * minus_w6_by_4_y_arm + c5_arm * parameters[64];
-        let t89 = w6_by_2_y_arm * t87 - minus_w6_by_2_x_arm * t88
-            + w5_by_2_y_arm * mass_4_6;
-        let mass_3_4 = t80 + t85
-            - (parameters[53] * minus_v4_by_3_x_arm
-                + v4_by_3_y_arm * s5_my_5_minus_c5_mx_5_arm)
-            + v6_by_3_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm
-            - v6_by_3_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm + v5_by_3_y_arm * t86
-            + t89;
-        let t90 = t21 + v5_by_1_z_arm * s5_my_5_minus_c5_mx_5_arm
-            - minus_v4_by_1_x_arm * parameters[53]
-            + w5_by_1_x_arm * s5_xx_5_plus_c5_xy_5_arm
-            + w5_by_1_y_arm * s5_xy_5_plus_c5_yy_5_arm
-            + w5_by_1_z_arm * s5_xz_5_plus_c5_yz_5_arm;
-        let t91 = v6_by_1_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm
-            + minus_v6_by_1_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm
-            + v5_by_1_y_arm * t86 + w6_by_1_x_arm * t88 - minus_w6_by_1_y_arm * t87
-            + w5_by_1_y_arm * mass_4_6;
-        let mass_1_4 = t90 + t91;
-        let l_4_1 = mass_1_4 * inv_pivot_1;
-        let mass_2_4 = parameters[53] * v4_by_2_x_arm
-            + v5_by_2_z_arm * s5_my_5_minus_c5_mx_5_arm + t85 - t36 + v5_by_2_y_arm * t86
-            - (v6_by_2_x_arm * c5_my_6_minus_mz_6_w6_by_4_y_arm
-                + minus_v6_by_2_y_arm * c5_mx_6_minus_mz_6_w6_by_4_x_arm) + t89;
-        let schur_2_4 = mass_2_4 - mass_1_2 * l_4_1;
+        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+        let t2 = torques[2] - force_on_u3_arm - tau1_minus_force_on_u1_arm * l_3_1
+            - l_3_2 * t1;
+        let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm - s3_arm * inertia4_zz_arm;
+        let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm + c3_arm * inertia4_zz_arm
+            + minus_d3_force3_z_by_4_arm;
+        let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
+            + c2_arm * moment2_y_by_4_arm;
+        let l_4_1 = moment1_z_by_4_arm * inv_pivot_1;
+        let moment2_z_by_4_arm = moment3_z_by_4_arm
+            - s3_arm * minus_d3_force3_x_by_4_arm;
+        let schur_2_4 = moment2_z_by_4_arm - minus_inertia1_yz_arm * l_4_1;
         let l_4_2 = schur_2_4 * inv_pivot_2;
-        let schur_3_4 = mass_3_4 - mass_1_3 * l_4_1 - schur_2_3 * l_4_2;
+        let schur_3_4 = moment3_z_by_4_arm - moment1_z_by_3_arm * l_4_1
+            - schur_2_3 * l_4_2;
         let l_4_3 = schur_3_4 * inv_pivot_3;
-        let mass_4_4 = parameters[36] + parameters[41]
-            + s5_arm * s5_xx_5_plus_c5_xy_5_arm + c5_arm * s5_xy_5_plus_c5_yy_5_arm
-            + w6_by_4_x_arm * t88 - minus_w6_by_4_y_arm * t87 + c5_arm * mass_4_6;
-        let pivot_4 = mass_4_4 - mass_1_4 * l_4_1 - schur_2_4 * l_4_2
+        let masses_arm_4_4 = inertia4_zz_arm + parameters[41];
+        let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1 - schur_2_4 * l_4_2
             - schur_3_4 * l_4_3;
         ::overact::guard::mass(pivot_4)?;
         let inv_pivot_4 = 1.0 / pivot_4;
         let tau_4_arm = joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
             + parameters[44];
-        let force_on_u4_arm = moment4_z_arm + tau_4_arm + s5_arm * moment5_x_arm
-            + c5_arm * moment5_y_arm + w6_by_4_x_arm * moment6_x_arm
-            - minus_w6_by_4_y_arm * moment6_y_arm + c5_arm * moment6_z_arm;
-        let t92 = torques[3] - force_on_u4_arm - tau1_minus_force_on_u1_arm * l_4_1
-            - l_4_2 * t62 - l_4_3 * t84;
-        let s6_xy_6_plus_c6_yy_6_arm = s6_arm * parameters[60] + c6_arm * parameters[62];
-        let s6_xx_6_plus_c6_xy_6_arm = s6_arm * parameters[59] + c6_arm * parameters[60];
-        let minus_mass_5_6 = s6_arm * parameters[61] + c6_arm * parameters[63];
-        let mass_4_5 = s5_xz_5_plus_c5_yz_5_arm
-            + minus_w6_by_4_y_arm * s6_xy_6_plus_c6_yy_6_arm
-            - w6_by_4_x_arm * s6_xx_6_plus_c6_xy_6_arm - c5_arm * minus_mass_5_6;
-        let c6_mx_6_minus_s6_my_6_arm = c6_arm * parameters[65]
-            - s6_arm * parameters[66];
-        let mass_1_5 = t27 + minus_v5_by_1_x_arm * parameters[67]
-            + v5_by_1_y_arm * c6_mx_6_minus_s6_my_6_arm
-            + minus_w6_by_1_y_arm * s6_xy_6_plus_c6_yy_6_arm
-            - w6_by_1_x_arm * s6_xx_6_plus_c6_xy_6_arm - w5_by_1_y_arm * minus_mass_5_6;
-        let l_5_1 = mass_1_5 * inv_pivot_1;
-        let t93 = minus_w6_by_2_x_arm * s6_xx_6_plus_c6_xy_6_arm
-            - w6_by_2_y_arm * s6_xy_6_plus_c6_yy_6_arm - w5_by_2_y_arm * minus_mass_5_6;
-        let mass_2_5 = t42 + v5_by_2_y_arm * c6_mx_6_minus_s6_my_6_arm
-            - parameters[67] * v5_by_2_x_arm + t93;
-        let schur_2_5 = mass_2_5 - mass_1_2 * l_5_1;
+        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+        let t3 = torques[3] - force_on_u4_arm - tau1_minus_force_on_u1_arm * l_4_1
+            - l_4_2 * t1 - l_4_3 * t2;
+        let force3_z_by_5_arm = s4_arm * minus_force4_x_by_5_arm;
+        let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
+        let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm + s4_arm * inertia5_zz_arm
+            + d3_force3_z_by_5_arm;
+        let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
+            - s3_arm * moment4_z_by_5_arm;
+        let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
+            + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
+        let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
+            + c2_arm * moment2_y_by_5_arm;
+        let l_5_1 = moment1_z_by_5_arm * inv_pivot_1;
+        let minus_force3_x_by_5_arm = c4_arm * minus_force4_x_by_5_arm;
+        let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
+            - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
+        let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
+            - s3_arm * minus_force3_x_by_5_arm;
+        let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
+        let schur_2_5 = moment2_z_by_5_arm - minus_inertia1_yz_arm * l_5_1;
         let l_5_2 = schur_2_5 * inv_pivot_2;
-        let mass_3_5 = t71 + parameters[67] * minus_v5_by_3_x_arm
-            + v5_by_3_y_arm * c6_mx_6_minus_s6_my_6_arm + t93;
-        let schur_3_5 = mass_3_5 - mass_1_3 * l_5_1 - schur_2_3 * l_5_2;
+        let schur_3_5 = moment3_z_by_5_arm - moment1_z_by_3_arm * l_5_1
+            - schur_2_3 * l_5_2;
         let l_5_3 = schur_3_5 * inv_pivot_3;
-        let schur_4_5 = mass_4_5 - mass_1_4 * l_5_1 - schur_2_4 * l_5_2
-            - schur_3_4 * l_5_3;
+        let schur_4_5 = moment4_z_by_5_arm - moment1_z_by_4_arm * l_5_1
+            - schur_2_4 * l_5_2 - schur_3_4 * l_5_3;
         let l_5_4 = schur_4_5 * inv_pivot_4;
-        let mass_5_5 = parameters[50] + parameters[55]
-            + s6_arm * s6_xx_6_plus_c6_xy_6_arm + c6_arm * s6_xy_6_plus_c6_yy_6_arm;
-        let pivot_5 = mass_5_5 - mass_1_5 * l_5_1 - schur_2_5 * l_5_2 - schur_3_5 * l_5_3
-            - schur_4_5 * l_5_4;
+        let masses_arm_5_5 = inertia5_zz_arm + parameters[55];
+        let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1 - schur_2_5 * l_5_2
+            - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
         ::overact::guard::mass(pivot_5)?;
         let inv_pivot_5 = 1.0 / pivot_5;
         let tau_5_arm = joint_velocities[4] * parameters[56]
             + ::overact::math::signed(parameters[57], joint_velocities[4])
             + parameters[58];
-        let force_on_u5_arm = moment5_z_arm + tau_5_arm
-            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let t94 = torques[4] - force_on_u5_arm - tau1_minus_force_on_u1_arm * l_5_1
-            - l_5_2 * t62 - l_5_3 * t84 - l_5_4 * t92;
-        let l_6_1 = mass_1_6 * inv_pivot_1;
-        let schur_2_6 = mass_2_6 - mass_1_2 * l_6_1;
+        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+        let t4 = torques[4] - force_on_u5_arm - tau1_minus_force_on_u1_arm * l_5_1
+            - l_5_2 * t1 - l_5_3 * t2 - l_5_4 * t3;
+        let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm - s5_arm * parameters[64];
+        let minus_force4_x_by_6_arm = c5_arm * minus_force5_x_by_6_arm;
+        let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
+            - s4_arm * minus_force4_x_by_6_arm;
+        let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
+        let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
+            - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
+        let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm + c5_arm * parameters[64];
+        let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
+            - s3_arm * moment4_z_by_6_arm;
+        let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
+            + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
+        let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
+            + c2_arm * moment2_y_by_6_arm;
+        let l_6_1 = moment1_z_by_6_arm * inv_pivot_1;
+        let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
+            + s4_arm * minus_force5_z_by_6_arm;
+        let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
+            - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
+        let minus_force4_z_by_6_arm = s5_arm * minus_force5_x_by_6_arm;
+        let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
+            + c3_arm * minus_force4_z_by_6_arm;
+        let moment2_z_by_6_arm = moment3_z_by_6_arm - D3 * minus_force2_y_by_6_arm;
+        let schur_2_6 = moment2_z_by_6_arm - minus_inertia1_yz_arm * l_6_1;
         let l_6_2 = schur_2_6 * inv_pivot_2;
-        let schur_3_6 = mass_3_6 - mass_1_3 * l_6_1 - schur_2_3 * l_6_2;
+        let schur_3_6 = moment3_z_by_6_arm - moment1_z_by_3_arm * l_6_1
+            - schur_2_3 * l_6_2;
         let l_6_3 = schur_3_6 * inv_pivot_3;
-        let schur_4_6 = mass_4_6 - mass_1_4 * l_6_1 - schur_2_4 * l_6_2
-            - schur_3_4 * l_6_3;
+        let schur_4_6 = moment4_z_by_6_arm - moment1_z_by_4_arm * l_6_1
+            - schur_2_4 * l_6_2 - schur_3_4 * l_6_3;
         let l_6_4 = schur_4_6 * inv_pivot_4;
-        let minus_schur_5_6 = minus_mass_5_6 + mass_1_5 * l_6_1 + schur_2_5 * l_6_2
-            + schur_3_5 * l_6_3 + schur_4_5 * l_6_4;
+        let minus_schur_5_6 = minus_moment5_z_by_6_arm + moment1_z_by_5_arm * l_6_1
+            + schur_2_5 * l_6_2 + schur_3_5 * l_6_3 + schur_4_5 * l_6_4;
         let minus_l_6_5 = minus_schur_5_6 * inv_pivot_5;
         let tau_6_arm = joint_velocities[5] * parameters[70]
             + ::overact::math::signed(parameters[71], joint_velocities[5])
             + parameters[72];
         let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-        let t95 = torques[5] - force_on_u6_arm - tau1_minus_force_on_u1_arm * l_6_1
-            - l_6_2 * t62 - l_6_3 * t84 - l_6_4 * t92 + minus_l_6_5 * t94;
-        let mass_6_6 = parameters[64] + parameters[69];
-        let pivot_6 = mass_6_6 - mass_1_6 * l_6_1 - schur_2_6 * l_6_2 - schur_3_6 * l_6_3
-            - schur_4_6 * l_6_4 - minus_schur_5_6 * minus_l_6_5;
+        let t5 = torques[5] - force_on_u6_arm - tau1_minus_force_on_u1_arm * l_6_1
+            - l_6_2 * t1 - l_6_3 * t2 - l_6_4 * t3 + minus_l_6_5 * t4;
+        let masses_arm_6_6 = parameters[64] + parameters[69];
+        let pivot_6 = masses_arm_6_6 - moment1_z_by_6_arm * l_6_1 - schur_2_6 * l_6_2
+            - schur_3_6 * l_6_3 - schur_4_6 * l_6_4 - minus_schur_5_6 * minus_l_6_5;
         ::overact::guard::mass(pivot_6)?;
-        let t96 = t95 / pivot_6;
-        let t97 = inv_pivot_5 * t94 + minus_l_6_5 * t96;
-        let t98 = inv_pivot_4 * t92 - l_5_4 * t97 - l_6_4 * t96;
-        let t99 = inv_pivot_3 * t84 - l_4_3 * t98 - l_5_3 * t97 - l_6_3 * t96;
-        let t100 = inv_pivot_2 * t62 - l_3_2 * t99 - l_4_2 * t98 - l_5_2 * t97
-            - l_6_2 * t96;
-        let t101 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t100 - l_3_1 * t99
-            - l_4_1 * t98 - l_5_1 * t97 - l_6_1 * t96;
-        ::core::result::Result::Ok([t101, t100, t99, t98, t97, t96])
+        let t6 = t5 / pivot_6;
+        let t7 = inv_pivot_5 * t4 + minus_l_6_5 * t6;
+        let t8 = inv_pivot_4 * t3 - l_5_4 * t7 - l_6_4 * t6;
+        let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
+        let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7 - l_6_2 * t6;
+        let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10 - l_3_1 * t9
+            - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
+        ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///

@@ -38,7 +38,6 @@
 /// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
-/// | `bias_a2_x_leg1` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
 /// | `s_1_2` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
 /// | `inv_pivot_1` | 1/d_k | its reciprocal |
@@ -4462,7 +4461,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 291 operations (110 additions, 176 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 6 signs, 306 intermediates.
+    /// 285 operations (107 additions, 173 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 6 signs, 300 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4483,6 +4482,8 @@ impl ThreeLegPoint {
         const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
         // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
@@ -4498,40 +4499,38 @@ impl ThreeLegPoint {
         let g1_vy_leg1 = c12_leg1 * k_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
+        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+            + l_1_rate_1_squared_leg1;
         let g2_vx_leg1 = s1_leg1 * k_leg1;
         let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
         let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let v2_by_1_y_leg1 = L_1 * c2_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
+            - parameters[6] * rate_2_squared_leg1;
+        let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
+            + parameters[7] * rate_2_squared_leg1;
+        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
+        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
         let minus_rate_dot_1_leg1 = k_leg1
             * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
         let tau_1_leg1 = parameters[2] * rate_1_leg1
             - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let minus_moment1_z_leg1 = parameters[0] * minus_rate_dot_1_leg1;
-        let v2_by_1_x_leg1 = L_1 * s2_leg1;
-        let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
-        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
-            + l_1_rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-        let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 - parameters[8] * a_on_f1_leg1;
-        let a2_y_leg1 = s2_leg1 * l_1_rate_1_squared_leg1
-            - v2_by_1_y_leg1 * minus_rate_dot_1_leg1;
-        let force2_y_leg1 = parameters[8] * a2_y_leg1
-            - (parameters[6] * minus_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1);
         let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
         let tau_2_leg1 = ::overact::math::signed(parameters[9], qd_2_leg1);
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            - tau_2_leg1;
-        let moment2_z_leg1 = parameters[6] * a2_y_leg1
-            - parameters[5] * minus_rate_dot_2_leg1 + parameters[7] * a_on_f1_leg1;
+        let force_on_u1_leg1 = L_1
+            * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            - minus_rate_dot_1_leg1 * (parameters[0] + L_1_SQUARED * parameters[8])
+            + tau_1_leg1 - tau_2_leg1;
+        let a2_y_leg1 = s2_leg1 * l_1_rate_1_squared_leg1
+            - v2_by_1_y_leg1 * minus_rate_dot_1_leg1;
+        let moment2_z_leg1 = parameters[6] * a2_y_leg1 + parameters[7] * a_on_f1_leg1
+            - parameters[5] * minus_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
         // --- leg2
         let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -4562,24 +4561,22 @@ impl ThreeLegPoint {
             - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
         let minus_rate_dot_2_leg2 = k_leg2
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = parameters[16] * a2_y_leg2
-            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
+        let moment2_z_leg2 = parameters[16] * a2_y_leg2 + parameters[17] * a_on_f1_leg2
+            - parameters[15] * minus_rate_dot_2_leg2;
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
+            - parameters[16] * rate_2_squared_leg2;
+        let minus_force2_y_leg2 = parameters[16] * minus_rate_dot_2_leg2
+            + parameters[17] * rate_2_squared_leg2;
         let tau_1_leg2 = parameters[12] * rate_1_leg2
             - parameters[11] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
-        let v2_by_1_x_leg2 = L_1 * s2_leg2;
-        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2 - parameters[18] * a_on_f1_leg2;
-        let force2_y_leg2 = parameters[18] * a2_y_leg2
-            - (parameters[16] * minus_rate_dot_2_leg2
-                + parameters[17] * rate_2_squared_leg2);
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
+        let force_on_u1_leg2 = L_1
+            * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
+            - minus_rate_dot_1_leg2 * (parameters[10] + L_1_SQUARED * parameters[18])
+            + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
         let k_leg3 = INV_L_1 / s2_leg3;
@@ -4614,26 +4611,25 @@ impl ThreeLegPoint {
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let moment1_z_leg3 = parameters[20] * rate_dot_1_leg3;
+        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
+            - parameters[27] * rate_2_squared_leg3;
+        let minus_force2_x_leg3 = parameters[26] * rate_2_squared_leg3
+            + parameters[27] * rate_dot_2_leg3;
         let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let v2_by_1_x_leg3 = L_1 * s2_leg3;
-        let force2_x_leg3 = parameters[28] * a_on_f1_leg3
-            - (parameters[26] * rate_2_squared_leg3 + parameters[27] * rate_dot_2_leg3);
-        let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
-            - parameters[27] * rate_2_squared_leg3 + parameters[28] * a2_y_leg3;
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
-        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let force_on_u1_leg3 = rate_dot_1_leg3
+            * (parameters[20] + L_1_SQUARED * parameters[28])
+            + L_1 * (c2_leg3 * force2_y_leg3 - s2_leg3 * minus_force2_x_leg3)
+            + tau_1_leg3 - tau_2_leg3;
+        let t1_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
         let force_y_platform = acceleration[1] * parameters[30];
-        let t2 = g2_vx_leg1 * force_on_u2_leg1 - minus_g1_vx_leg1 * force_on_u1_leg1
+        let t2_leg3 = g2_vx_leg1 * force_on_u2_leg1 - minus_g1_vx_leg1 * force_on_u1_leg1
             + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = acceleration[0] * parameters[30];
-        let t3 = t2 + force_x_platform;
+        let t1_platform = t2_leg3 + force_x_platform;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -4653,11 +4649,11 @@ impl ThreeLegPoint {
             26.146658848631322,
             ::overact::ActuatorGroup::All,
         )?;
-        let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
-        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
+        let t1 = (t1_leg3 + force_y_platform + t1_platform * minus_l_2_1) / pivot_2;
+        let t2 = t1_platform * inv_pivot_1 + minus_l_2_1 * t1;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
-            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
+            g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
+            g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4976,7 +4972,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2 x 2.
     ///
-    /// 254 operations (96 additions, 152 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 254 intermediates.
+    /// 195 operations (75 additions, 114 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 195 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4987,8 +4983,8 @@ impl ThreeLegPoint {
         ::overact::guard::finite(&[("pose", pose), ("parameters", parameters)])?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// 1 / l_1²
+        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -4997,37 +4993,6 @@ impl ThreeLegPoint {
         const RADIUS: ::core::primitive::f64 = 0.35;
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg2
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let g1_vx_v2_by_1_y_leg2 = g1_vx_leg2 * v2_by_1_y_leg2;
-        let t1 = g1_vx_leg2 * parameters[11] + g1_vx_leg2 * parameters[10]
-            + v2_by_1_x_leg2
-                * (minus_g2_vx_leg2 * parameters[17] + minus_fk1_x_leg2 * parameters[18])
-            - v2_by_1_y_leg2
-                * (minus_g2_vx_leg2 * parameters[16]
-                    - parameters[18] * g1_vx_v2_by_1_y_leg2);
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -5039,31 +5004,54 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let masses_leg1_1_1 = parameters[0] + L_1_SQUARED * parameters[8]
+            + parameters[1];
         let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let s12_leg1 = INV_L_1 * l2_y_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
-        let minus_g1_vx_v2_by_1_y_leg1 = minus_g1_vx_leg1 * v2_by_1_y_leg1;
-        let t2 = v2_by_1_x_leg1
-            * (minus_g2_vx_leg1 * parameters[7] - s12_leg1 * parameters[8])
-            - v2_by_1_y_leg1
-                * (minus_g2_vx_leg1 * parameters[6]
-                    + parameters[8] * minus_g1_vx_v2_by_1_y_leg1)
-            - (minus_g1_vx_leg1 * parameters[1] + minus_g1_vx_leg1 * parameters[0]);
-        let t3 = g1_vx_leg2 * t1
-            + minus_g2_vx_leg2
-                * (minus_fk1_x_leg2 * parameters[17] + minus_g2_vx_leg2 * parameters[15]
-                    - parameters[16] * g1_vx_v2_by_1_y_leg2)
-            - (minus_g1_vx_leg1 * t2
-                + minus_g2_vx_leg1
-                    * (s12_leg1 * parameters[7]
-                        - (minus_g2_vx_leg1 * parameters[5]
-                            + parameters[6] * minus_g1_vx_v2_by_1_y_leg1)));
+        let c2_leg1 = 8.680555555555555 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
+        let force1_y_by_2_leg1 = c2_leg1 * parameters[6] - s2_leg1 * parameters[7];
+        let masses_leg1_1_2 = L_1 * force1_y_by_2_leg1;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let masses_leg2_1_1 = parameters[10] + L_1_SQUARED * parameters[18]
+            + parameters[11];
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let c2_leg2 = 8.680555555555555 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
+        let force1_y_by_2_leg2 = c2_leg2 * parameters[16] - s2_leg2 * parameters[17];
+        let masses_leg2_1_2 = L_1 * force1_y_by_2_leg2;
+        let t2_leg2 = minus_g1_vx_leg1
+            * (minus_g1_vx_leg1 * masses_leg1_1_1 + minus_g2_vx_leg1 * masses_leg1_1_2)
+            + minus_g2_vx_leg1
+                * (minus_g1_vx_leg1 * masses_leg1_1_2 + minus_g2_vx_leg1 * parameters[5])
+            + g1_vx_leg2
+                * (g1_vx_leg2 * masses_leg2_1_1 - minus_g2_vx_leg2 * masses_leg2_1_2)
+            - minus_g2_vx_leg2
+                * (g1_vx_leg2 * masses_leg2_1_2 - minus_g2_vx_leg2 * parameters[15]);
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
@@ -5080,75 +5068,53 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let masses_leg3_1_1 = parameters[20] + L_1_SQUARED * parameters[28]
+            + parameters[21];
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
             + 2.0833333333333335 * l1_y_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let g1_vx_v2_by_1_y_leg3 = g1_vx_leg3 * v2_by_1_y_leg3;
-        let t4 = g1_vx_leg3 * parameters[20] + g1_vx_leg3 * parameters[21]
-            + v2_by_1_x_leg3
-                * (fk1_x_leg3 * parameters[28] + minus_g2_vx_leg3 * parameters[27])
-            + v2_by_1_y_leg3
-                * (parameters[28] * g1_vx_v2_by_1_y_leg3
-                    - minus_g2_vx_leg3 * parameters[26]);
-        let t5 = t3 + g1_vx_leg3 * t4
+        let c2_leg3 = 8.680555555555555 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
+        let force1_y_by_2_leg3 = c2_leg3 * parameters[26] - s2_leg3 * parameters[27];
+        let masses_leg3_1_2 = L_1 * force1_y_by_2_leg3;
+        let t2_leg3 = t2_leg2
+            + g1_vx_leg3
+                * (g1_vx_leg3 * masses_leg3_1_1 - minus_g2_vx_leg3 * masses_leg3_1_2)
             - minus_g2_vx_leg3
-                * (parameters[26] * g1_vx_v2_by_1_y_leg3
-                    - minus_g2_vx_leg3 * parameters[25] - fk1_x_leg3 * parameters[27])
-            + parameters[30];
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let minus_v2_by_1_y_g1_vy_leg3 = v2_by_1_y_leg3 * minus_g1_vy_leg3;
-        let t6 = v2_by_1_y_leg3
-            * (g2_vy_leg3 * parameters[26] - parameters[28] * minus_v2_by_1_y_g1_vy_leg3)
-            - v2_by_1_x_leg3
-                * (minus_fk1_y_leg3 * parameters[28] + g2_vy_leg3 * parameters[27])
-            - (minus_g1_vy_leg3 * parameters[20] + minus_g1_vy_leg3 * parameters[21]);
-        let t7 = g2_vy_leg3 * parameters[25]
-            - parameters[26] * minus_v2_by_1_y_g1_vy_leg3
-            + minus_fk1_y_leg3 * parameters[27];
+                * (g1_vx_leg3 * masses_leg3_1_2 - minus_g2_vx_leg3 * parameters[25]);
         // --- leg2
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let minus_v2_by_1_y_g1_vy_leg2 = v2_by_1_y_leg2 * minus_g1_vy_leg2;
-        let t8 = minus_g1_vy_leg2 * parameters[11] + minus_g1_vy_leg2 * parameters[10]
-            + v2_by_1_x_leg2
-                * (g2_vy_leg2 * parameters[17] + fk1_y_leg2 * parameters[18])
-            + v2_by_1_y_leg2
-                * (parameters[18] * minus_v2_by_1_y_g1_vy_leg2
-                    - g2_vy_leg2 * parameters[16]);
-        let t9 = fk1_y_leg2 * parameters[17]
-            - (parameters[16] * minus_v2_by_1_y_g1_vy_leg2
-                - g2_vy_leg2 * parameters[15]);
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2 - minus_g1_vy_leg2 * masses_leg2_1_1;
+        let t4_leg2 = g2_vy_leg2 * parameters[15] - minus_g1_vy_leg2 * masses_leg2_1_2;
         // --- leg1
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let c12_leg1 = INV_L_1 * l2_x_leg1;
-        let v2_by_1_y_g1_vy_leg1 = v2_by_1_y_leg1 * g1_vy_leg1;
-        let t10 = g1_vy_leg1 * parameters[1] + g1_vy_leg1 * parameters[0]
-            + v2_by_1_x_leg1
-                * (minus_g2_vy_leg1 * parameters[7] + c12_leg1 * parameters[8])
-            - v2_by_1_y_leg1
-                * (minus_g2_vy_leg1 * parameters[6]
-                    - parameters[8] * v2_by_1_y_g1_vy_leg1);
-        let t11 = c12_leg1 * parameters[7] + minus_g2_vy_leg1 * parameters[5]
-            - parameters[6] * v2_by_1_y_g1_vy_leg1;
-        let t12 = g1_vx_leg3 * t6 - minus_g2_vx_leg3 * t7
-            - (g1_vx_leg2 * t8 + minus_g2_vx_leg2 * t9 + minus_g1_vx_leg1 * t10
-                - minus_g2_vx_leg1 * t11);
-        let t13 = g1_vy_leg1 * t10 + minus_g2_vy_leg1 * t11 + g2_vy_leg2 * t9
-            + minus_g1_vy_leg2 * t8 + g2_vy_leg3 * t7 - minus_g1_vy_leg3 * t6;
-        ::core::result::Result::Ok([[t5, t12], [t12, t13 + parameters[30]]])
+        let t1_leg1 = g1_vy_leg1 * masses_leg1_1_1 - minus_g2_vy_leg1 * masses_leg1_1_2;
+        let t2_leg1 = g1_vy_leg1 * masses_leg1_1_2 - minus_g2_vy_leg1 * parameters[5];
+        // --- leg3
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let t3_leg3 = g2_vy_leg3 * masses_leg3_1_2 - minus_g1_vy_leg3 * masses_leg3_1_1;
+        let t4_leg3 = g2_vy_leg3 * parameters[25] - minus_g1_vy_leg3 * masses_leg3_1_2;
+        let t5_leg3 = g1_vx_leg2 * t3_leg2 - minus_g2_vx_leg2 * t4_leg2
+            - (minus_g1_vx_leg1 * t1_leg1 + minus_g2_vx_leg1 * t2_leg1)
+            + g1_vx_leg3 * t3_leg3 - minus_g2_vx_leg3 * t4_leg3;
+        let t6_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
+            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg3 * t4_leg3
+            - minus_g1_vy_leg3 * t3_leg3;
+        ::core::result::Result::Ok([
+            [t2_leg3 + parameters[30], t5_leg3], [t5_leg3, t6_leg3 + parameters[30]],
+        ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -5159,7 +5125,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 265 operations (104 additions, 155 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 272 intermediates.
+    /// 257 operations (101 additions, 150 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 264 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5173,8 +5139,8 @@ impl ThreeLegPoint {
         )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// 1 / l_1²
+        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -5216,32 +5182,31 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let t2_leg2 = rho_squared_leg2 - TWICE_L_1_SQUARED;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * t2_leg2;
         let bias_rate_dot_1_leg2 = k_leg2
             * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let moment1_z_leg2 = parameters[10] * bias_rate_dot_1_leg2;
-        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
-            + parameters[12] * rate_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
+        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
         let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
         let minus_bias_rate_dot_2_leg2 = k_leg2
             * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2
-            + parameters[18] * minus_bias_a_on_f1_leg2;
-        let bias_a2_y_leg2 = L_1 * minus_bias_rate_dot_2_leg2;
-        let t1 = parameters[16] * minus_bias_rate_dot_2_leg2;
+            - parameters[16] * rate_2_squared_leg2;
+        let c2_leg2 = 8.680555555555555 * t2_leg2;
+        let t3_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
         let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
-        let force2_y_leg2 = parameters[18] * bias_a2_y_leg2
-            - (t1 + my_2_leg2_rate_2_squared_leg2);
+        let minus_force2_y_leg2 = t3_leg2 + my_2_leg2_rate_2_squared_leg2;
+        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
+            + parameters[12] * rate_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
-            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
-        let moment2_z_leg2 = L_1 * t1 - parameters[15] * minus_bias_rate_dot_2_leg2
-            - L_1 * my_2_leg2_rate_2_squared_leg2;
+        let force_on_u1_leg2 = bias_rate_dot_1_leg2
+            * (parameters[10] + L_1_SQUARED * parameters[18])
+            + L_1 * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
+            + tau_1_leg2 - tau_2_leg2;
+        let moment2_z_leg2 = L_1 * (t3_leg2 - my_2_leg2_rate_2_squared_leg2)
+            - parameters[15] * minus_bias_rate_dot_2_leg2;
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
@@ -5259,45 +5224,42 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+            + minus_g2_vy_leg1 * twist[1];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
         let t2_leg1 = 0.5 * t1_leg1;
         let bias_rate_dot_1_leg1 = k_leg1
             * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let moment1_z_leg1 = parameters[0] * bias_rate_dot_1_leg1;
-        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
-            + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
         let minus_bias_rate_dot_2_leg1 = k_leg1
             * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let bias_a2_x_leg1 = L_1 * rate_2_squared_leg1;
         let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 + parameters[8] * bias_a2_x_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
-        let bias_a2_y_leg1 = L_1 * minus_bias_rate_dot_2_leg1;
-        let t2 = parameters[6] * minus_bias_rate_dot_2_leg1;
+            - parameters[6] * rate_2_squared_leg1;
+        let c2_leg1 = 8.680555555555555 * t1_leg1;
+        let t3_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1;
         let my_2_leg1_rate_2_squared_leg1 = parameters[7] * rate_2_squared_leg1;
-        let force2_y_leg1 = parameters[8] * bias_a2_y_leg1
-            - (t2 + my_2_leg1_rate_2_squared_leg1);
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            + minus_tau_2_leg1;
-        let moment2_z_leg1 = L_1 * t2 - parameters[5] * minus_bias_rate_dot_2_leg1
-            - L_1 * my_2_leg1_rate_2_squared_leg1;
+        let minus_force2_y_leg1 = t3_leg1 + my_2_leg1_rate_2_squared_leg1;
+        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
+            + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let force_on_u1_leg1 = minus_tau_2_leg1
+            + bias_rate_dot_1_leg1 * (parameters[0] + L_1_SQUARED * parameters[8])
+            + L_1 * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + tau_1_leg1;
+        let moment2_z_leg1 = L_1 * (t3_leg1 - my_2_leg1_rate_2_squared_leg1)
+            - parameters[5] * minus_bias_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
@@ -5328,39 +5290,39 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let t2_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * t2_leg3;
         let bias_rate_dot_1_leg3 = k_leg3
             * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let moment1_z_leg3 = parameters[20] * bias_rate_dot_1_leg3;
-        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
-            + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
             * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
-            - parameters[26] * rate_2_squared_leg3 + parameters[28] * bias_a_on_f1_leg3;
-        let bias_a2_y_leg3 = L_1 * minus_bias_rate_dot_2_leg3;
-        let t3 = parameters[26] * minus_bias_rate_dot_2_leg3;
+            - parameters[26] * rate_2_squared_leg3;
+        let c2_leg3 = 8.680555555555555 * t2_leg3;
+        let t3_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
         let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
-        let force2_y_leg3 = parameters[28] * bias_a2_y_leg3
-            - (t3 + my_2_leg3_rate_2_squared_leg3);
+        let minus_force2_y_leg3 = t3_leg3 + my_2_leg3_rate_2_squared_leg3;
+        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
+            + parameters[22] * rate_1_leg3
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
-        let moment2_z_leg3 = L_1 * t3 - parameters[25] * minus_bias_rate_dot_2_leg3
-            - L_1 * my_2_leg3_rate_2_squared_leg3;
+        let force_on_u1_leg3 = bias_rate_dot_1_leg3
+            * (parameters[20] + L_1_SQUARED * parameters[28])
+            + L_1 * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + tau_1_leg3 - tau_2_leg3;
+        let moment2_z_leg3 = L_1 * (t3_leg3 - my_2_leg3_rate_2_squared_leg3)
+            - parameters[25] * minus_bias_rate_dot_2_leg3;
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t5 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t5_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        ::core::result::Result::Ok([t4, t5])
+        ::core::result::Result::Ok([t4_leg3, t5_leg3])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -5372,7 +5334,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 438 operations (172 additions, 258 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 445 intermediates.
+    /// 371 operations (145 additions, 218 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 378 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5389,8 +5351,8 @@ impl ThreeLegPoint {
         )?;
         /// radius / 2
         const HALF_RADIUS: ::core::primitive::f64 = 0.175;
-        /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// 1 / l_1²
+        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
         /// l_1 = l_2
         const L_1: ::core::primitive::f64 = 0.24;
         /// l_1²
@@ -5465,73 +5427,69 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let t2_leg2 = rho_squared_leg2 - TWICE_L_1_SQUARED;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * t2_leg2;
         let bias_rate_dot_1_leg2 = k_leg2
             * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let moment1_z_leg2 = parameters[10] * bias_rate_dot_1_leg2;
-        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
-            + parameters[12] * rate_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
+        let t3_leg2 = parameters[10] + L_1_SQUARED * parameters[18];
+        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
         let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
         let minus_bias_rate_dot_2_leg2 = k_leg2
             * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2
-            + parameters[18] * minus_bias_a_on_f1_leg2;
-        let bias_a2_y_leg2 = L_1 * minus_bias_rate_dot_2_leg2;
-        let t1 = parameters[16] * minus_bias_rate_dot_2_leg2;
+            - parameters[16] * rate_2_squared_leg2;
+        let c2_leg2 = 8.680555555555555 * t2_leg2;
+        let t4_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
         let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
-        let force2_y_leg2 = parameters[18] * bias_a2_y_leg2
-            - (t1 + my_2_leg2_rate_2_squared_leg2);
+        let minus_force2_y_leg2 = t4_leg2 + my_2_leg2_rate_2_squared_leg2;
+        let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
+            + parameters[12] * rate_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
-            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
-        let moment2_z_leg2 = L_1 * t1 - parameters[15] * minus_bias_rate_dot_2_leg2
-            - L_1 * my_2_leg2_rate_2_squared_leg2;
+        let force_on_u1_leg2 = bias_rate_dot_1_leg2 * t3_leg2
+            + L_1 * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
+            + tau_1_leg2 - tau_2_leg2;
+        let moment2_z_leg2 = L_1 * (t4_leg2 - my_2_leg2_rate_2_squared_leg2)
+            - parameters[15] * minus_bias_rate_dot_2_leg2;
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
         // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
-            + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+            + minus_g2_vy_leg1 * twist[1];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
         let t2_leg1 = 0.5 * t1_leg1;
         let bias_rate_dot_1_leg1 = k_leg1
             * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let moment1_z_leg1 = parameters[0] * bias_rate_dot_1_leg1;
-        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
-            + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let t3_leg1 = parameters[0] + L_1_SQUARED * parameters[8];
+        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
         let minus_bias_rate_dot_2_leg1 = k_leg1
             * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let bias_a2_x_leg1 = L_1 * rate_2_squared_leg1;
         let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1 + parameters[8] * bias_a2_x_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
-        let bias_a2_y_leg1 = L_1 * minus_bias_rate_dot_2_leg1;
-        let t2 = parameters[6] * minus_bias_rate_dot_2_leg1;
+            - parameters[6] * rate_2_squared_leg1;
+        let c2_leg1 = 8.680555555555555 * t1_leg1;
+        let t4_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1;
         let my_2_leg1_rate_2_squared_leg1 = parameters[7] * rate_2_squared_leg1;
-        let force2_y_leg1 = parameters[8] * bias_a2_y_leg1
-            - (t2 + my_2_leg1_rate_2_squared_leg1);
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
-        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 + v2_by_1_y_leg1 * force2_y_leg1
-            + minus_tau_2_leg1;
-        let moment2_z_leg1 = L_1 * t2 - parameters[5] * minus_bias_rate_dot_2_leg1
-            - L_1 * my_2_leg1_rate_2_squared_leg1;
+        let minus_force2_y_leg1 = t4_leg1 + my_2_leg1_rate_2_squared_leg1;
+        let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
+            + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
+        let force_on_u1_leg1 = minus_tau_2_leg1 + bias_rate_dot_1_leg1 * t3_leg1
+            + L_1 * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
+            + tau_1_leg1;
+        let moment2_z_leg1 = L_1 * (t4_leg1 - my_2_leg1_rate_2_squared_leg1)
+            - parameters[5] * minus_bias_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         // --- leg3
         let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
@@ -5547,119 +5505,98 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let t2_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * t2_leg3;
         let bias_rate_dot_1_leg3 = k_leg3
             * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let moment1_z_leg3 = parameters[20] * bias_rate_dot_1_leg3;
-        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
-            + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
-        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let t3_leg3 = parameters[20] + L_1_SQUARED * parameters[28];
+        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
             * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
-            - parameters[26] * rate_2_squared_leg3 + parameters[28] * bias_a_on_f1_leg3;
-        let bias_a2_y_leg3 = L_1 * minus_bias_rate_dot_2_leg3;
-        let t3 = parameters[26] * minus_bias_rate_dot_2_leg3;
+            - parameters[26] * rate_2_squared_leg3;
+        let c2_leg3 = 8.680555555555555 * t2_leg3;
+        let t4_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
         let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
-        let force2_y_leg3 = parameters[28] * bias_a2_y_leg3
-            - (t3 + my_2_leg3_rate_2_squared_leg3);
+        let minus_force2_y_leg3 = t4_leg3 + my_2_leg3_rate_2_squared_leg3;
+        let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
+            + parameters[22] * rate_1_leg3
+            + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
         let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
-            - tau_2_leg3;
-        let moment2_z_leg3 = L_1 * t3 - parameters[25] * minus_bias_rate_dot_2_leg3
-            - L_1 * my_2_leg3_rate_2_squared_leg3;
+        let force_on_u1_leg3 = bias_rate_dot_1_leg3 * t3_leg3
+            + L_1 * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
+            + tau_1_leg3 - tau_2_leg3;
+        let moment2_z_leg3 = L_1 * (t4_leg3 - my_2_leg3_rate_2_squared_leg3)
+            - parameters[25] * minus_bias_rate_dot_2_leg3;
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t5 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
-            + g1_vx_leg3 * torques[2] - t4;
-        let g1_vx_v2_by_1_y_leg2 = g1_vx_leg2 * v2_by_1_y_leg2;
-        let t6 = g1_vx_leg2 * parameters[11] + g1_vx_leg2 * parameters[10]
-            + v2_by_1_x_leg2
-                * (minus_g2_vx_leg2 * parameters[17] + minus_fk1_x_leg2 * parameters[18])
-            - v2_by_1_y_leg2
-                * (minus_g2_vx_leg2 * parameters[16]
-                    - parameters[18] * g1_vx_v2_by_1_y_leg2);
-        let s12_leg1 = INV_L_1 * l2_y_leg1;
-        let minus_g1_vx_v2_by_1_y_leg1 = minus_g1_vx_leg1 * v2_by_1_y_leg1;
-        let t7 = v2_by_1_x_leg1
-            * (minus_g2_vx_leg1 * parameters[7] - s12_leg1 * parameters[8])
-            - v2_by_1_y_leg1
-                * (minus_g2_vx_leg1 * parameters[6]
-                    + parameters[8] * minus_g1_vx_v2_by_1_y_leg1)
-            - (minus_g1_vx_leg1 * parameters[1] + minus_g1_vx_leg1 * parameters[0]);
-        let t8 = g1_vx_leg2 * t6
+        let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
+            + g1_vx_leg3 * torques[2] - t5_leg3;
+        let masses_leg2_1_1 = t3_leg2 + parameters[11];
+        let minus_masses_leg2_1_2 = 0.024464831804281346
+            * (170.3125 * (det_leg2 * parameters[17])
+                - 85.15625 * (t2_leg2 * parameters[16]));
+        let minus_masses_leg1_1_2 = 0.024464831804281346
+            * (170.3125 * (det_leg1 * parameters[7])
+                - 85.15625 * (t1_leg1 * parameters[6]));
+        let masses_leg1_1_1 = t3_leg1 + parameters[1];
+        let t5_leg2 = g1_vx_leg2
+            * (g1_vx_leg2 * masses_leg2_1_1 + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
             + minus_g2_vx_leg2
-                * (minus_fk1_x_leg2 * parameters[17] + minus_g2_vx_leg2 * parameters[15]
-                    - parameters[16] * g1_vx_v2_by_1_y_leg2)
-            - (minus_g1_vx_leg1 * t7
+                * (g1_vx_leg2 * minus_masses_leg2_1_2
+                    + minus_g2_vx_leg2 * parameters[15])
+            - (minus_g1_vx_leg1
+                * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
+                    - minus_g1_vx_leg1 * masses_leg1_1_1)
                 + minus_g2_vx_leg1
-                    * (s12_leg1 * parameters[7]
-                        - (minus_g2_vx_leg1 * parameters[5]
-                            + parameters[6] * minus_g1_vx_v2_by_1_y_leg1)));
-        let g1_vx_v2_by_1_y_leg3 = g1_vx_leg3 * v2_by_1_y_leg3;
-        let t9 = g1_vx_leg3 * parameters[20] + g1_vx_leg3 * parameters[21]
-            + v2_by_1_x_leg3
-                * (fk1_x_leg3 * parameters[28] + minus_g2_vx_leg3 * parameters[27])
-            + v2_by_1_y_leg3
-                * (parameters[28] * g1_vx_v2_by_1_y_leg3
-                    - minus_g2_vx_leg3 * parameters[26]);
-        let mass_1_1 = t8 + g1_vx_leg3 * t9
-            - minus_g2_vx_leg3
-                * (parameters[26] * g1_vx_v2_by_1_y_leg3
-                    - minus_g2_vx_leg3 * parameters[25] - fk1_x_leg3 * parameters[27])
-            + parameters[30];
+                    * (minus_g1_vx_leg1 * minus_masses_leg1_1_2
+                        - minus_g2_vx_leg1 * parameters[5]));
+        let masses_leg3_1_1 = t3_leg3 + parameters[21];
+        let minus_masses_leg3_1_2 = 0.024464831804281346
+            * (170.3125 * (det_leg3 * parameters[27])
+                - 85.15625 * (t2_leg3 * parameters[26]));
+        let t6_leg3 = t5_leg2
+            + g1_vx_leg3
+                * (g1_vx_leg3 * masses_leg3_1_1
+                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+            + minus_g2_vx_leg3
+                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                    + minus_g2_vx_leg3 * parameters[25]);
+        let mass_1_1 = t6_leg3 + parameters[30];
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
-        let minus_g1_vy_v2_by_1_y_leg3 = minus_g1_vy_leg3 * v2_by_1_y_leg3;
-        let t10 = v2_by_1_y_leg3
-            * (g2_vy_leg3 * parameters[26] - parameters[28] * minus_g1_vy_v2_by_1_y_leg3)
-            - v2_by_1_x_leg3
-                * (minus_fk1_y_leg3 * parameters[28] + g2_vy_leg3 * parameters[27])
-            - (minus_g1_vy_leg3 * parameters[20] + minus_g1_vy_leg3 * parameters[21]);
-        let t11 = g2_vy_leg3 * parameters[25]
-            - parameters[26] * minus_g1_vy_v2_by_1_y_leg3
-            + minus_fk1_y_leg3 * parameters[27];
-        let minus_g1_vy_v2_by_1_y_leg2 = minus_g1_vy_leg2 * v2_by_1_y_leg2;
-        let t12 = minus_g1_vy_leg2 * parameters[11] + minus_g1_vy_leg2 * parameters[10]
-            + v2_by_1_x_leg2
-                * (g2_vy_leg2 * parameters[17] + fk1_y_leg2 * parameters[18])
-            + v2_by_1_y_leg2
-                * (parameters[18] * minus_g1_vy_v2_by_1_y_leg2
-                    - g2_vy_leg2 * parameters[16]);
-        let t13 = fk1_y_leg2 * parameters[17]
-            - (parameters[16] * minus_g1_vy_v2_by_1_y_leg2
-                - g2_vy_leg2 * parameters[15]);
-        let c12_leg1 = INV_L_1 * l2_x_leg1;
-        let g1_vy_v2_by_1_y_leg1 = g1_vy_leg1 * v2_by_1_y_leg1;
-        let t14 = g1_vy_leg1 * parameters[1] + g1_vy_leg1 * parameters[0]
-            + v2_by_1_x_leg1
-                * (minus_g2_vy_leg1 * parameters[7] + c12_leg1 * parameters[8])
-            - v2_by_1_y_leg1
-                * (minus_g2_vy_leg1 * parameters[6]
-                    - parameters[8] * g1_vy_v2_by_1_y_leg1);
-        let t15 = c12_leg1 * parameters[7] + minus_g2_vy_leg1 * parameters[5]
-            - parameters[6] * g1_vy_v2_by_1_y_leg1;
-        let mass_1_2 = g1_vx_leg3 * t10 - minus_g2_vx_leg3 * t11
-            - (g1_vx_leg2 * t12 + minus_g2_vx_leg2 * t13 + minus_g1_vx_leg1 * t14
-                - minus_g2_vx_leg1 * t15);
+        let t5_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
+            + minus_g2_vy_leg1 * parameters[5];
+        let t6_leg1 = g1_vy_leg1 * masses_leg1_1_1
+            + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
+        let t6_leg2 = minus_g1_vy_leg2 * masses_leg2_1_1
+            + g2_vy_leg2 * minus_masses_leg2_1_2;
+        let t7_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
+            + g2_vy_leg2 * parameters[15];
+        let t7_leg3 = minus_g1_vy_leg3 * masses_leg3_1_1
+            + g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t8_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+            + g2_vy_leg3 * parameters[25];
+        let mass_1_2 = minus_g2_vx_leg1 * t5_leg1 - minus_g1_vx_leg1 * t6_leg1
+            - (g1_vx_leg2 * t6_leg2 + minus_g2_vx_leg2 * t7_leg2)
+            - (g1_vx_leg3 * t7_leg3 + minus_g2_vx_leg3 * t8_leg3);
         let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t16 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t9_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let t17 = g1_vy_leg1 * t14 + minus_g2_vy_leg1 * t15 + g2_vy_leg2 * t13
-            + minus_g1_vy_leg2 * t12 + g2_vy_leg3 * t11 - minus_g1_vy_leg3 * t10;
-        let mass_2_2 = t17 + parameters[30];
+        let t10_leg3 = g1_vy_leg1 * t6_leg1 + minus_g2_vy_leg1 * t5_leg1
+            + minus_g1_vy_leg2 * t6_leg2 + g2_vy_leg2 * t7_leg2
+            + minus_g1_vy_leg3 * t7_leg3 + g2_vy_leg3 * t8_leg3;
+        let mass_2_2 = t10_leg3 + parameters[30];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
-        let t18 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] - t16 - t5 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t5 * inv_pivot_1 - l_2_1 * t18, t18])
+        let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            - minus_g1_vy_leg3 * torques[2] - t9_leg3 - t1 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///

@@ -7,11 +7,11 @@
 //! product with the wrench that p alone produces.
 
 use super::configuration::Configuration;
-use super::joint::{joint_turn, link_vector};
+use super::joint::link_vector;
 use super::leg::LegState;
 use super::platform::{centripetal, constant_rotation};
-use super::rates::parallel;
-use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};
+use super::turn::Turn;
+use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::description::StandardParameter;
 use crate::mechanism::{JointKind, Leg};
 
@@ -215,44 +215,4 @@ fn first_levers<'a>(
         vector: Vector3::unit(arena, 2).scaled(arena.number(-centre.offset)),
         axes: state.rates.own(&centre.joints),
     })
-}
-
-/// The rotation from the antecedent frame into a joint's frame.
-struct Turn<'a> {
-    /// Rot(z, γ) Rot(x, α) where the axes are not parallel.
-    tilt: Option<Matrix3<'a>>,
-    /// The turn about z that follows.
-    matrix: Matrix3<'a>,
-}
-
-impl<'a> Turn<'a> {
-    fn new(
-        arena: &'a Arena,
-        leg: &Leg,
-        index: usize,
-        first_joint: usize,
-        configuration: &Configuration<'a>,
-    ) -> Option<Self> {
-        let joint = &leg.joints[index];
-        let theta = joint_turn(leg, index, first_joint, configuration)?;
-        let same_axis = parallel(joint.alpha) == Some(Ratio::ONE);
-        let (tilt, angle) = if same_axis {
-            (None, theta.plus(&Direction::constant(joint.gamma))?)
-        } else {
-            let about_z = constant_rotation(arena, [Angle::ZERO, Angle::ZERO, joint.gamma]);
-            let about_x = constant_rotation(arena, [joint.alpha, Angle::ZERO, Angle::ZERO]);
-            (Some(about_z * about_x), theta)
-        };
-        let (cosine, sine) = configuration.unit(&angle)?;
-        Some(Self {
-            tilt,
-            matrix: Matrix3::rotation(2, cosine, sine),
-        })
-    }
-
-    /// A vector of the antecedent frame in the joint's frame.
-    fn apply(&self, vector: Vector3<'a>) -> Vector3<'a> {
-        let vector = self.tilt.map_or(vector, |tilt| tilt.transposed() * vector);
-        self.matrix.transposed() * vector
-    }
 }

@@ -7,6 +7,7 @@
 //! U r_k, which the acceleration of every platform point is made of too, and the moment r_k × a.
 
 use super::body::second_moment;
+use super::inertia::Inertia;
 use super::platform::{PlatformMotion, PlatformPose, centripetal, constant_rotation, on_twist};
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::description::StandardParameter;
@@ -29,6 +30,17 @@ impl<'a> Mount<'a> {
             rotation: Matrix3::identity(arena),
             at: [Number::ZERO; 3],
         }
+    }
+
+    /// The inertia of a body in this frame, added to that of the platform in the platform's.
+    pub(super) fn on_platform(
+        &self,
+        arena: &'a Arena,
+        body: &Inertia<'a>,
+        onto: &Inertia<'a>,
+    ) -> Inertia<'a> {
+        let turned = body.rotated(self.rotation);
+        turned.moved_onto(onto, Vector3::constant(arena, self.at))
     }
 
     /// The frames of a leg's joints that are fixed on the platform: the last one, where the leg ends
@@ -117,6 +129,15 @@ impl<'a> CarriedBody<'a> {
                 [zero, self.platform * (self.mounted * moment)]
             }
         }
+    }
+
+    /// The wrench of an inertia at the body frame's origin, in the base's axes.
+    pub(super) fn wrench(&self, inertia: &Inertia<'a>) -> [Vector3<'a>; 2] {
+        let axes = self.platform * self.mounted;
+        let force = self.acceleration.scaled(inertia.mass) + self.centripetal * inertia.first;
+        let moment = inertia.turning_moment(self.omega, self.alpha);
+        let turned = (axes * inertia.first).cross(self.acceleration);
+        [force, turned + axes * moment]
     }
 
     /// The generalised forces on the twist coordinates of a wrench at the body frame's origin.

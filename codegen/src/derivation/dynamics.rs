@@ -5,6 +5,7 @@ use super::elimination::Rows;
 use super::linear::{Factored, apply, null_space, product, transposed};
 use super::parameter::BodyParameter;
 use super::regressor::Projection;
+use super::selection::DynamicsBy;
 use super::sheet::{Sheet, column};
 use super::underivable::Underivable;
 use crate::cas::Expr;
@@ -132,11 +133,15 @@ impl<'a> Sheet<'a, '_> {
     ) -> Vec<Expr<'a>> {
         let values = self.parameter_values();
         self.guards.extend(self.robot.spring_guards());
-        let projection = self.robot.project_on_platform();
-        match self.robot.motion(twist, acceleration) {
-            Some(motion) => self.robot.generalised_forces(&motion, &projection, &values),
-            None => Vec::new(),
+        let Some(motion) = self.robot.motion(twist, acceleration) else {
+            return Vec::new();
+        };
+        if let DynamicsBy::Bodies { at_ends } = self.selection.dynamics {
+            let forces = self.robot.summed_forces(&motion, &values, at_ends);
+            return forces.unwrap_or_default();
         }
+        let projection = self.robot.project_on_platform();
+        self.robot.generalised_forces(&motion, &projection, &values)
     }
 
     /// τ = J (JᵀJ)⁻¹ Γ¹, the torque of least norm.
@@ -172,8 +177,19 @@ impl<'a> Sheet<'a, '_> {
         null_space(&jacobian, &seeds)
     }
 
-    /// M = ∂Γ¹/∂v̇ at v = 0: Γ¹ is linear in v̇.
+    /// M of given parameters.
     pub(super) fn mass_matrix(&mut self) -> Rows<'a> {
+        match self.selection.dynamics {
+            DynamicsBy::Parameters => self.derived_masses(),
+            DynamicsBy::Bodies { at_ends } => {
+                let values = self.parameter_values();
+                self.robot.masses(&values, at_ends).unwrap_or_default()
+            }
+        }
+    }
+
+    /// M = ∂Γ¹/∂v̇ at v = 0: Γ¹ is linear in v̇.
+    fn derived_masses(&mut self) -> Rows<'a> {
         let (arena, dof) = (self.robot.arena, self.robot.mechanism.dof());
         let acceleration = self.robot.inputs("acceleration", dof);
         let twist = self.zeros();

@@ -43,4 +43,24 @@ impl BodyParameter {
         let payload = mechanism.platform.iter().flat_map(|p| &p.payload);
         payload.flatten().map(|&s| Self::Payload(s)).collect()
     }
+
+    /// The symbol of a parameter of a leg's body or joint.
+    pub(super) fn of_joint(self, leg: usize, joint: usize) -> Option<StandardParameter> {
+        match self {
+            Self::Leg {
+                leg: l,
+                joint: j,
+                symbol,
+            } if (l, j) == (leg, joint) => Some(symbol),
+            _ => None,
+        }
+    }
+
+    /// The symbol of a parameter of the platform or its payload.
+    pub(super) const fn of_platform(self) -> Option<StandardParameter> {
+        match self {
+            Self::Platform(symbol) | Self::Payload(symbol) => Some(symbol),
+            Self::Leg { .. } => None,
+        }
+    }
 }

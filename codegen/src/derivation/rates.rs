@@ -66,6 +66,11 @@ impl Form {
 pub struct Rates {
     /// q̇ of every joint of the leg (fixed joints: empty).
     pub joint: Vec<Form>,
+    /// By how much each joint's body turns about its z axis, as far as the run of parallel axes that it
+    /// stands in turns it.
+    pub turning: Vec<Form>,
+    /// Of each joint that goes on with such a run, the sign of its axis along the antecedent's.
+    pub run: Vec<Option<Ratio>>,
 }
 
 impl Rates {
@@ -98,8 +103,10 @@ impl Rates {
         let independent: Vec<usize> = leg.independent().collect();
         let mut joint: Vec<Form> = Vec::new();
         let mut turning: Vec<Form> = Vec::new();
+        let mut run = Vec::new();
         for (index, j) in leg.joints.iter().enumerate() {
             let previous = previous_in_run(leg, index).filter(|_| absolute);
+            run.push(previous.map(|(_, sign)| sign));
             let before = previous.map(|(at, sign)| (turning[at].clone(), sign));
             let mut rate = Form::default();
             if j.is_independent(index) {
@@ -124,7 +131,11 @@ impl Rates {
             joint.push(rate);
             turning.push(turn);
         }
-        Self { joint }
+        Self {
+            joint,
+            turning,
+            run,
+        }
     }
 }
 

@@ -161,7 +161,7 @@ impl<'a> Robot<'a> {
     }
 
     /// The force on a joint that one of its own parameters produces, eq. (5).
-    fn joint_force(
+    pub(super) fn joint_force(
         &self,
         motion: &RobotMotion<'a>,
         leg: usize,
@@ -202,7 +202,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    fn combine(&self, rows: &Rows<'a>, forces: &[Expr<'a>]) -> Vec<Expr<'a>> {
+    pub(super) fn combine(&self, rows: &Rows<'a>, forces: &[Expr<'a>]) -> Vec<Expr<'a>> {
         let width = rows.first().map_or(0, Vec::len);
         let entry = |c: usize| {
             let terms = rows.iter().zip(forces).map(|(row, s)| row[c] * *s);
@@ -331,7 +331,7 @@ fn normalised_sum<'a>(
     terms.fold(first, |sum, (x, c)| sum + x * (c / scale)) * scale
 }
 
-fn add<'a>(total: &mut [Expr<'a>], part: Vec<Expr<'a>>) {
+pub(super) fn add<'a>(total: &mut [Expr<'a>], part: Vec<Expr<'a>>) {
     for (t, p) in total.iter_mut().zip(part) {
         *t = *t + p;
     }

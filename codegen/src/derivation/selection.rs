@@ -22,6 +22,8 @@ pub struct Selection {
     /// actuators have the joints as an input, which [`Function::ClosureError`](overact_core::Function::ClosureError) and
     /// [`Function::LegsJacobian`](overact_core::Function::LegsJacobian) serve to find.
     pub joints: JointsBy,
+    /// How forces and masses of several bodies are added up.
+    pub dynamics: DynamicsBy,
 }
 
 /// In which of several equal forms a robot is written; which needs the fewest operations depends on the
@@ -52,4 +54,19 @@ pub enum JointsBy {
     Rule,
     /// By Newton's method, before the function is evaluated: joints are an input of the program.
     Newton,
+}
+
+/// In which of several equal forms mass matrix and inverse dynamics are written; which needs the fewest
+/// operations depends on the robot.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub enum DynamicsBy {
+    /// Parameter by parameter, as the identification model is; masses are derivatives of forces.
+    #[default]
+    Parameters,
+    /// Body by body, summed from the tips to the base.
+    Bodies {
+        /// Whether legs act on the platform at the points where they end, and not by the rows of their
+        /// reduced Jacobians.
+        at_ends: bool,
+    },
 }

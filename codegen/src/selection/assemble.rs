@@ -2,7 +2,7 @@
 
 use super::search::Search;
 use crate::cas::Arena;
-use crate::derivation::{JointsBy, MotionInput, Selection, Underivable, derive};
+use crate::derivation::{DynamicsBy, JointsBy, MotionInput, Selection, Underivable, derive};
 use crate::lowering::Program;
 use crate::mechanism::Mechanism;
 use overact_core::{Columns, Function};
@@ -32,22 +32,52 @@ impl Assembler<'_> {
         Ok(program)
     }
 
-    /// The function with or without combined columns, whichever needs fewer operations.
+    /// The function in that of its equal forms that needs the fewest operations: with or without combined
+    /// columns, and with bodies added up in one way or another.
     ///
     /// # Errors
     /// See [`Underivable`].
     pub fn cheapest(&self, function: Function, from: MotionInput) -> Result<Program, Underivable> {
-        let combined = self.program(function, from)?;
-        if self.selection.combined.is_empty() || function.columns() != Some(Columns::Standard) {
-            return Ok(combined);
+        let mut best = self.program(function, from)?;
+        for selection in &self.other_forms(function) {
+            let other = Assembler { selection, ..*self }.program(function, from)?;
+            let (of_other, of_best) = (other.cost(), best.cost());
+            let is_better = of_other.operations() < of_best.operations()
+                && of_other.trigonometric_pairs <= of_best.trigonometric_pairs
+                && of_other.square_roots <= of_best.square_roots;
+            if is_better {
+                best = other;
+            }
         }
-        let selection = &Selection {
-            combined: Vec::new(),
+        Ok(best)
+    }
+
+    /// The selections beside the own one in which a function is written otherwise.
+    fn other_forms(&self, function: Function) -> Vec<Selection> {
+        if function.columns() == Some(Columns::Standard) && !self.selection.combined.is_empty() {
+            return vec![Selection {
+                combined: Vec::new(),
+                ..self.selection.clone()
+            }];
+        }
+        let is_dynamics = matches!(
+            function,
+            Function::MassMatrix
+                | Function::Bias
+                | Function::ForwardDynamics
+                | Function::InverseDynamics
+                | Function::InverseDynamicsPreloaded
+        );
+        let at_ends: &[bool] = match (is_dynamics, &self.mechanism.platform) {
+            (false, _) => &[],
+            (true, None) => &[false],
+            (true, Some(_)) => &[false, true],
+        };
+        let form = |&at_ends: &bool| Selection {
+            dynamics: DynamicsBy::Bodies { at_ends },
             ..self.selection.clone()
         };
-        let plain = Assembler { selection, ..*self }.program(function, from)?;
-        let is_better = plain.cost().operations() < combined.cost().operations();
-        Ok(if is_better { plain } else { combined })
+        at_ends.iter().map(form).collect()
     }
 }
 

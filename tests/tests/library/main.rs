@@ -7,6 +7,7 @@
 mod agreement;
 mod contract;
 mod finite;
+mod forms;
 mod newton_euler;
 mod power;
 mod ranks;

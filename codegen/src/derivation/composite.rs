@@ -1,0 +1,282 @@
+//! The mass matrix of a leg by composite rigid bodies, in the frames' own axes.
+//!
+//! Masses, first moments and inertias are summed from the tips to the base. A column of the matrix is the
+//! forces on the quasi-velocities for one quasi-acceleration alone, from rest: behind the last joint that it
+//! moves all bodies are one, whose force and moment are handed down joint by joint. What acts on an earlier
+//! quasi-velocity is read off on the way, and every pair is met once.
+//!
+//! Along a run of parallel axes, whose quasi-velocities are absolute rates, a body behind does not turn with
+//! the one before it: it is a mass at the end of a lever, and its moment is none of the other's.
+
+use super::inertia::Inertia;
+use super::joint::link_vector;
+use super::leg::LegState;
+use super::names::{Names, joined};
+use super::parameter::BodyParameter;
+use super::robot::Robot;
+use super::turn::Turn;
+use crate::cas::{Arena, Expr, Vector3};
+use crate::description::StandardParameter;
+use crate::mechanism::{End, JointKind, Leg};
+
+/// A joint with the body behind it.
+struct Link<'a> {
+    turn: Turn<'a>,
+    /// From the antecedent's origin, in the antecedent frame.
+    at: Vector3<'a>,
+    /// The joints that start from this one.
+    next: Vec<usize>,
+    /// The body itself.
+    own: Inertia<'a>,
+    /// The body and all that is behind it.
+    whole: Inertia<'a>,
+    /// The same in the axes of the antecedent frame.
+    turned: Inertia<'a>,
+    /// The motor's inertia.
+    motor: Expr<'a>,
+}
+
+/// The links of a leg.
+pub(super) struct Chain<'c, 'a> {
+    arena: &'a Arena,
+    leg: &'c Leg,
+    state: &'c LegState<'a>,
+    links: Vec<Link<'a>>,
+}
+
+/// What acts on a joint: the moment about its axis less that of bodies behind in its run of parallel axes,
+/// and the force along its axis.
+#[derive(Clone, Copy)]
+struct OnJoint<'a> {
+    moment: Expr<'a>,
+    force: Expr<'a>,
+}
+
+impl<'a> Robot<'a> {
+    /// The upper triangle of a leg's mass matrix in its quasi-velocities: row i from column i on. `None`
+    /// if a sine or cosine does not follow from the configuration.
+    pub(super) fn leg_masses(
+        &self,
+        index: usize,
+        values: &[(BodyParameter, Expr<'a>)],
+    ) -> Option<Vec<Vec<Expr<'a>>>> {
+        let mut chain = self.chain(index, values)?;
+        chain.add_up();
+        let count = chain.state.rows.len();
+        let columns: Vec<Vec<Expr<'a>>> = (0..count).map(|k| chain.column(k)).collect();
+        let row = |i: usize| (i..count).map(|k| columns[k][i]).collect();
+        Some((0..count).map(row).collect())
+    }
+
+    /// The links of a leg with their bodies.
+    pub(super) fn chain(
+        &self,
+        index: usize,
+        values: &[(BodyParameter, Expr<'a>)],
+    ) -> Option<Chain<'_, 'a>> {
+        let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
+        let carried = matches!(leg.end, Some(End::Rigid(_))).then(|| leg.joints.len() - 1);
+        let mut links = Vec::new();
+        for j in 0..leg.joints.len() {
+            let own = |p: BodyParameter| p.of_joint(index, j);
+            let motor = values
+                .iter()
+                .filter(|(p, _)| own(*p) == Some(StandardParameter::Ia));
+            let body = match carried == Some(j) {
+                true => Inertia::zero(arena),
+                false => Inertia::of(arena, values, &own),
+            };
+            let next = (j + 1..leg.joints.len()).filter(|&c| leg.joints[c].antecedent == Some(j));
+            links.push(Link {
+                turn: Turn::new(arena, leg, j, state.first_joint, &self.configuration)?,
+                at: link_vector(arena, leg, j, state.first_joint, &self.configuration)?,
+                next: next.collect(),
+                own: body,
+                whole: body,
+                turned: body,
+                motor: motor.fold(arena.zero(), |sum, (_, value)| sum + *value),
+            });
+        }
+        Some(Chain {
+            arena,
+            leg,
+            state,
+            links,
+        })
+    }
+}
+
+impl<'a> Chain<'_, 'a> {
+    /// Adds up bodies from the tips to the base.
+    fn add_up(&mut self) {
+        for j in (0..self.links.len()).rev() {
+            let link = &self.links[j];
+            let behind = link.next.iter().map(|&c| &self.links[c]);
+            let whole = behind.fold(link.own, |sum, c| c.turned.moved_onto(&sum, c.at));
+            let turned = whole.turned_back(&link.turn);
+            let mut names = Names::default();
+            whole.name(&mut names, &self.leg.joints[j].name, &self.leg.name);
+            names.give();
+            self.links[j].whole = whole;
+            self.links[j].turned = turned;
+        }
+    }
+
+    /// The bodies, each by itself.
+    pub(super) fn bodies(&self) -> Vec<Inertia<'a>> {
+        self.links.iter().map(|link| link.own).collect()
+    }
+
+    pub(super) fn kind(&self, j: usize) -> JointKind {
+        self.leg.joints[j].kind
+    }
+
+    pub(super) fn antecedent(&self, j: usize) -> Option<usize> {
+        self.leg.joints[j].antecedent
+    }
+
+    /// What an inertia in a joint's frame, which its motion leaves as it is, adds to the antecedent's.
+    pub(super) fn moved_onto(&self, of: &Inertia<'a>, onto: &Inertia<'a>, j: usize) -> Inertia<'a> {
+        let link = &self.links[j];
+        of.turned_back(&link.turn).moved_onto(onto, link.at)
+    }
+
+    /// Force and moment at a joint's origin in the antecedent's axes, and the moment of the force about the
+    /// antecedent's origin.
+    pub(super) fn handed_down(&self, j: usize, wrench: [Vector3<'a>; 2]) -> [Vector3<'a>; 3] {
+        let link = &self.links[j];
+        let [force, moment] = wrench.map(|part| link.turn.back(part));
+        [force, moment, link.at.cross(force)]
+    }
+
+    /// The forces on the quasi-velocities up to k for the quasi-acceleration k.
+    fn column(&self, k: usize) -> Vec<Expr<'a>> {
+        let zero = self.arena.zero();
+        let nothing = OnJoint {
+            moment: zero,
+            force: zero,
+        };
+        let mut on = vec![nothing; self.links.len()];
+        let still = [Vector3::zero(self.arena); 2];
+        for first in self.roots() {
+            let _ = self.wrench(first, k, still, &mut on);
+        }
+        let rates = &self.state.rates;
+        let entry = |i: usize| {
+            let of_joint = |sum: Expr<'a>, j: usize| {
+                let slides = self.leg.joints[j].kind == JointKind::Prismatic;
+                let along = match slides {
+                    true => on[j].force * rates.joint[j].coefficient(i),
+                    false => zero,
+                };
+                let both = rates.joint[j].coefficient(i) * rates.joint[j].coefficient(k);
+                sum + on[j].moment * rates.turning[j].coefficient(i)
+                    + along
+                    + self.links[j].motor * both
+            };
+            (0..self.links.len()).fold(zero, of_joint)
+        };
+        (0..=k).map(entry).collect()
+    }
+
+    fn roots(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.links.len()).filter(|&j| self.leg.joints[j].antecedent.is_none())
+    }
+
+    /// Force and moment about a joint's origin, in the antecedent's axes, of all that is behind it, for
+    /// the quasi-acceleration k and the accelerations of the antecedent frame. `None` where nothing moves.
+    fn wrench(
+        &self,
+        j: usize,
+        k: usize,
+        [linear, angular]: [Vector3<'a>; 2],
+        on: &mut [OnJoint<'a>],
+    ) -> Option<[Vector3<'a>; 2]> {
+        let link = &self.links[j];
+        let own = self.state.rates.joint[j].coefficient(k);
+        let arrived = linear + angular.cross(link.at);
+        let rests = own.is_zero() && arrived.is_zero() && angular.is_zero();
+        if rests && !self.behind(j).any(|c| self.is_moved(c, k)) {
+            return None;
+        }
+        let axis = Vector3::unit(self.arena, 2).scaled(self.arena.number(own));
+        let (mut turning, mut moving) = (link.turn.apply(angular), link.turn.apply(arrived));
+        match self.leg.joints[j].kind {
+            JointKind::Revolute => turning = turning + axis,
+            JointKind::Prismatic => moving = moving + axis,
+            JointKind::Fixed => {}
+        }
+        let is_one = self.is_one(j, k);
+        let slides = self.leg.joints[j].kind == JointKind::Prismatic;
+        if is_one && turning.is_zero() && !slides && !self.counts(j, k) {
+            // It is carried along without a turn, and nobody asks for the moment about its axis.
+            let moment = link.turned.first.cross(arrived);
+            return Some([arrived.scaled(link.turned.mass), moment]);
+        }
+        let of = if is_one { &link.whole } else { &link.own };
+        let [mut force, mut moment] = of.wrench(moving, turning);
+        let mut about_axis = moment.z();
+        for &c in link.next.iter().filter(|_| !is_one) {
+            let Some([f, m]) = self.wrench(c, k, [moving, turning], on) else {
+                continue;
+            };
+            let lever = self.links[c].at.cross(f);
+            force = force + f;
+            moment = moment + m + lever;
+            about_axis = about_axis + lever.z();
+            if self.state.rates.run[c].is_none() {
+                about_axis = about_axis + m.z();
+            }
+        }
+        on[j] = OnJoint {
+            moment: about_axis,
+            force: force.z(),
+        };
+        self.name_wrench([force, moment], j, k);
+        Some([link.turn.back(force), link.turn.back(moment)])
+    }
+
+    fn name_wrench(&self, [force, moment]: [Vector3<'a>; 2], j: usize, k: usize) {
+        let of = self.leg.independent().nth(k).unwrap_or(k);
+        let by = &self.leg.joints[of].name;
+        let body = &self.leg.joints[j].name;
+        let mut names = Names::default();
+        let place = joined(&["by", by, &self.leg.name]);
+        names.vector(force, &format!("force{body}"), &place);
+        names.vector(moment, &format!("moment{body}"), &place);
+        names.give();
+    }
+
+    /// Whether all behind a joint moves as one body for the quasi-acceleration k, and nothing there is
+    /// asked for.
+    fn is_one(&self, j: usize, k: usize) -> bool {
+        let runs_on = |c: &usize| self.state.rates.run[*c].is_some();
+        let splits = self.counts(j, k) && self.links[j].next.iter().any(runs_on);
+        let mut behind = self.behind(j);
+        !splits && !behind.any(|c| self.is_moved(c, k) || self.counts(c, k))
+    }
+
+    /// Whether the force on a joint is part of one on the quasi-velocities up to k.
+    fn counts(&self, j: usize, k: usize) -> bool {
+        let slides = self.leg.joints[j].kind == JointKind::Prismatic;
+        let rates = &self.state.rates;
+        (0..=k).any(|i| {
+            let is_moved = slides && !rates.joint[j].coefficient(i).is_zero();
+            is_moved || !rates.turning[j].coefficient(i).is_zero()
+        })
+    }
+
+    fn is_moved(&self, j: usize, k: usize) -> bool {
+        !self.state.rates.joint[j].coefficient(k).is_zero()
+    }
+
+    /// All joints behind a joint.
+    fn behind(&self, j: usize) -> impl Iterator<Item = usize> + '_ {
+        let mut open = self.links[j].next.clone();
+        std::iter::from_fn(move || {
+            let next = open.pop()?;
+            open.extend(&self.links[next].next);
+            Some(next)
+        })
+    }
+}

@@ -1,0 +1,71 @@
+//! The forms in which masses and forces of several bodies are added up give the same numbers: those that a
+//! robot's functions are not written in, because others need fewer operations, among them.
+
+use overact::{Function, Model};
+use overact_codegen::derivation::{DynamicsBy, Selection};
+use overact_codegen::internals::{Assembler, Search};
+use overact_tests::support::backend::{evaluate, matrix};
+use overact_tests::support::library::described;
+use overact_tests::support::sample::samples;
+use overact_tests::support::{Agreement, Failure};
+
+const TOLERANCE: f64 = 1e-10;
+const STATES: usize = 10;
+
+const FORMS: [DynamicsBy; 2] = [
+    DynamicsBy::Bodies { at_ends: false },
+    DynamicsBy::Bodies { at_ends: true },
+];
+
+overact_tests::library!(check);
+
+fn check(stem: &str, _: &dyn Model) -> Result<(), Failure> {
+    let (model, expected) = described(stem)?;
+    let all = samples(
+        &expected.mechanism,
+        &expected.parameters(),
+        STATES,
+        29,
+        false,
+    )?;
+    for function in [
+        Function::MassMatrix,
+        Function::Bias,
+        Function::InverseDynamics,
+    ] {
+        let from = model.plain(function).ok_or("no such function")?.from;
+        let program = |dynamics: DynamicsBy| {
+            let selection = Selection {
+                dynamics,
+                ..model.selection.clone()
+            };
+            let assembler = Assembler {
+                mechanism: &model.mechanism,
+                selection: &selection,
+                search: &Search::none(),
+            };
+            let program = assembler.program(function, from);
+            program.map_err(|error| format!("{stem}: {error:?}"))
+        };
+        let by_parameters = program(DynamicsBy::Parameters)?;
+        for form in FORMS {
+            let by_bodies = program(form)?;
+            let mut agreement = Agreement::new();
+            for sample in &all {
+                let input = |name: &str| sample.input(name).ok();
+                let wanted = evaluate(&by_parameters, &input)?;
+                let found = evaluate(&by_bodies, &input)?;
+                agreement.compare(
+                    &matrix(&by_bodies, &found),
+                    &matrix(&by_parameters, &wanted),
+                );
+            }
+            println!("{function:?} by {form:?}: {agreement}");
+            assert!(
+                agreement.within(TOLERANCE),
+                "{function:?} by {form:?}: {agreement}"
+            );
+        }
+    }
+    Ok(())
+}
