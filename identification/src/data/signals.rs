@@ -144,7 +144,8 @@ fn missing_gain(run: &str, tables: &[Table], name: &str) -> Problem {
             missing_columns(run, &[name], &existing)
         }
         None => Problem::new(format!(
-            "the torque gain is the variable `{name}`, but a text has no variables"
+            "the torque gain is the variable `{name}`, but {} has no variables",
+            tables.first().map_or("the run", Table::what)
         ))
         .file(run)
         .column(name)

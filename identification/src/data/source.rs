@@ -57,6 +57,10 @@ impl Files {
             }
         }
         Error::check(problems)?;
+        #[cfg(feature = "parquet")]
+        if let Some(origin) = tables.iter().find_map(Table::origin) {
+            tables.iter_mut().for_each(|table| table.set_origin(origin));
+        }
         let name = display_name(path);
         Ok(Self {
             signals: Signals::new(&name, &tables, mapping)?,
