@@ -183,9 +183,10 @@ fn a_single_sample_or_none_is_no_run() {
 
 #[test]
 fn files_that_are_no_text_are_named_and_never_shown() {
-    let cases: [(&[u8], &str); 9] = [
+    let cases: [(&[u8], &str); 10] = [
         (b"\x89HDF\r\n\x1a\n", "HDF5"),
         (b"\x89MCAP0\r\n", "MCAP"),
+        (b"PARE\x15", "Parquet"),
         (b"PAR1\x15", "Parquet"),
         (b"\x93NUMPY\x01\x00", "NumPy's, but it is cut off"),
         (

@@ -121,10 +121,15 @@ impl<'a> Columns<'a> {
                 "call it `file{file}.{name}` or `file{other}.{name}`, or by its number through all files"
             )));
         }
-        match places.first() {
-            Some(place) => Ok(Some(*place)),
-            None => self.numbered(name),
+        let place = match places.first() {
+            Some(place) => Some(*place),
+            None => self.numbered(name)?,
+        };
+        #[cfg(feature = "parquet")]
+        if let Some((file, place)) = place {
+            self.tables[file].check(place)?;
         }
+        Ok(place)
     }
 
     /// Where a column is that is called by its number, or by that of its file.

@@ -17,6 +17,8 @@ pub(super) enum Format {
     Mat,
     /// NumPy's `.npy`.
     Array,
+    /// Parquet.
+    Parquet,
     /// A zip archive, perhaps NumPy's `.npz`.
     Archive,
 }
@@ -49,9 +51,9 @@ const REFUSED: [(&[u8], &str, &str); 12] = [
         "export the messages of the joints as CSV",
     ),
     (
-        b"PAR1",
-        "the file is Parquet, which is not read",
-        "export CSV",
+        b"PARE",
+        "the file is encrypted Parquet, which is not read",
+        "write it without encryption",
     ),
     (
         b"ARROW1",
@@ -111,6 +113,9 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
     if beginning.starts_with(b"\x93NUMPY") {
         return Ok(Format::Array);
     }
+    if beginning.starts_with(b"PAR1") {
+        return Ok(Format::Parquet);
+    }
     if beginning.starts_with(b"PK\x03\x04") {
         return Ok(Format::Archive);
     }
@@ -120,7 +125,7 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
     }
     let message = "the file is neither text nor of a format that is known";
     Err(Problem::new(message)
-        .help("logs are text (CSV), MATLAB's `.mat` up to version 7 or NumPy's `.npy` and `.npz`"))
+        .help("logs are text (CSV), Parquet, MATLAB's `.mat` up to version 7 or NumPy's `.npy` and `.npz`"))
 }
 
 #[cfg(test)]
@@ -136,7 +141,8 @@ mod tests {
         assert_eq!(of(&mat), Ok(Format::Mat));
         let unknown = of(b"\x00\x01\x02").expect_err("unknown");
         assert!(unknown.message.contains("neither text nor"), "{unknown}");
-        let parquet = of(b"PAR1\x15\x04").expect_err("Parquet");
-        assert!(parquet.message.contains("Parquet"), "{parquet}");
+        assert_eq!(of(b"PAR1\x15\x04"), Ok(Format::Parquet));
+        let encrypted = of(b"PARE\x15\x04").expect_err("encrypted");
+        assert!(encrypted.message.contains("encrypted"), "{encrypted}");
     }
 }

@@ -27,6 +27,8 @@ pub struct Log {
     torque_factors: Vec<f64>,
     payload: bool,
     instruments: Option<Box<Log>>,
+    /// What was done to the samples that a user should know.
+    note: Option<String>,
 }
 
 /// Where the numbers are.
@@ -93,6 +95,7 @@ impl Log {
             torque_factors: vec![1.0; actuators],
             payload,
             instruments: None,
+            note: None,
         })
     }
 
@@ -117,6 +120,19 @@ impl Log {
             Source::Files(files) => files.has_velocities(),
             Source::Others(..) => false,
         }
+    }
+
+    /// The same run with a word on what was done to its samples.
+    pub(super) fn with_note(mut self, note: Option<String>) -> Self {
+        self.note = note;
+        self
+    }
+
+    /// What was done to the samples that a user should know: of files with clocks of their own, which of them
+    /// were interpolated.
+    #[must_use]
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
     }
 
     /// The same run with a motion that goes with its own sample by sample, but not with the errors of its
@@ -164,6 +180,7 @@ impl Log {
             source: Source::Files(files),
             payload,
             instruments: None,
+            note: None,
         }
     }
 

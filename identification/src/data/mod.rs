@@ -2,10 +2,10 @@
 //! velocities where they were measured;
 //! a [`Mapping`] says which columns of a file they are and what turns them into SI units.
 //!
-//! Text, MATLAB's `.mat` files up to version 7 and NumPy's files are read, told apart by their first bytes. Text may
+//! Text, MATLAB's `.mat` files up to version 7, NumPy's files and with the feature `parquet` Parquet are read, told apart by their first bytes. Text may
 //! separate its columns by commas, semicolons, tabs or blanks, have decimal commas, a header, names in a
 //! comment or none. Readers report every missing column, every cell that is not a number (up to twenty)
-//! and the first step of a time that is not uniform. A large text stays on the disk and is read block
+//! and the first step of a time that is not uniform. A large text or Parquet file stays on the disk and is read block
 //! by block whenever its run is gone through.
 
 mod archive;
@@ -14,11 +14,14 @@ mod clock;
 mod columns;
 mod dataset;
 mod expression;
+mod follower;
 mod format;
 mod log;
 mod mapping;
 mod mat_file;
 mod numpy;
+#[cfg(feature = "parquet")]
+mod parquet_file;
 pub(crate) mod periods;
 mod problems;
 mod samples;
@@ -44,8 +47,8 @@ pub use samples::Samples;
 use crate::error::Error;
 use source::Files;
 
-/// The files of a run: `a.csv+b.csv` are two that are joined sample by sample, unless there is a file of
-/// this name.
+/// The files of a run: `a.csv+b.csv` are two that are joined, sample by sample or by their times, unless there
+/// is a file of this name.
 #[must_use]
 pub fn parts(path: &Path) -> Vec<&Path> {
     let text = path.to_str().filter(|_| !path.exists());
@@ -65,8 +68,8 @@ pub fn parts(path: &Path) -> Vec<&Path> {
 ///
 /// # Errors
 /// A file that can't be read or is of no format that is, missing columns, expressions that are none, cells
-/// that are not finite numbers, a time that is not uniform, files of different lengths, or a mapping that
-/// is not right.
+/// that are not finite numbers, a time that is not uniform, files of different lengths or of different times, or a
+/// mapping that is not right.
 pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
     read_telling(path, mapping, payload, &|_| {})
 }
@@ -81,6 +84,7 @@ fn read_telling(
     let files = Files::new(path, &parts(path), mapping)?;
     let summary = files.look_through(&mapping.time, advance)?;
     let (frequency, count) = (summary.frequency, summary.count);
+    let note = files.note(count, summary.left_out);
     let log = match summary.samples {
         Some(samples) => {
             let (positions, torques) = (samples.positions, samples.torques);
@@ -90,7 +94,9 @@ fn read_telling(
         }
         None => Log::in_files(files, frequency, count, payload),
     };
-    Ok(log.without_offsets(&mapping.position_offset))
+    Ok(log
+        .with_note(note)
+        .without_offsets(&mapping.position_offset))
 }
 
 /// Reads several runs at once, each with a word on its payload. `progress` is told the part of all bytes

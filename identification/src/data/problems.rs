@@ -13,6 +13,10 @@ const LARGEST_NUMBER_OF_NAMES: usize = 40;
 /// Characters of a cell or a name that are shown, at most.
 const LONGEST_SHOWN: usize = 40;
 
+/// Characters of a library's reason that are shown, at most.
+#[cfg(feature = "parquet")]
+const LONGEST_REASON: usize = 200;
+
 /// A piece of a file as it can be shown in a terminal: short, and without control characters.
 pub(super) fn shown(piece: &str) -> String {
     let mut text: String = piece
@@ -24,6 +28,15 @@ pub(super) fn shown(piece: &str) -> String {
         text.push('…');
     }
     text
+}
+
+/// What a library says of a file, as it can be shown in a terminal.
+#[cfg(feature = "parquet")]
+pub(super) fn legible(why: &str) -> String {
+    let letters = why.chars().take(LONGEST_REASON);
+    letters
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .collect()
 }
 
 /// The name by which a file is called in messages: as the caller gave it.
@@ -53,6 +66,29 @@ fn quoted<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
             all[..LARGEST_NUMBER_OF_NAMES].join(", ")
         ),
         _ => all.join(", "),
+    }
+}
+
+/// The place of the column `name` among the `names` of a file's columns, if it is there.
+///
+/// # Errors
+/// Two columns of one name: nobody knows which one is meant.
+pub(super) fn only<'a>(
+    file: &str,
+    name: &str,
+    names: impl Iterator<Item = &'a str>,
+) -> Result<Option<usize>, Problem> {
+    let mut places = names.enumerate().filter(|(_, own)| *own == name);
+    let first = places.next().map(|(place, _)| place);
+    match places.count() {
+        0 => Ok(first),
+        more => {
+            let message = format!("the file has {} columns `{}`", more + 1, shown(name));
+            let problem = Problem::new(message).file(file).column(name);
+            Err(problem.help(
+                "give each column a name of its own, or call it by its number, `$1` the first one",
+            ))
+        }
     }
 }
 

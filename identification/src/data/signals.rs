@@ -77,6 +77,25 @@ impl Signals {
         self.columns.iter().map(|own| named(own))
     }
 
+    /// The files that have a column of the time, where several do: their numbers, and the places of these columns
+    /// among those that are read of the file.
+    pub(super) fn clocks(&self) -> Vec<(usize, usize)> {
+        let place = |time: &Expression| {
+            let &Expression::Column(mut place) = time else {
+                return None;
+            };
+            for (file, own) in self.columns.iter().enumerate() {
+                if place < own.len() {
+                    return Some((file, place));
+                }
+                place -= own.len();
+            }
+            None
+        };
+        let clocks: Vec<_> = self.times.iter().filter_map(place).collect();
+        if clocks.len() > 1 { clocks } else { Vec::new() }
+    }
+
     /// The times of a row in all files that have one, s.
     pub(super) fn times<'a>(&'a self, columns: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         self.times.iter().map(|time| time.evaluate(columns))
@@ -144,7 +163,8 @@ fn missing_gain(run: &str, tables: &[Table], name: &str) -> Problem {
             missing_columns(run, &[name], &existing)
         }
         None => Problem::new(format!(
-            "the torque gain is the variable `{name}`, but a text has no variables"
+            "the torque gain is the variable `{name}`, but {} has no variables",
+            tables.first().map_or("the run", Table::what)
         ))
         .file(run)
         .column(name)

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+#[cfg(feature = "parquet")]
+use super::parquet_file::{self, Parquet};
 use super::{
     arrays::{self, Arrays},
     format::{self, Format},
@@ -16,6 +18,9 @@ use crate::error::{Error, Problem};
 pub(super) enum Table {
     /// Lines of numbers, which are read again and again.
     Text(Text),
+    /// Columns that are read again and again, page by page.
+    #[cfg(feature = "parquet")]
+    Parquet(Parquet),
     /// Arrays in memory.
     Arrays(Arrays),
 }
@@ -30,6 +35,14 @@ impl Table {
         Ok(match format::recognise(&file, path)? {
             Format::Text => Self::Text(Text::open(file, path)?),
             Format::Mat => Self::Arrays(mat_file::open(file, path)?),
+            #[cfg(feature = "parquet")]
+            Format::Parquet => Self::Parquet(Parquet::open(file, path)?),
+            #[cfg(not(feature = "parquet"))]
+            Format::Parquet => {
+                let message = "the file is Parquet, which overact was built without";
+                let help = "build it with the feature `parquet`, or export CSV";
+                return Err(Problem::new(message).file(file).help(help).into());
+            }
             Format::Array => Self::Arrays(numpy::open_array(file, path)?),
             Format::Archive => Self::Arrays(numpy::open_archive(file, path)?),
         })
@@ -39,6 +52,8 @@ impl Table {
     pub(super) fn file(&self) -> &str {
         match self {
             Self::Text(text) => text.file(),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(parquet) => parquet.file(),
             Self::Arrays(arrays) => arrays.file(),
         }
     }
@@ -52,6 +67,8 @@ impl Table {
     pub(super) fn columns(&self) -> usize {
         match self {
             Self::Text(text) => text.columns(),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(parquet) => parquet.columns(),
             Self::Arrays(arrays) => arrays.columns(),
         }
     }
@@ -63,14 +80,60 @@ impl Table {
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
         match self {
             Self::Text(text) => text.find(name),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(parquet) => parquet.find(name),
             Self::Arrays(arrays) => Ok(arrays.find(name)),
         }
     }
 
-    /// The values of a variable, which may be a single number; a text has no variables.
+    /// Whether a column can be read as numbers.
+    ///
+    /// # Errors
+    /// What it holds in their place.
+    #[cfg(feature = "parquet")]
+    pub(super) fn check(&self, place: usize) -> Result<(), Problem> {
+        match self {
+            // Cells of a text are looked at one by one; other arrays than those of numbers are left out.
+            Self::Text(_) | Self::Arrays(_) => Ok(()),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(parquet) => parquet.check(place),
+        }
+    }
+
+    /// What the instants of a file are counted from, s since 1970, where it has instants.
+    #[cfg(feature = "parquet")]
+    pub(super) const fn origin(&self) -> Option<i64> {
+        match self {
+            Self::Text(_) | Self::Arrays(_) => None,
+            #[cfg(feature = "parquet")]
+            Self::Parquet(parquet) => parquet.origin(),
+        }
+    }
+
+    /// Says what instants are counted from.
+    #[cfg(feature = "parquet")]
+    pub(super) fn set_origin(&mut self, origin: i64) {
+        if let Self::Parquet(parquet) = self {
+            parquet.set_origin(origin);
+        }
+    }
+
+    /// What a file of this format is called.
+    pub(super) const fn what(&self) -> &'static str {
+        match self {
+            Self::Text(_) => "a text",
+            #[cfg(feature = "parquet")]
+            Self::Parquet(_) => "a Parquet file",
+            Self::Arrays(_) => "a file of arrays",
+        }
+    }
+
+    /// The values of a variable, which may be a single number; only arrays are variables.
     pub(super) fn variable(&self, name: &str) -> Option<&[f64]> {
         match self {
             Self::Text(_) => None,
+            #[cfg(feature = "parquet")]
+            Self::Parquet(_) => None,
             Self::Arrays(arrays) => arrays.values(name),
         }
     }
@@ -79,6 +142,8 @@ impl Table {
     pub(super) fn existing(&self) -> Existing<'_> {
         match self {
             Self::Text(text) => text.existing(),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(parquet) => parquet.existing(),
             Self::Arrays(arrays) => arrays.existing(),
         }
     }
@@ -87,6 +152,8 @@ impl Table {
     pub(super) fn first_column(&self, name: &str) -> Option<&str> {
         match self {
             Self::Text(_) => None,
+            #[cfg(feature = "parquet")]
+            Self::Parquet(_) => None,
             Self::Arrays(arrays) => arrays.first_column(name),
         }
     }
@@ -98,6 +165,8 @@ impl Table {
     pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
         Ok(match self {
             Self::Text(text) => Rows::Text(text.rows(wanted)?),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(parquet) => Rows::Parquet(parquet.rows(wanted)?),
             Self::Arrays(arrays) => Rows::Arrays(arrays.rows(wanted)?),
         })
     }
@@ -107,6 +176,8 @@ impl Table {
 #[derive(Debug)]
 pub(super) enum Rows<'a> {
     Text(text::Rows<'a>),
+    #[cfg(feature = "parquet")]
+    Parquet(parquet_file::Rows<'a>),
     Arrays(arrays::Rows<'a>),
 }
 
@@ -118,6 +189,8 @@ impl Rows<'_> {
     pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         match self {
             Self::Text(rows) => rows.next(values),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(rows) => rows.next(values),
             Self::Arrays(rows) => rows.next(values),
         }
     }
@@ -127,6 +200,8 @@ impl Rows<'_> {
         match self {
             Self::Text(rows) => Some(rows.line()),
             Self::Arrays(_) => None,
+            #[cfg(feature = "parquet")]
+            Self::Parquet(_) => None,
         }
     }
 
@@ -134,6 +209,8 @@ impl Rows<'_> {
     pub(super) const fn is_broken(&self) -> bool {
         match self {
             Self::Text(rows) => rows.is_broken(),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(rows) => rows.is_broken(),
             Self::Arrays(_) => false,
         }
     }
@@ -142,6 +219,8 @@ impl Rows<'_> {
     pub(super) fn bytes(&self) -> u64 {
         match self {
             Self::Text(rows) => rows.bytes(),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(rows) => rows.bytes(),
             Self::Arrays(_) => 0,
         }
     }

@@ -63,6 +63,9 @@ pub fn identify(
     let projections = projections(model, settings);
     let prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
     let mut warnings = prepared_warnings(&prepared, dataset.validation);
+    let logs = dataset.runs.iter().chain(dataset.validation);
+    let notes = logs.filter_map(|log| Some(format!("{}: {}", log.name(), log.note()?)));
+    warnings.extend(notes);
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
     let (errors_in_regressor, beside) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;

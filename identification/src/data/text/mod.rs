@@ -19,7 +19,7 @@ use self::{
     dialect::{BEGINNING, Dialect},
     squeeze::Squeeze,
 };
-use super::problems::{Existing, shown, unreadable};
+use super::problems::{Existing, only, shown, unreadable};
 use crate::error::{Error, Problem};
 
 /// Bytes that are read at once.
@@ -69,17 +69,8 @@ impl Text {
     /// # Errors
     /// Two columns of one name: nobody knows which one is meant.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
-        let names = &self.dialect.names;
-        let mut places = (0..names.len()).filter(|place| names[*place] == name);
-        let first = places.next();
-        match places.count() {
-            0 => Ok(first),
-            more => {
-                let message = format!("the file has {} columns `{}`", more + 1, shown(name));
-                let problem = Problem::new(message).file(self.file.as_str()).column(name);
-                Err(problem.help("give each column a name of its own, or call it by its number, `$1` the first one"))
-            }
-        }
+        let names = self.dialect.names.iter().map(String::as_str);
+        only(&self.file, name, names)
     }
 
     /// What columns there are.

@@ -1,0 +1,208 @@
+//! Parquet, as PyArrow, pandas, Polars, DuckDB and Spark write it: columns by name, read a few thousand rows at a
+//! time, so that a large file stays on the disk.
+//!
+//! Columns of numbers, of true and false, of times and of durations are read; texts, dates and nested columns
+//! are refused when they are asked for, and may stand beside the others.
+
+mod durations;
+mod kind;
+mod pages;
+mod rows;
+
+use std::{
+    fs::File,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use parquet::{
+    basic::Type,
+    file::metadata::{FileMetaData, ParquetMetaData, ParquetMetaDataReader},
+};
+
+use self::{durations::durations, kind::Kind, rows::Wanted};
+use super::problems::{Existing, legible, only, shown, unreadable};
+use crate::error::{Error, Problem};
+
+pub(super) use rows::Rows;
+
+/// A Parquet file and what its columns are.
+#[derive(Debug, Clone)]
+pub(super) struct Parquet {
+    /// The file as the caller named it.
+    file: String,
+    path: PathBuf,
+    metadata: Arc<ParquetMetaData>,
+    columns: Vec<Column>,
+    /// What instants are counted from, s since 1970; none where there are no instants.
+    origin: Option<i64>,
+}
+
+impl PartialEq for Parquet {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.path, &self.columns, self.origin) == (&other.path, &other.columns, other.origin)
+    }
+}
+
+/// A column at the top of the schema.
+#[derive(Debug, Clone, PartialEq)]
+struct Column {
+    name: String,
+    /// Its place among all columns, those within nested ones counted singly.
+    leaf: usize,
+    /// What its values are, or what they are in place of numbers.
+    kind: Result<Kind, String>,
+}
+
+impl Parquet {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// A file that can't be read, or that is cut off or broken.
+    pub(super) fn open(file: String, path: &Path) -> Result<Self, Error> {
+        let input = File::open(path).map_err(|error| unreadable(&file, &error))?;
+        let metadata = ParquetMetaDataReader::new().parse_and_finish(&input);
+        let metadata = metadata.map_err(|error| broken(&file, &error.to_string()))?;
+        let columns = columns(metadata.file_metadata());
+        let mut opened = Self {
+            file,
+            path: path.to_owned(),
+            metadata: Arc::new(metadata),
+            columns,
+            origin: None,
+        };
+        opened.origin = opened.beginning();
+        Ok(opened)
+    }
+
+    /// The whole second in which the first instant of the file is; none where it has none.
+    fn beginning(&self) -> Option<i64> {
+        let mut places = self.columns.iter();
+        let place = places.position(|column| matches!(column.kind, Ok(Kind::Instant(_))))?;
+        let mut first = [0.0];
+        // What is wrong with the column is told to who asks for it.
+        let found = self
+            .rows(&[(place, "")])
+            .and_then(|mut rows| rows.next(&mut first));
+        (found == Ok(true)).then_some(first[0].floor() as i64)
+    }
+
+    /// What instants are counted from, s since 1970.
+    pub(super) const fn origin(&self) -> Option<i64> {
+        self.origin
+    }
+
+    /// Says what instants are counted from, so that those of several files go together.
+    pub(super) fn set_origin(&mut self, origin: i64) {
+        self.origin = self.origin.map(|_| origin);
+    }
+
+    /// The file as the caller named it.
+    pub(super) fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Number of columns.
+    pub(super) const fn columns(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// The place of a column that is called by its name.
+    ///
+    /// # Errors
+    /// Several columns of this name.
+    pub(super) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
+        let names = self.columns.iter().map(|own| own.name.as_str());
+        only(&self.file, name, names)
+    }
+
+    /// Whether a column has numbers.
+    ///
+    /// # Errors
+    /// What it has in their place.
+    pub(super) fn check(&self, place: usize) -> Result<(), Problem> {
+        let Some(Column { name, kind, .. }) = self.columns.get(place) else {
+            return Ok(());
+        };
+        let Err(what) = kind else {
+            return Ok(());
+        };
+        let problem = Problem::new(format!("column `{}` {what}", shown(name)));
+        let problem = problem.file(self.file.as_str()).column(name.as_str());
+        let help = "write a column of numbers (float64) for each signal and each actuator";
+        Err(problem.help(help))
+    }
+
+    /// What columns there are.
+    pub(super) fn existing(&self) -> Existing<'_> {
+        Existing {
+            names: self.columns.iter().map(|own| own.name.as_str()).collect(),
+            columns: self.columns(),
+            what: "column",
+        }
+    }
+
+    /// Goes through some columns, whose names are for messages, from the first row on.
+    ///
+    /// # Errors
+    /// A file that can't be read any more, or that was written anew.
+    pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
+        let input = File::open(&self.path).map_err(|error| unreadable(&self.file, &error))?;
+        let wanted = wanted.iter().filter_map(|&(place, name)| {
+            let Column { leaf, kind, .. } = self.columns.get(place)?;
+            let kind = *kind.as_ref().ok()?;
+            Some(Wanted {
+                leaf: *leaf,
+                kind,
+                name,
+            })
+        });
+        let origin = self.origin.unwrap_or(0);
+        Ok(Rows::new(&self.file, input, &self.metadata, wanted, origin))
+    }
+}
+
+/// The columns at the top of a schema.
+fn columns(metadata: &FileMetaData) -> Vec<Column> {
+    let stored = metadata.key_value_metadata().into_iter().flatten();
+    let arrow = stored.filter(|pair| pair.key == durations::KEY);
+    let durations: Vec<(String, i64)> = arrow
+        .filter_map(|pair| pair.value.as_deref())
+        .flat_map(durations)
+        .collect();
+    let schema = metadata.schema_descr();
+    let mut columns = Vec::new();
+    let mut last = None;
+    for (leaf, own) in schema.columns().iter().enumerate() {
+        let number = schema.get_column_root_idx(leaf);
+        if last.replace(number) == Some(number) {
+            continue;
+        }
+        let root = schema.get_column_root(leaf);
+        let parts = durations.iter().find(|(name, _)| name == root.name());
+        let kind = match parts {
+            _ if root.is_group() || own.max_rep_level() > 0 => {
+                Err(String::from("is nested (a list or a structure)"))
+            }
+            Some((_, parts)) if own.physical_type() == Type::INT64 => Ok(Kind::Parts(*parts)),
+            _ => Kind::of(own),
+        };
+        columns.push(Column {
+            name: root.name().to_owned(),
+            leaf,
+            kind,
+        });
+    }
+    columns
+}
+
+/// What is said of a file that can't be opened.
+fn broken(file: &str, why: &str) -> Problem {
+    let message = format!(
+        "the file starts as Parquet does, but can't be read: {}",
+        legible(why)
+    );
+    Problem::new(message)
+        .file(file)
+        .help("if it was copied or its writer was stopped, copy or write it again; else export CSV")
+}

@@ -1,0 +1,70 @@
+//! The pages of a column, checked for what the library takes for granted.
+
+use std::{fs::File, sync::Arc};
+
+use parquet::{
+    basic::Encoding,
+    column::page::{Page, PageMetadata, PageReader},
+    errors::{ParquetError, Result},
+    file::{metadata::ColumnChunkMetaData, serialized_reader::SerializedPageReader},
+};
+
+/// The pages of a column within a row group.
+pub(super) struct Pages {
+    pages: SerializedPageReader<File>,
+    has_dictionary: bool,
+}
+
+impl Pages {
+    /// Goes to the first page.
+    ///
+    /// # Errors
+    /// A compression that the library does not know.
+    pub(super) fn new(input: &Arc<File>, chunk: &ColumnChunkMetaData, rows: usize) -> Result<Self> {
+        Ok(Self {
+            pages: SerializedPageReader::new(Arc::clone(input), chunk, rows, None)?,
+            has_dictionary: false,
+        })
+    }
+}
+
+impl PageReader for Pages {
+    fn get_next_page(&mut self) -> Result<Option<Page>> {
+        let page = self.pages.get_next_page()?;
+        let encoding = match &page {
+            Some(Page::DictionaryPage { .. }) => {
+                self.has_dictionary = true;
+                None
+            }
+            Some(Page::DataPage { encoding, .. } | Page::DataPageV2 { encoding, .. }) => {
+                Some(*encoding)
+            }
+            None => None,
+        };
+        let asks = matches!(
+            encoding,
+            Some(Encoding::RLE_DICTIONARY | Encoding::PLAIN_DICTIONARY)
+        );
+        if asks && !self.has_dictionary {
+            let why = String::from("a page lacks its dictionary");
+            return Err(ParquetError::General(why));
+        }
+        Ok(page)
+    }
+
+    fn peek_next_page(&mut self) -> Result<Option<PageMetadata>> {
+        self.pages.peek_next_page()
+    }
+
+    fn skip_next_page(&mut self) -> Result<()> {
+        self.pages.skip_next_page()
+    }
+}
+
+impl Iterator for Pages {
+    type Item = Result<Page>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.get_next_page().transpose()
+    }
+}

@@ -1,0 +1,293 @@
+//! Files of one run with clocks of their own: one is interpolated onto the times of the other.
+
+mod common;
+#[path = "common/parquet.rs"]
+mod parquet_file;
+
+use std::{fs, path::Path};
+
+use common::EMPS;
+use overact::Model;
+use overact_identification::{Dataset, Error, Log, Mapping, Settings, Time, data::read, identify};
+use parquet_file::{Cells, written};
+
+/// A mapping of one drive with its time in `t`.
+fn mapping(position: &str, torque: &str) -> Mapping {
+    Mapping {
+        time: Time::Column(String::from("t")),
+        positions: vec![position.to_owned()],
+        torques: vec![torque.to_owned()],
+        ..Mapping::for_robot(&EMPS.info())
+    }
+}
+
+/// Reads `q` of a file and `tau` of another one.
+fn joined(first: (&str, &[u8]), second: (&str, &[u8])) -> Result<Log, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let prefix = format!("{}/", folder.path().display());
+    for (name, content) in [first, second] {
+        fs::write(folder.path().join(name), content).expect("written");
+    }
+    let path = format!("{prefix}{}+{prefix}{}", first.0, second.0);
+    let log = read(Path::new(&path), &mapping("q", "tau"), false);
+    let log = log.map_err(|error: Error| error.to_string().replace(&prefix, ""))?;
+    // The folder goes: what is kept in memory only is enough here.
+    assert!(log.in_memory());
+    Ok(log)
+}
+
+/// A text of times and values.
+fn text(name: &str, rows: impl Iterator<Item = (f64, f64)>) -> String {
+    let rows = rows.map(|(time, value)| format!("{time},{value}\n"));
+    format!("t,{name}\n{}", rows.collect::<String>())
+}
+
+fn loaded(log: &Log) -> (Vec<f64>, Vec<f64>) {
+    log.load().unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Fails unless torques are 3 t - 1 where positions are the times.
+fn is_line(log: &Log) {
+    let (times, torques) = loaded(log);
+    for (time, torque) in times.iter().zip(&torques) {
+        assert!(
+            (torque - (3.0 * time - 1.0)).abs() < 1e-12,
+            "{torque} at {time}"
+        );
+    }
+}
+
+#[test]
+fn a_slower_file_is_interpolated_onto_the_times_of_the_first() {
+    let positions = text(
+        "q",
+        (0..1001).map(|k| (f64::from(k) / 1000.0, f64::from(k) / 1000.0)),
+    );
+    // 240 Hz from 0.0105 s on, up to 0.9605 s.
+    let times = (0..229).map(|k| 0.0105 + f64::from(k) / 240.0);
+    let torques = text("tau", times.clone().map(|t| (t, 3.0 * t - 1.0)));
+    let log = joined(
+        ("q.csv", positions.as_bytes()),
+        ("i.csv", torques.as_bytes()),
+    );
+    let log = log.unwrap_or_else(|error| panic!("{error}"));
+    // From 0.011 s to 0.960 s.
+    assert_eq!(log.samples(), 950);
+    assert!((log.sampling_frequency() - 1000.0).abs() < 1e-6);
+    assert_eq!(loaded(&log).0[0], 0.011);
+    is_line(&log);
+    let note = log.note().expect("a note");
+    assert!(
+        note.contains("i.csv was interpolated linearly onto the times of "),
+        "{note}"
+    );
+    assert!(
+        note.ends_with("51 of its 1001 samples, outside of the others' times, are left out"),
+        "{note}"
+    );
+    // The same numbers from Parquet.
+    let time: Vec<f64> = times.collect();
+    let torque: Vec<f64> = time.iter().map(|t| 3.0 * t - 1.0).collect();
+    let schema = "message log { required double t; required double tau; }";
+    let file = written(schema, &[Cells::Double(&time), Cells::Double(&torque)]);
+    let same = joined(("q.csv", positions.as_bytes()), ("i.parquet", &file));
+    assert_eq!(loaded(&same.expect("a log")), loaded(&log));
+}
+
+#[test]
+fn a_faster_file_with_an_uneven_clock_is_interpolated() {
+    let positions = text(
+        "q",
+        (0..200).map(|k| (f64::from(k) / 100.0, f64::from(k) / 100.0)),
+    );
+    let times = (0..5000).map(|k| f64::from(k) / 2000.0 + 0.0002 * f64::from(k).sin() - 0.1);
+    let torques = text("tau", times.map(|t| (t, 3.0 * t - 1.0)));
+    let log = joined(
+        ("q.csv", positions.as_bytes()),
+        ("i.csv", torques.as_bytes()),
+    );
+    let log = log.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(log.samples(), 200);
+    is_line(&log);
+    let note = log.note().expect("a note");
+    assert!(note.ends_with(", since the clocks differ"), "{note}");
+}
+
+#[test]
+fn files_with_one_clock_are_joined_sample_by_sample() {
+    let row = |k: i32| (f64::from(k) / 100.0, f64::from(k * k));
+    let positions = text("q", (0..50).map(row));
+    let torques = text("tau", (0..50).map(|k| (row(k).0 + 1e-5, row(k).1)));
+    let log = joined(
+        ("q.csv", positions.as_bytes()),
+        ("i.csv", torques.as_bytes()),
+    );
+    let log = log.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(log.note(), None);
+    let (positions, torques) = loaded(&log);
+    assert_eq!(positions, torques);
+}
+
+#[test]
+fn instants_of_two_files_count_from_the_same_second() {
+    // The second file begins in another second, 20 ms later.
+    let start = 1_700_000_000_990_000_i64;
+    let first: Vec<i64> = (0..100).map(|k| start + 1000 * k).collect();
+    let second: Vec<i64> = (0..100).map(|k| start + 20_000 + 500 * k).collect();
+    let numbers =
+        |times: &[i64]| -> Vec<f64> { times.iter().map(|time| (time - start) as f64).collect() };
+    let schema = |name: &str| {
+        format!(
+            "message log {{ required int64 t (TIMESTAMP(MICROS, false)); required double {name}; }}"
+        )
+    };
+    let file = |name: &str, times: &[i64]| {
+        written(
+            &schema(name),
+            &[Cells::Long(times), Cells::Double(&numbers(times))],
+        )
+    };
+    let log = joined(
+        ("q.parquet", &file("q", &first)),
+        ("i.parquet", &file("tau", &second)),
+    );
+    let (positions, torques) = loaded(&log.unwrap_or_else(|error| panic!("{error}")));
+    // From 20 ms to 69 ms.
+    assert_eq!((positions[0], positions.len()), (20_000.0, 50));
+    let differs = |(q, tau): (&f64, &f64)| (q - tau).abs() > 1e-6;
+    assert!(!positions.iter().zip(&torques).any(differs));
+}
+
+#[test]
+fn files_that_do_not_overlap_or_leap_are_refused() {
+    let row = |k: i32| (f64::from(k) / 10.0, f64::from(k));
+    let positions = text("q", (100..150).map(row));
+    let told = |rows: &mut dyn Iterator<Item = (f64, f64)>| {
+        let torques = text("tau", rows);
+        let log = joined(
+            ("q.csv", positions.as_bytes()),
+            ("i.csv", torques.as_bytes()),
+        );
+        log.expect_err("an error")
+    };
+    let way_out = "files are joined by time: check that they are of one run and that their clocks count from the same \
+                   start";
+    assert_eq!(
+        told(&mut (0..50).map(row)),
+        format!("i.csv: the file ends at 4.9 s, before q.csv begins at 10 s\n  help: {way_out}")
+    );
+    assert_eq!(
+        told(&mut (200..250).map(row)),
+        format!(
+            "i.csv: the file begins at 20 s, when q.csv has ended at 14.9 s\n  help: {way_out}"
+        )
+    );
+    let grow = "files with clocks of their own are joined by time, which needs times that grow without gaps: cut the \
+                run there";
+    assert_eq!(
+        told(&mut (90..160).filter(|k| !(120..130).contains(k)).map(row)),
+        format!("i.csv: the time steps from 11.9 s to 13 s\n  help: {grow}")
+    );
+    assert_eq!(
+        told(&mut (90..160).map(|k| row(if k == 130 { 110 } else { k }))),
+        format!("i.csv: the time steps from 12.9 s to 11 s\n  help: {grow}")
+    );
+    let empty = joined(("q.csv", positions.as_bytes()), ("i.csv", b"t,tau\n"));
+    assert!(empty.expect_err("empty").contains("the run is empty"));
+    let broken = joined(
+        ("q.csv", positions.as_bytes()),
+        ("i.csv", b"t,tau\n9,1\n10.5,x\n12,3\n"),
+    );
+    assert_eq!(
+        broken.expect_err("no number"),
+        "i.csv:3: column `tau`: `x` is not a number"
+    );
+}
+
+#[test]
+fn large_files_are_joined_as_small_ones_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let samples = 600_000_u32;
+    let times = |rate: f64, start: f64| -> Vec<f64> {
+        let all = 0..samples;
+        all.map(|k| start + f64::from(k) / rate).collect()
+    };
+    let (first, second) = (times(1000.0, 0.0), times(1010.0, 0.25));
+    let torques: Vec<f64> = second.iter().map(|t| 3.0 * t - 1.0).collect();
+    for (name, column, time, values) in [
+        ("q.parquet", "q", &first, &first),
+        ("i.parquet", "tau", &second, &torques),
+    ] {
+        let schema = format!("message log {{ required double t; required double {column}; }}");
+        let file = written(&schema, &[Cells::Double(time), Cells::Double(values)]);
+        fs::write(folder.path().join(name), file).expect("written");
+    }
+    let prefix = folder.path().display();
+    let path = format!("{prefix}/q.parquet+{prefix}/i.parquet");
+    let log = read(Path::new(&path), &mapping("q", "tau"), false);
+    let log = log.unwrap_or_else(|error| panic!("{error}"));
+    assert!(!log.in_memory());
+    // Up to 594.3 s.
+    assert_eq!(loaded(&log).0.len(), log.samples());
+    assert_eq!(loaded(&log).0[0], 0.25);
+    let (times, torques) = loaded(&log);
+    let off = |(time, torque): (&f64, &f64)| (torque - (3.0 * time - 1.0)).abs() > 1e-9;
+    assert!(!times.iter().zip(&torques).any(off));
+    assert!(log.samples() > 593_000);
+}
+
+#[test]
+fn the_result_says_what_was_interpolated() {
+    // A mass of 2 kg with viscous friction of 3 N s/m that is moved by two sines.
+    let motion = |t: f64| {
+        let sines = [(0.1, 3.0), (0.05, 7.0)].map(|(size, rate)| {
+            let (sine, cosine) = f64::sin_cos(rate * t);
+            [
+                size * sine,
+                size * rate * cosine,
+                -size * rate * rate * sine,
+            ]
+        });
+        [0, 1, 2].map(|order| sines[0][order] + sines[1][order])
+    };
+    let positions = text(
+        "q",
+        (0..20_000)
+            .map(|k| f64::from(k) / 1000.0)
+            .map(|t| (t, motion(t)[0])),
+    );
+    let torques = (0..20_400).map(|k| f64::from(k) / 1013.0).map(|t| {
+        let [_, velocity, acceleration] = motion(t);
+        (t, 2.0 * acceleration + 3.0 * velocity)
+    });
+    let torques = text("tau", torques);
+    let log = joined(
+        ("q.csv", positions.as_bytes()),
+        ("i.csv", torques.as_bytes()),
+    );
+    let log = log.unwrap_or_else(|error| panic!("{error}"));
+    let mut settings = Settings::for_sampling_frequency(1000.0, &EMPS.info());
+    settings.decimation = 20;
+    let dataset = Dataset {
+        runs: std::slice::from_ref(&log),
+        validation: &[],
+        true_values: None,
+    };
+    let result =
+        identify(&EMPS, &dataset, &settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"));
+    let told = result
+        .warnings
+        .iter()
+        .find(|warning| warning.contains("i.csv was interpolated linearly onto"));
+    assert!(
+        told.is_some_and(|told| told.starts_with(log.name())),
+        "{:?}",
+        result.warnings
+    );
+    let viscous = &result.estimates[0]
+        .parameters
+        .iter()
+        .find(|own| own.name.starts_with("fv"));
+    let viscous = viscous.expect("viscous friction").value;
+    assert!((viscous - 3.0).abs() < 0.01, "{viscous}");
+}

@@ -1,0 +1,71 @@
+//! Parquet files larger than what is kept in memory: an allocator counts what is allocated at a time.
+
+#[path = "common/parquet.rs"]
+mod parquet_file;
+
+use std::fs::File;
+
+use overact_identification::{Gain, Mapping, Time, data::read};
+use parquet::file::properties::WriterProperties;
+use parquet_file::{Cells, write_into};
+use peak_alloc::PeakAlloc;
+
+#[global_allocator]
+static ALLOCATOR: PeakAlloc = PeakAlloc;
+
+/// More than are kept in memory.
+const SAMPLES: u32 = 700_000;
+
+#[test]
+fn a_large_file_stays_on_the_disk() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("large.parquet");
+    let schema = "message log { required double t; required double q; required float tau; }";
+    {
+        let numbers = |scale: f64| -> Vec<f64> {
+            let all = 0..SAMPLES;
+            all.map(|k| f64::from(k) / scale).collect()
+        };
+        let torques: Vec<f32> = (0..SAMPLES).map(|k| (k % 1000) as f32 / 8.0).collect();
+        let columns = [
+            Cells::Double(&numbers(1000.0)),
+            Cells::Double(&numbers(64.0)),
+            Cells::Float(&torques),
+        ];
+        let output = File::create(&path).expect("a file");
+        let properties = WriterProperties::builder().set_dictionary_enabled(false);
+        // All rows are in one group, as writers make it of a million rows and less.
+        write_into(output, properties.build(), schema, &columns, usize::MAX);
+    }
+    let mapping = Mapping {
+        time: Time::Column(String::from("t")),
+        positions: vec![String::from("q")],
+        torques: vec![String::from("tau")],
+        velocities: Vec::new(),
+        position_scale: vec![1.0],
+        position_offset: Vec::new(),
+        torque_gain: vec![Gain::Value(1.0)],
+        transmission: Vec::new(),
+    };
+    let log = read(&path, &mapping, false).unwrap_or_else(|error| panic!("{error}"));
+    assert!(!log.in_memory());
+    ALLOCATOR.reset_peak_usage();
+    let before = ALLOCATOR.current_usage_as_mb();
+    // Twice, as filters and checks go through a run again and again.
+    for _ in 0..2 {
+        let mut reader = log.reader().expect("a reader");
+        let mut sample = 0_u32;
+        while let Some(block) = reader.next().expect("a block") {
+            for (position, torque) in block.positions.iter().zip(&block.torques) {
+                assert_eq!(*position, f64::from(sample) / 64.0);
+                assert_eq!(*torque, f64::from(sample % 1000) / 8.0);
+                sample += 1;
+            }
+        }
+        assert_eq!(sample, SAMPLES);
+    }
+    let most = ALLOCATOR.peak_usage_as_mb() - before;
+    println!("at most {most:.1} MB more than before were in memory at a time");
+    // All numbers of the file take 14 MB.
+    assert!(most < 4.0, "{most} MB");
+}
