@@ -125,6 +125,7 @@ impl Contract<'_> {
         self.check_lengths(function, &inputs, width, &ask)?;
         self.check_sharing(function, &inputs, width, &ask)?;
         self.check_numbers(function, &inputs, width, &ask);
+        self.check_masses(function, &inputs, width, &ask);
         self.check_poses(function, &inputs, width, &ask)
     }
 
@@ -238,6 +239,31 @@ impl Contract<'_> {
             inputs[0][0] = f64::INFINITY;
             let _ = ask(&inputs, width * SAMPLES, "everything wrong");
         }
+    }
+
+    /// Bodies without mass are refused where masses are divided by.
+    fn check_masses(
+        &self,
+        function: Function,
+        inputs: &[Vec<f64>],
+        width: usize,
+        ask: &impl Fn(&[Vec<f64>], usize, &str) -> Answer,
+    ) {
+        if function != Function::ForwardDynamics {
+            return;
+        }
+        let mut inputs = inputs.to_vec();
+        let parameters = function
+            .inputs()
+            .iter()
+            .position(|i| *i == Input::Parameters);
+        inputs[parameters.expect("parameters")].fill(0.0);
+        let answer = ask(&inputs, width * SAMPLES, "no masses");
+        let error = Err(SampleError {
+            sample: 0,
+            error: Error::MassMatrix,
+        });
+        assert_eq!(answer, error, "{}", self.stem);
     }
 
     /// Poses out of reach, singular ones, and quaternions of any length.
