@@ -1,49 +1,18 @@
 //! Files of one run with clocks of their own: one is interpolated onto the times of the other.
 
 mod common;
-#[path = "common/parquet.rs"]
-mod parquet_file;
-
-use std::{fs, path::Path};
+#[path = "common/drive.rs"]
+mod drive;
 
 use common::EMPS;
+use drive::{joined, loaded};
 use overact::Model;
-use overact_identification::{Dataset, Error, Log, Mapping, Settings, Time, data::read, identify};
-use parquet_file::{Cells, written};
-
-/// A mapping of one drive with its time in `t`.
-fn mapping(position: &str, torque: &str) -> Mapping {
-    Mapping {
-        time: Time::Column(String::from("t")),
-        positions: vec![position.to_owned()],
-        torques: vec![torque.to_owned()],
-        ..Mapping::for_robot(&EMPS.info())
-    }
-}
-
-/// Reads `q` of a file and `tau` of another one.
-fn joined(first: (&str, &[u8]), second: (&str, &[u8])) -> Result<Log, String> {
-    let folder = tempfile::tempdir().expect("a folder");
-    let prefix = format!("{}/", folder.path().display());
-    for (name, content) in [first, second] {
-        fs::write(folder.path().join(name), content).expect("written");
-    }
-    let path = format!("{prefix}{}+{prefix}{}", first.0, second.0);
-    let log = read(Path::new(&path), &mapping("q", "tau"), false);
-    let log = log.map_err(|error: Error| error.to_string().replace(&prefix, ""))?;
-    // The folder goes: what is kept in memory only is enough here.
-    assert!(log.in_memory());
-    Ok(log)
-}
+use overact_identification::{Dataset, Log, Settings, identify};
 
 /// A text of times and values.
 fn text(name: &str, rows: impl Iterator<Item = (f64, f64)>) -> String {
     let rows = rows.map(|(time, value)| format!("{time},{value}\n"));
     format!("t,{name}\n{}", rows.collect::<String>())
-}
-
-fn loaded(log: &Log) -> (Vec<f64>, Vec<f64>) {
-    log.load().unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Fails unless torques are 3 t - 1 where positions are the times.
@@ -85,13 +54,6 @@ fn a_slower_file_is_interpolated_onto_the_times_of_the_first() {
         note.ends_with("51 of its 1001 samples, outside of the others' times, are left out"),
         "{note}"
     );
-    // The same numbers from Parquet.
-    let time: Vec<f64> = times.collect();
-    let torque: Vec<f64> = time.iter().map(|t| 3.0 * t - 1.0).collect();
-    let schema = "message log { required double t; required double tau; }";
-    let file = written(schema, &[Cells::Double(&time), Cells::Double(&torque)]);
-    let same = joined(("q.csv", positions.as_bytes()), ("i.parquet", &file));
-    assert_eq!(loaded(&same.expect("a log")), loaded(&log));
 }
 
 #[test]
@@ -126,36 +88,6 @@ fn files_with_one_clock_are_joined_sample_by_sample() {
     assert_eq!(log.note(), None);
     let (positions, torques) = loaded(&log);
     assert_eq!(positions, torques);
-}
-
-#[test]
-fn instants_of_two_files_count_from_the_same_second() {
-    // The second file begins in another second, 20 ms later.
-    let start = 1_700_000_000_990_000_i64;
-    let first: Vec<i64> = (0..100).map(|k| start + 1000 * k).collect();
-    let second: Vec<i64> = (0..100).map(|k| start + 20_000 + 500 * k).collect();
-    let numbers =
-        |times: &[i64]| -> Vec<f64> { times.iter().map(|time| (time - start) as f64).collect() };
-    let schema = |name: &str| {
-        format!(
-            "message log {{ required int64 t (TIMESTAMP(MICROS, false)); required double {name}; }}"
-        )
-    };
-    let file = |name: &str, times: &[i64]| {
-        written(
-            &schema(name),
-            &[Cells::Long(times), Cells::Double(&numbers(times))],
-        )
-    };
-    let log = joined(
-        ("q.parquet", &file("q", &first)),
-        ("i.parquet", &file("tau", &second)),
-    );
-    let (positions, torques) = loaded(&log.unwrap_or_else(|error| panic!("{error}")));
-    // From 20 ms to 69 ms.
-    assert_eq!((positions[0], positions.len()), (20_000.0, 50));
-    let differs = |(q, tau): (&f64, &f64)| (q - tau).abs() > 1e-6;
-    assert!(!positions.iter().zip(&torques).any(differs));
 }
 
 #[test]
@@ -202,38 +134,6 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
         broken.expect_err("no number"),
         "i.csv:3: column `tau`: `x` is not a number"
     );
-}
-
-#[test]
-fn large_files_are_joined_as_small_ones_are() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let samples = 600_000_u32;
-    let times = |rate: f64, start: f64| -> Vec<f64> {
-        let all = 0..samples;
-        all.map(|k| start + f64::from(k) / rate).collect()
-    };
-    let (first, second) = (times(1000.0, 0.0), times(1010.0, 0.25));
-    let torques: Vec<f64> = second.iter().map(|t| 3.0 * t - 1.0).collect();
-    for (name, column, time, values) in [
-        ("q.parquet", "q", &first, &first),
-        ("i.parquet", "tau", &second, &torques),
-    ] {
-        let schema = format!("message log {{ required double t; required double {column}; }}");
-        let file = written(&schema, &[Cells::Double(time), Cells::Double(values)]);
-        fs::write(folder.path().join(name), file).expect("written");
-    }
-    let prefix = folder.path().display();
-    let path = format!("{prefix}/q.parquet+{prefix}/i.parquet");
-    let log = read(Path::new(&path), &mapping("q", "tau"), false);
-    let log = log.unwrap_or_else(|error| panic!("{error}"));
-    assert!(!log.in_memory());
-    // Up to 594.3 s.
-    assert_eq!(loaded(&log).0.len(), log.samples());
-    assert_eq!(loaded(&log).0[0], 0.25);
-    let (times, torques) = loaded(&log);
-    let off = |(time, torque): (&f64, &f64)| (torque - (3.0 * time - 1.0)).abs() > 1e-9;
-    assert!(!times.iter().zip(&torques).any(off));
-    assert!(log.samples() > 593_000);
 }
 
 #[test]

@@ -2,72 +2,23 @@
 //! Python has them. The same numbers come from a Parquet file as from a text.
 
 mod common;
+#[path = "common/drive.rs"]
+mod drive;
+#[path = "common/parquet_drive.rs"]
+mod parquet_drive;
 #[path = "common/parquet.rs"]
 mod parquet_file;
 
-use std::{fs, path::Path, process::Command};
+use std::process::Command;
 
-use common::EMPS;
-use overact::Model;
-use overact_identification::{Error, Gain, Log, Mapping, Time, data::read};
-use overact_tier::by_tier;
+use drive::{numbers, run, timed, untimed};
+use overact_identification::{Mapping, Time, data::read};
 use parquet::{
     basic::{Compression, GzipLevel, ZstdLevel},
     file::properties::{WriterProperties, WriterVersion},
 };
+use parquet_drive::{SCHEMA, log, samples};
 use parquet_file::{Cells, written, written_with};
-
-/// A mapping of one drive with its time in `t`.
-fn timed(position: &str, torque: &str) -> Mapping {
-    Mapping {
-        time: Time::Column(String::from("t")),
-        positions: vec![position.to_owned()],
-        torques: vec![torque.to_owned()],
-        ..Mapping::for_robot(&EMPS.info())
-    }
-}
-
-/// The same at 10 Hz.
-fn untimed(position: &str, torque: &str) -> Mapping {
-    Mapping {
-        time: Time::Frequency(10.0),
-        ..timed(position, torque)
-    }
-}
-
-/// Reads the run `name` of these files.
-fn run(name: &str, files: &[(&str, &[u8])], mapping: &Mapping) -> Result<Log, String> {
-    let folder = tempfile::tempdir().expect("a folder");
-    for (name, content) in files {
-        fs::write(folder.path().join(name), content).expect("written");
-    }
-    let prefix = format!("{}/", folder.path().display());
-    let path = name.split('+').map(|part| format!("{prefix}{part}"));
-    let path = path.collect::<Vec<_>>().join("+");
-    let log = read(Path::new(&path), mapping, false);
-    log.map_err(|error: Error| error.to_string().replace(&prefix, ""))
-}
-
-fn log(content: &[u8], mapping: &Mapping) -> Result<Log, String> {
-    run("a.parquet", &[("a.parquet", content)], mapping)
-}
-
-/// Positions, torques and the sampling frequency.
-fn numbers(log: Result<Log, String>) -> (Vec<f64>, Vec<f64>, f64) {
-    let log = log.unwrap_or_else(|error| panic!("{error}"));
-    let (positions, torques) = log.load().unwrap_or_else(|error| panic!("{error}"));
-    (positions, torques, log.sampling_frequency())
-}
-
-/// Samples at 100 Hz with numbers of all digits, some of which return.
-fn samples() -> [Vec<f64>; 3] {
-    let all = 0..1000_u32;
-    [
-        all.clone().map(|k| f64::from(k) / 100.0).collect(),
-        all.clone().map(|k| (f64::from(k) / 7.0).sin()).collect(),
-        all.map(|k| f64::from(k % 16) / 3.0).collect(),
-    ]
-}
 
 /// The same samples as a text.
 fn text([time, position, torque]: &[Vec<f64>; 3]) -> String {
@@ -75,8 +26,6 @@ fn text([time, position, torque]: &[Vec<f64>; 3]) -> String {
     let rows = rows.map(|((t, q), tau)| format!("{t},{q},{tau}\n"));
     format!("t,q,tau\n{}", rows.collect::<String>())
 }
-
-const SCHEMA: &str = "message log { required double t; optional double q; required double tau; }";
 
 #[test]
 fn the_same_numbers_as_from_a_text() {
@@ -250,210 +199,6 @@ fn durations_are_told_from_the_schema_of_arrow() {
         let (_, of_d, frequency) = read_as(arrow);
         assert_eq!((of_d, frequency), (vec![1.0, 2.0, 3.0], 5e-7), "{arrow}");
     }
-}
-
-#[test]
-fn cells_without_numbers_are_located() {
-    let file = written(
-        "message log { required double t; optional double q; optional float tau; }",
-        &[
-            Cells::Double(&[0.0, 0.1, 0.2, 0.3]),
-            Cells::Optional(&[Some(1.0), None, Some(f64::NAN), Some(4.0)]),
-            Cells::Maybe(&[Some(1.0), None, Some(3.0), Some(f32::INFINITY)]),
-        ],
-    );
-    assert_eq!(
-        log(&file, &timed("q", "tau")).expect_err("nulls"),
-        "a.parquet: `q`: sample 1 has no value (null)\n\
-         a.parquet: `tau`: sample 1 has no value (null)\n\
-         a.parquet: `q`: sample 2 is not a finite number\n\
-         a.parquet: `tau`: sample 3 is not a finite number"
-    );
-    // A file without any value in a column, of which only the first cells are told.
-    let nothing = vec![None; 5000];
-    let file = written(
-        "message log { optional double q; }",
-        &[Cells::Optional(&nothing)],
-    );
-    let told = log(&file, &untimed("q", "q")).expect_err("nulls");
-    assert_eq!(told.lines().count(), 20);
-}
-
-#[test]
-fn columns_that_are_no_numbers_are_named() {
-    let file = written(
-        "message log {
-            required double q; required binary note (STRING); required int32 on (DATE);
-            required group pose { required double x; required double y; }
-            required fixed_len_byte_array(2) half (FLOAT16); required double tau; }",
-        &[
-            Cells::Double(&[1.0, 2.0]),
-            Cells::Text(&["a", "b"]),
-            Cells::Int(&[0, 1]),
-            Cells::Double(&[1.0, 2.0]),
-            Cells::Double(&[1.0, 2.0]),
-            Cells::Fixed(&["ab", "cd"]),
-            Cells::Double(&[3.0, 4.0]),
-        ],
-    );
-    // They may stand beside the columns that are read, and count.
-    assert_eq!(numbers(log(&file, &untimed("q", "tau"))).1, [3.0, 4.0]);
-    assert_eq!(numbers(log(&file, &untimed("q", "$6"))).1, [3.0, 4.0]);
-    let way_out = "help: write a column of numbers (float64) for each signal and each actuator";
-    for (name, what) in [
-        ("note", "column `note` holds texts or bytes, not numbers"),
-        ("$2", "column `note` holds texts or bytes, not numbers"),
-        ("2*note", "column `note` holds texts or bytes, not numbers"),
-        ("on", "column `on` holds days, not numbers"),
-        ("pose", "column `pose` is nested (a list or a structure)"),
-        (
-            "half",
-            "column `half` holds numbers of 16 bits, which are not read",
-        ),
-    ] {
-        assert_eq!(
-            log(&file, &untimed("q", name)).expect_err(name),
-            format!("a.parquet: {what}\n  {way_out}")
-        );
-    }
-    assert_eq!(
-        log(&file, &untimed("q", "tua")).expect_err("missing"),
-        "a.parquet: there is no column `tua`; the file has `q`, `note`, `on`, `pose`, `half`, `tau`\n  \
-         help: did you mean `tau` for `tua`?"
-    );
-    let gain = Mapping {
-        torque_gain: vec![Gain::Variable(String::from("gtau"))],
-        ..untimed("q", "tau")
-    };
-    assert_eq!(
-        log(&file, &gain).expect_err("no variable"),
-        "a.parquet: the torque gain is the variable `gtau`, but a Parquet file has no variables\n  help: give the \
-         gain as a number"
-    );
-    let twice = written(
-        "message log { required double q; required double q; }",
-        &[Cells::Double(&[1.0, 2.0]), Cells::Double(&[1.0, 2.0])],
-    );
-    assert!(
-        log(&twice, &untimed("q", "$2"))
-            .expect_err("twice")
-            .starts_with("a.parquet: the file has 2 columns `q`\n  help: ")
-    );
-}
-
-#[test]
-fn files_that_are_cut_off_or_empty_are_refused() {
-    let [time, position, torque] = &samples().map(|all| all[..50].to_vec());
-    let position: Vec<Option<f64>> = position.iter().copied().map(Some).collect();
-    let columns = [
-        Cells::Double(time),
-        Cells::Optional(&position),
-        Cells::Double(torque),
-    ];
-    let packed = WriterProperties::builder().set_compression(Compression::SNAPPY);
-    let file = written_with(packed.build(), SCHEMA, &columns, 20);
-    let mapping = timed("q", "tau");
-    for length in 4..file.len() {
-        let told = log(&file[..length], &mapping).expect_err("cut off");
-        assert!(
-            told.starts_with("a.parquet: the file starts as Parquet does, but can't be read: "),
-            "{told}"
-        );
-        assert!(
-            told.contains("\n  help: if it was copied or its writer was stopped, "),
-            "{told}"
-        );
-        assert!(
-            !told.contains(|c: char| c.is_control() && c != '\n'),
-            "{told:?}"
-        );
-    }
-    // A middle that is lost: the pages are somewhere else than the file says.
-    let half = [&file[..4], &file[file.len() / 2..]].concat();
-    assert!(log(&half, &mapping).is_err());
-    assert_eq!(
-        log(&written(SCHEMA, &[]), &mapping).expect_err("no rows"),
-        "a.parquet: the run is empty"
-    );
-    assert_eq!(
-        log(&written("message log { }", &[]), &mapping).expect_err("no columns"),
-        "a.parquet: there are no columns `t`, `q`, `tau`; the file has none\n  help: name the columns in the mapping"
-    );
-    assert_eq!(
-        log(b"PARE and more", &mapping).expect_err("encrypted"),
-        "a.parquet: the file is encrypted Parquet, which is not read\n  help: write it without encryption"
-    );
-}
-
-#[test]
-fn files_with_any_wrong_byte_are_read_or_refused() {
-    let [time, position, torque] = &samples().map(|all| all[..12].to_vec());
-    let position: Vec<Option<f64>> = position.iter().copied().map(Some).collect();
-    let columns = [
-        Cells::Double(time),
-        Cells::Optional(&position),
-        Cells::Double(torque),
-    ];
-    let mapping = timed("q", "tau");
-    let (mut refused, mut all) = (0, 0);
-    for (packed, version, has_dictionary) in [
-        (Compression::SNAPPY, WriterVersion::PARQUET_1_0, true),
-        (Compression::UNCOMPRESSED, WriterVersion::PARQUET_2_0, false),
-        (
-            Compression::ZSTD(ZstdLevel::default()),
-            WriterVersion::PARQUET_2_0,
-            true,
-        ),
-    ] {
-        let properties = WriterProperties::builder()
-            .set_compression(packed)
-            .set_writer_version(version)
-            .set_dictionary_enabled(has_dictionary);
-        let file = written_with(properties.build(), SCHEMA, &columns, 12);
-        let flips = by_tier([&[0x80][..], &[0x01, 0x80, 0xff]]);
-        let places = 4..file.len();
-        for (place, flip) in places.flat_map(|place| flips.iter().map(move |flip| (place, flip))) {
-            let mut broken = file.clone();
-            broken[place] ^= flip;
-            all += 1;
-            if let Err(told) = log(&broken, &mapping) {
-                refused += 1;
-                assert!(told.starts_with("a.parquet: "), "{told}");
-                assert!(
-                    !told.contains(|c: char| c.is_control() && c != '\n'),
-                    "{told:?}"
-                );
-            }
-        }
-    }
-    println!("{refused} of {all} files are refused");
-    assert!(refused > all / 3, "{refused} of {all}");
-}
-
-#[test]
-fn files_of_both_kinds_are_joined() {
-    let positions = written(
-        "message log { required double b; required double a; }",
-        &[
-            Cells::Double(&[2.0, 4.0, 6.0]),
-            Cells::Double(&[1.0, 3.0, 5.0]),
-        ],
-    );
-    let torques = b"a;c\n0,5;7\n1,5;8\n2,5;9\n";
-    let files: [(&str, &[u8]); 2] = [("pos.parquet", &positions), ("torque.csv", torques)];
-    let name = "pos.parquet+torque.csv";
-    let joined = |position: &str, torque: &str| run(name, &files, &untimed(position, torque));
-    let (positions, torques, _) = numbers(joined("b", "c"));
-    assert_eq!(
-        (positions, torques),
-        (vec![2.0, 4.0, 6.0], vec![7.0, 8.0, 9.0])
-    );
-    assert_eq!(numbers(joined("$2", "file2.a")).1, [0.5, 1.5, 2.5]);
-    assert!(
-        joined("a", "c")
-            .expect_err("both have it")
-            .contains("call it `file1.a` or `file2.a`")
-    );
 }
 
 /// Files that PyArrow and Polars themselves write, and what both refuse to be.

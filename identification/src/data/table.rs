@@ -95,7 +95,6 @@ impl Table {
         match self {
             // Cells of a text are looked at one by one; other arrays than those of numbers are left out.
             Self::Text(_) | Self::Arrays(_) => Ok(()),
-            #[cfg(feature = "parquet")]
             Self::Parquet(parquet) => parquet.check(place),
         }
     }
@@ -105,7 +104,6 @@ impl Table {
     pub(super) const fn origin(&self) -> Option<i64> {
         match self {
             Self::Text(_) | Self::Arrays(_) => None,
-            #[cfg(feature = "parquet")]
             Self::Parquet(parquet) => parquet.origin(),
         }
     }
