@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 #[group(id = "runs")]
 pub(super) struct Arguments {
-    /// Logs (CSV and other text, MATLAB's .mat up to version 7, NumPy's .npz, Parquet if built with it),
+    /// Logs (CSV and other text, MATLAB's .mat up to version 7, NumPy's .npz, Parquet),
     /// `a.csv+b.csv` one run whose columns stand in two files; without any, the virtual experiment is made
     #[arg(long, value_name = "LOG", num_args = 1..)]
     data: Vec<PathBuf>,

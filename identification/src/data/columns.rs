@@ -125,7 +125,6 @@ impl<'a> Columns<'a> {
             Some(place) => Some(*place),
             None => self.numbered(name)?,
         };
-        #[cfg(feature = "parquet")]
         if let Some((file, place)) = place {
             self.tables[file].check(place)?;
         }

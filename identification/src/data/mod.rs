@@ -2,8 +2,8 @@
 //! velocities where they were measured;
 //! a [`Mapping`] says which columns of a file they are and what turns them into SI units.
 //!
-//! Text, MATLAB's `.mat` files up to version 7, NumPy's files and with the feature `parquet` Parquet are read,
-//! told apart by their first bytes. Text may separate its columns by commas, semicolons, tabs or blanks, have decimal commas, a header, names in a
+//! Text, MATLAB's `.mat` files up to version 7, NumPy's files and Parquet are read, told apart by their first bytes.
+//! Text may separate its columns by commas, semicolons, tabs or blanks, have decimal commas, a header, names in a
 //! comment or none. Readers report every missing column, every cell that is not a number (up to twenty)
 //! and the first step of a time that is not uniform. A large text or Parquet file stays on the disk and is read block
 //! by block whenever its run is gone through.
@@ -20,7 +20,6 @@ mod log;
 mod mapping;
 mod mat_file;
 mod numpy;
-#[cfg(feature = "parquet")]
 mod parquet_file;
 pub(crate) mod periods;
 mod problems;

@@ -14,7 +14,6 @@ const LARGEST_NUMBER_OF_NAMES: usize = 40;
 const LONGEST_SHOWN: usize = 40;
 
 /// Characters of a library's reason that are shown, at most.
-#[cfg(feature = "parquet")]
 const LONGEST_REASON: usize = 200;
 
 /// A piece of a file as it can be shown in a terminal: short, and without control characters.
@@ -31,7 +30,6 @@ pub(super) fn shown(piece: &str) -> String {
 }
 
 /// What a library says of a file, as it can be shown in a terminal.
-#[cfg(feature = "parquet")]
 pub(super) fn legible(why: &str) -> String {
     let letters = why.chars().take(LONGEST_REASON);
     letters

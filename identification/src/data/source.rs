@@ -63,7 +63,6 @@ impl Files {
             }
         }
         Error::check(problems)?;
-        #[cfg(feature = "parquet")]
         if let Some(origin) = tables.iter().find_map(Table::origin) {
             tables.iter_mut().for_each(|table| table.set_origin(origin));
         }

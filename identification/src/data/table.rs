@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-#[cfg(feature = "parquet")]
-use super::parquet_file::{self, Parquet};
 use super::{
     arrays::{self, Arrays},
     format::{self, Format},
     mat_file, numpy,
+    parquet_file::{self, Parquet},
     problems::{Existing, display_name},
     text::{self, Text},
 };
@@ -19,7 +18,6 @@ pub(super) enum Table {
     /// Lines of numbers, which are read again and again.
     Text(Text),
     /// Columns that are read again and again, page by page.
-    #[cfg(feature = "parquet")]
     Parquet(Parquet),
     /// Arrays in memory.
     Arrays(Arrays),
@@ -35,14 +33,7 @@ impl Table {
         Ok(match format::recognise(&file, path)? {
             Format::Text => Self::Text(Text::open(file, path)?),
             Format::Mat => Self::Arrays(mat_file::open(file, path)?),
-            #[cfg(feature = "parquet")]
             Format::Parquet => Self::Parquet(Parquet::open(file, path)?),
-            #[cfg(not(feature = "parquet"))]
-            Format::Parquet => {
-                let message = "the file is Parquet, which overact was built without";
-                let help = "build it with the feature `parquet`, or export CSV";
-                return Err(Problem::new(message).file(file).help(help).into());
-            }
             Format::Array => Self::Arrays(numpy::open_array(file, path)?),
             Format::Archive => Self::Arrays(numpy::open_archive(file, path)?),
         })
@@ -52,7 +43,6 @@ impl Table {
     pub(super) fn file(&self) -> &str {
         match self {
             Self::Text(text) => text.file(),
-            #[cfg(feature = "parquet")]
             Self::Parquet(parquet) => parquet.file(),
             Self::Arrays(arrays) => arrays.file(),
         }
@@ -67,7 +57,6 @@ impl Table {
     pub(super) fn columns(&self) -> usize {
         match self {
             Self::Text(text) => text.columns(),
-            #[cfg(feature = "parquet")]
             Self::Parquet(parquet) => parquet.columns(),
             Self::Arrays(arrays) => arrays.columns(),
         }
@@ -80,7 +69,6 @@ impl Table {
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
         match self {
             Self::Text(text) => text.find(name),
-            #[cfg(feature = "parquet")]
             Self::Parquet(parquet) => parquet.find(name),
             Self::Arrays(arrays) => Ok(arrays.find(name)),
         }
@@ -90,7 +78,6 @@ impl Table {
     ///
     /// # Errors
     /// What it holds in their place.
-    #[cfg(feature = "parquet")]
     pub(super) fn check(&self, place: usize) -> Result<(), Problem> {
         match self {
             // Cells of a text are looked at one by one; other arrays than those of numbers are left out.
@@ -100,7 +87,6 @@ impl Table {
     }
 
     /// What the instants of a file are counted from, s since 1970, where it has instants.
-    #[cfg(feature = "parquet")]
     pub(super) const fn origin(&self) -> Option<i64> {
         match self {
             Self::Text(_) | Self::Arrays(_) => None,
@@ -109,7 +95,6 @@ impl Table {
     }
 
     /// Says what instants are counted from.
-    #[cfg(feature = "parquet")]
     pub(super) fn set_origin(&mut self, origin: i64) {
         if let Self::Parquet(parquet) = self {
             parquet.set_origin(origin);
@@ -120,7 +105,6 @@ impl Table {
     pub(super) const fn what(&self) -> &'static str {
         match self {
             Self::Text(_) => "a text",
-            #[cfg(feature = "parquet")]
             Self::Parquet(_) => "a Parquet file",
             Self::Arrays(_) => "a file of arrays",
         }
@@ -130,7 +114,6 @@ impl Table {
     pub(super) fn variable(&self, name: &str) -> Option<&[f64]> {
         match self {
             Self::Text(_) => None,
-            #[cfg(feature = "parquet")]
             Self::Parquet(_) => None,
             Self::Arrays(arrays) => arrays.values(name),
         }
@@ -140,7 +123,6 @@ impl Table {
     pub(super) fn existing(&self) -> Existing<'_> {
         match self {
             Self::Text(text) => text.existing(),
-            #[cfg(feature = "parquet")]
             Self::Parquet(parquet) => parquet.existing(),
             Self::Arrays(arrays) => arrays.existing(),
         }
@@ -150,7 +132,6 @@ impl Table {
     pub(super) fn first_column(&self, name: &str) -> Option<&str> {
         match self {
             Self::Text(_) => None,
-            #[cfg(feature = "parquet")]
             Self::Parquet(_) => None,
             Self::Arrays(arrays) => arrays.first_column(name),
         }
@@ -163,7 +144,6 @@ impl Table {
     pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
         Ok(match self {
             Self::Text(text) => Rows::Text(text.rows(wanted)?),
-            #[cfg(feature = "parquet")]
             Self::Parquet(parquet) => Rows::Parquet(parquet.rows(wanted)?),
             Self::Arrays(arrays) => Rows::Arrays(arrays.rows(wanted)?),
         })
@@ -174,7 +154,6 @@ impl Table {
 #[derive(Debug)]
 pub(super) enum Rows<'a> {
     Text(text::Rows<'a>),
-    #[cfg(feature = "parquet")]
     Parquet(parquet_file::Rows<'a>),
     Arrays(arrays::Rows<'a>),
 }
@@ -187,7 +166,6 @@ impl Rows<'_> {
     pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         match self {
             Self::Text(rows) => rows.next(values),
-            #[cfg(feature = "parquet")]
             Self::Parquet(rows) => rows.next(values),
             Self::Arrays(rows) => rows.next(values),
         }
@@ -198,7 +176,6 @@ impl Rows<'_> {
         match self {
             Self::Text(rows) => Some(rows.line()),
             Self::Arrays(_) => None,
-            #[cfg(feature = "parquet")]
             Self::Parquet(_) => None,
         }
     }
@@ -207,7 +184,6 @@ impl Rows<'_> {
     pub(super) const fn is_broken(&self) -> bool {
         match self {
             Self::Text(rows) => rows.is_broken(),
-            #[cfg(feature = "parquet")]
             Self::Parquet(rows) => rows.is_broken(),
             Self::Arrays(_) => false,
         }
@@ -217,7 +193,6 @@ impl Rows<'_> {
     pub(super) fn bytes(&self) -> u64 {
         match self {
             Self::Text(rows) => rows.bytes(),
-            #[cfg(feature = "parquet")]
             Self::Parquet(rows) => rows.bytes(),
             Self::Arrays(_) => 0,
         }

@@ -6,6 +6,7 @@
 
 mod durations;
 mod kind;
+mod packed;
 mod pages;
 mod rows;
 

@@ -1,17 +1,20 @@
-//! The pages of a column, checked for what the library takes for granted.
+//! The pages of a column, unpacked and checked for what the library takes for granted.
 
 use std::{fs::File, sync::Arc};
 
 use parquet::{
-    basic::Encoding,
+    basic::{Compression, Encoding},
     column::page::{Page, PageMetadata, PageReader},
     errors::{ParquetError, Result},
     file::{metadata::ColumnChunkMetaData, serialized_reader::SerializedPageReader},
 };
 
+use super::packed::Packing;
+
 /// The pages of a column within a row group.
 pub(super) struct Pages {
     pages: SerializedPageReader<File>,
+    packing: Option<Packing>,
     has_dictionary: bool,
 }
 
@@ -21,8 +24,16 @@ impl Pages {
     /// # Errors
     /// A compression that the library does not know.
     pub(super) fn new(input: &Arc<File>, chunk: &ColumnChunkMetaData, rows: usize) -> Result<Self> {
+        let packing = Packing::of(chunk);
+        let mut chunk = chunk.clone();
+        if packing.is_some() {
+            // The library is to give the bytes of the pages as they are.
+            let plain = chunk.into_builder();
+            chunk = plain.set_compression(Compression::UNCOMPRESSED).build()?;
+        }
         Ok(Self {
-            pages: SerializedPageReader::new(Arc::clone(input), chunk, rows, None)?,
+            pages: SerializedPageReader::new(Arc::clone(input), &chunk, rows, None)?,
+            packing,
             has_dictionary: false,
         })
     }
@@ -30,7 +41,10 @@ impl Pages {
 
 impl PageReader for Pages {
     fn get_next_page(&mut self) -> Result<Option<Page>> {
-        let page = self.pages.get_next_page()?;
+        let mut page = self.pages.get_next_page()?;
+        if let (Some(packing), Some(page)) = (self.packing, &mut page) {
+            packing.unpack(page)?;
+        }
         let encoding = match &page {
             Some(Page::DictionaryPage { .. }) => {
                 self.has_dictionary = true;

@@ -1,0 +1,204 @@
+//! Pages that are packed by gzip or Zstandard. They are unpacked here and not by the library, whose Zstandard takes
+//! a C compiler and as long to build as the library itself, and whose gzip would be the second one of overact.
+
+use std::io::Read;
+
+use libflate::gzip::MultiDecoder;
+use parquet::{
+    basic::Compression,
+    column::page::Page,
+    errors::{ParquetError, Result},
+    file::metadata::ColumnChunkMetaData,
+};
+use ruzstd::decoding::StreamingDecoder;
+
+/// How the pages of a column are packed, where the library does not unpack them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Method {
+    Gzip,
+    Zstandard,
+}
+
+/// The packing of a column's pages.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Packing {
+    method: Method,
+    /// Bytes of the whole column when it is unpacked.
+    most: u64,
+}
+
+impl Packing {
+    /// The packing of a column; none where the library undoes it, or there is none.
+    pub(super) fn of(chunk: &ColumnChunkMetaData) -> Option<Self> {
+        let method = match chunk.compression() {
+            Compression::GZIP(_) => Method::Gzip,
+            Compression::ZSTD(_) => Method::Zstandard,
+            _ => return None,
+        };
+        let most = u64::try_from(chunk.uncompressed_size()).unwrap_or(0);
+        Some(Self { method, most })
+    }
+
+    /// Unpacks a page that was read as if it were not packed.
+    ///
+    /// # Errors
+    /// Bytes that can't be unpacked, or that become more than the file says.
+    pub(super) fn unpack(self, page: &mut Page) -> Result<()> {
+        let (bytes, levels) = match page {
+            Page::DataPage { buf, .. } | Page::DictionaryPage { buf, .. } => (buf, 0),
+            Page::DataPageV2 {
+                is_compressed: false,
+                ..
+            } => return Ok(()),
+            Page::DataPageV2 {
+                buf,
+                def_levels_byte_len,
+                rep_levels_byte_len,
+                ..
+            } => (
+                buf,
+                def_levels_byte_len.saturating_add(*rep_levels_byte_len),
+            ),
+        };
+        // In a page of the second version the levels, which tell where values are missing, are never packed.
+        let split = bytes.split_at_checked(levels as usize);
+        let unpacked = split
+            .ok_or_else(|| String::from("a page is cut off"))
+            .and_then(|(levels, packed)| self.unpacked(levels, packed));
+        *bytes = unpacked.map_err(ParquetError::General)?.into();
+        Ok(())
+    }
+
+    /// A page's beginning, which is not packed, and behind it what is.
+    fn unpacked(self, beginning: &[u8], mut packed: &[u8]) -> Result<Vec<u8>, String> {
+        let mut page = beginning.to_vec();
+        let most = self.most + 1;
+        // A page without values may have no bytes, and one may have been packed piece by piece.
+        while !packed.is_empty() {
+            match self.method {
+                Method::Gzip => {
+                    let unpacking = MultiDecoder::new(&mut packed).map_err(broken)?;
+                    let unpacked = unpacking.take(most).read_to_end(&mut page);
+                    unpacked.map_err(broken)?;
+                }
+                Method::Zstandard => zstandard(&mut packed, most, &mut page)?,
+            }
+            if page.len() as u64 > self.most {
+                return Err(String::from("a page is larger than its column"));
+            }
+        }
+        Ok(page)
+    }
+}
+
+/// Unpacks a frame of Zstandard.
+fn zstandard(packed: &mut &[u8], most: u64, page: &mut Vec<u8>) -> Result<(), String> {
+    let mut frame = StreamingDecoder::new(packed).map_err(broken)?;
+    let unpacked = frame.by_ref().take(most).read_to_end(page);
+    unpacked.map_err(broken)?;
+    let frame = frame.into_frame_decoder();
+    let told = frame.get_checksum_from_data();
+    if told.is_some() && told != frame.get_calculated_checksum() {
+        return Err(broken("its checksum is another one"));
+    }
+    Ok(())
+}
+
+/// What is said of bytes that can't be unpacked.
+fn broken(why: impl std::fmt::Display) -> String {
+    format!("a page can't be unpacked: {why}")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use libflate::gzip::Encoder;
+    use parquet::{basic::Encoding, column::page::Page};
+    use ruzstd::encoding::{CompressionLevel, compress_to_vec};
+
+    use super::{Method, Packing};
+
+    fn gzip(bytes: &[u8]) -> Vec<u8> {
+        let mut packing = Encoder::new(Vec::new()).expect("an encoder");
+        packing.write_all(bytes).expect("packed");
+        packing.finish().into_result().expect("packed")
+    }
+
+    fn zstandard(bytes: &[u8]) -> Vec<u8> {
+        compress_to_vec(bytes, CompressionLevel::Fastest)
+    }
+
+    /// Both packings, and something packed by each.
+    fn both(most: u64, bytes: &[u8]) -> [(Packing, Vec<u8>); 2] {
+        let packing = |method| Packing { method, most };
+        [
+            (packing(Method::Gzip), gzip(bytes)),
+            (packing(Method::Zstandard), zstandard(bytes)),
+        ]
+    }
+
+    /// A page of the second version, whose levels take `levels` bytes.
+    fn page(content: Vec<u8>, levels: u32, is_compressed: bool) -> Page {
+        Page::DataPageV2 {
+            buf: content.into(),
+            num_values: 3,
+            encoding: Encoding::PLAIN,
+            num_nulls: 0,
+            num_rows: 3,
+            def_levels_byte_len: levels,
+            rep_levels_byte_len: 0,
+            is_compressed,
+            statistics: None,
+        }
+    }
+
+    #[test]
+    fn levels_of_a_page_are_not_packed() {
+        for (packing, packed) in both(12, b"0123456789") {
+            let mut own = page([b"ab", &packed[..]].concat(), 2, true);
+            assert!(packing.unpack(&mut own).is_ok());
+            assert_eq!(own.buffer().as_ref(), b"ab0123456789");
+            let mut plain = page(packed.clone(), 2, false);
+            assert!(packing.unpack(&mut plain).is_ok());
+            assert_eq!(plain.buffer().as_ref(), packed);
+            let told = packing.unpack(&mut page(vec![1], 2, true));
+            let told = told.expect_err("no levels").to_string();
+            assert!(told.ends_with("a page is cut off"), "{told}");
+        }
+    }
+
+    #[test]
+    fn pages_are_unpacked_piece_by_piece() {
+        for (packing, packed) in both(20, b"0123456789") {
+            let pieces = [&packed[..], &packed].concat();
+            let unpacked = packing.unpacked(b"", &pieces).expect("unpacked");
+            assert_eq!(unpacked, b"01234567890123456789");
+            assert_eq!(packing.unpacked(b"ab", b"").expect("no values"), b"ab");
+        }
+    }
+
+    #[test]
+    fn pages_that_cannot_be_right_are_refused() {
+        for (packing, packed) in both(9, b"0123456789") {
+            let told = packing.unpacked(b"", &packed).expect_err("too large");
+            assert_eq!(told, "a page is larger than its column");
+        }
+        for (packing, packed) in both(10, b"0123456789") {
+            assert!(packing.unpacked(b"", &packed).is_ok());
+            for length in 1..packed.len() {
+                let told = packing.unpacked(b"", &packed[..length]);
+                let told = told.expect_err("cut off");
+                assert!(told.starts_with("a page can't be unpacked: "), "{told}");
+            }
+            // Bytes from the end to the checksum; behind that of gzip stands the length.
+            let behind = match packing.method {
+                Method::Gzip => 8,
+                Method::Zstandard => 4,
+            };
+            let (mut wrong, checksum) = (packed.clone(), packed.len() - behind);
+            wrong[checksum] ^= 1;
+            assert!(packing.unpacked(b"", &wrong).is_err(), "{packing:?}");
+        }
+    }
+}
