@@ -136,8 +136,8 @@ impl<'a> Sheet<'a, '_> {
         let Some(motion) = self.robot.motion(twist, acceleration) else {
             return Vec::new();
         };
-        if let DynamicsBy::Bodies { at_ends } = self.selection.dynamics {
-            let forces = self.robot.summed_forces(&motion, &values, at_ends);
+        if self.selection.dynamics == DynamicsBy::Bodies {
+            let forces = self.robot.summed_forces(&motion, &values);
             return forces.unwrap_or_default();
         }
         let projection = self.robot.project_on_platform();
@@ -177,28 +177,9 @@ impl<'a> Sheet<'a, '_> {
         null_space(&jacobian, &seeds)
     }
 
-    /// M of given parameters.
+    /// M of given parameters, from bodies summed from the tips to the base.
     pub(super) fn mass_matrix(&mut self) -> Rows<'a> {
-        match self.selection.dynamics {
-            DynamicsBy::Parameters => self.derived_masses(),
-            DynamicsBy::Bodies { at_ends } => {
-                let values = self.parameter_values();
-                self.robot.masses(&values, at_ends).unwrap_or_default()
-            }
-        }
-    }
-
-    /// M = ∂Γ¹/∂v̇ at v = 0: Γ¹ is linear in v̇.
-    fn derived_masses(&mut self) -> Rows<'a> {
-        let (arena, dof) = (self.robot.arena, self.robot.mechanism.dof());
-        let acceleration = self.robot.inputs("acceleration", dof);
-        let twist = self.zeros();
-        let forces = self.projected_dynamics(&twist, &acceleration);
-        let derivative =
-            |force: &Expr<'a>, i: usize| force.derivative(arena.input_symbol("acceleration", i));
-        forces
-            .iter()
-            .map(|f| (0..dof).map(|i| derivative(f, i)).collect())
-            .collect()
+        let values = self.parameter_values();
+        self.robot.masses(&values).unwrap_or_default()
     }
 }

@@ -17,11 +17,7 @@ use crate::mechanism::TwistCoordinate;
 
 impl<'a> Robot<'a> {
     /// M of given parameters. `None` if a sine or cosine does not follow from the configuration.
-    pub(super) fn masses(
-        &self,
-        values: &[(BodyParameter, Expr<'a>)],
-        at_ends: bool,
-    ) -> Option<Rows<'a>> {
+    pub(super) fn masses(&self, values: &[(BodyParameter, Expr<'a>)]) -> Option<Rows<'a>> {
         let dof = self.mechanism.dof();
         let mut sum = vec![vec![self.arena.zero(); dof]; dof];
         let mut add = |part: &dyn Fn(usize, usize) -> Expr<'a>| {
@@ -45,8 +41,7 @@ impl<'a> Robot<'a> {
                 })
                 .collect();
             name_matrix(&masses, &format!("masses_{name}"));
-            let at_end = state.closure.as_ref();
-            let at_end = at_end.filter(|c| at_ends && c.feels_no_moment());
+            let at_end = state.closure.as_ref().filter(|c| c.feels_no_moment());
             match at_end {
                 Some(closure) => {
                     let tensor = closure.mass_at_end(&masses);

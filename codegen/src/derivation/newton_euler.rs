@@ -22,7 +22,6 @@ impl<'a> Robot<'a> {
         &self,
         motion: &RobotMotion<'a>,
         values: &[(BodyParameter, Expr<'a>)],
-        at_ends: bool,
     ) -> Option<Vec<Expr<'a>>> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
         for (index, leg) in self.mechanism.legs.iter().enumerate() {
@@ -33,8 +32,8 @@ impl<'a> Robot<'a> {
                 let _ = force.named(&joined(&[&what, &leg.name]));
             }
             let state = &self.legs[index];
-            let at_end = state.closure.as_ref();
-            let part = match at_end.filter(|c| at_ends && c.feels_no_moment()) {
+            let at_end = state.closure.as_ref().filter(|c| c.feels_no_moment());
+            let part = match at_end {
                 Some(closure) => closure.project_at_end(&self.twist, &forces),
                 None => self.combine(&state.rows, &forces),
             };

@@ -22,7 +22,7 @@ pub struct Selection {
     /// actuators have the joints as an input, which [`Function::ClosureError`](overact_core::Function::ClosureError) and
     /// [`Function::LegsJacobian`](overact_core::Function::LegsJacobian) serve to find.
     pub joints: JointsBy,
-    /// How forces and masses of several bodies are added up.
+    /// How the forces of several bodies are added up.
     pub dynamics: DynamicsBy,
 }
 
@@ -56,17 +56,13 @@ pub enum JointsBy {
     Newton,
 }
 
-/// In which of several equal forms mass matrix and inverse dynamics are written; which needs the fewest
-/// operations depends on the robot.
+/// In which of two equal forms the forces of given parameters are written; which needs fewer operations
+/// depends on the robot.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum DynamicsBy {
-    /// Parameter by parameter, as the identification model is; masses are derivatives of forces.
+    /// Parameter by parameter, as the identification model is.
     #[default]
     Parameters,
     /// Body by body, summed from the tips to the base.
-    Bodies {
-        /// Whether legs act on the platform at the points where they end, and not by the rows of their
-        /// reduced Jacobians.
-        at_ends: bool,
-    },
+    Bodies,
 }

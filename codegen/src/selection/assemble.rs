@@ -33,52 +33,75 @@ impl Assembler<'_> {
     }
 
     /// The function in that of its equal forms that needs the fewest operations: with or without combined
-    /// columns, and with bodies added up in one way or another.
+    /// columns, and with forces by parameters or by bodies. Both are counted as they are derived; searched
+    /// are those that a search could still make the better one.
     ///
     /// # Errors
     /// See [`Underivable`].
     pub fn cheapest(&self, function: Function, from: MotionInput) -> Result<Program, Underivable> {
-        let mut best = self.program(function, from)?;
-        for selection in &self.other_forms(function) {
-            let other = Assembler { selection, ..*self }.program(function, from)?;
-            let (of_other, of_best) = (other.cost(), best.cost());
-            let is_better = of_other.operations() < of_best.operations()
-                && of_other.trigonometric_pairs <= of_best.trigonometric_pairs
-                && of_other.square_roots <= of_best.square_roots;
-            if is_better {
-                best = other;
+        let Some(other) = self.other_form(function) else {
+            return self.program(function, from);
+        };
+        let arenas = [Arena::new(), Arena::new()];
+        let mut forms = Vec::new();
+        for (arena, selection) in arenas.iter().zip([self.selection, &other]) {
+            let derived = derive(arena, self.mechanism, selection, function, from)?;
+            let unsearched = Search::none().lower(arena, self.mechanism, function, &derived)?;
+            forms.push((unsearched.cost().operations(), arena, derived));
+        }
+        let least = forms.iter().map(|&(operations, ..)| operations).min();
+        let most = least.unwrap_or_default() * worth_a_search(function) / 100;
+        forms.retain(|&(operations, ..)| operations <= most);
+        let mut best: Option<Program> = None;
+        for (_, arena, derived) in &forms {
+            let form = self
+                .search
+                .lower(arena, self.mechanism, function, derived)?;
+            if best.as_ref().is_none_or(|best| is_cheaper(&form, best)) {
+                best = Some(form);
             }
         }
-        Ok(best)
+        best.map_or_else(|| self.program(function, from), Ok)
     }
 
-    /// The selections beside the own one in which a function is written otherwise.
-    fn other_forms(&self, function: Function) -> Vec<Selection> {
+    /// The selection beside the own one in which a function is written otherwise.
+    fn other_form(&self, function: Function) -> Option<Selection> {
         if function.columns() == Some(Columns::Standard) && !self.selection.combined.is_empty() {
-            return vec![Selection {
+            return Some(Selection {
                 combined: Vec::new(),
                 ..self.selection.clone()
-            }];
+            });
         }
-        let is_dynamics = matches!(
+        let has_forces = matches!(
             function,
-            Function::MassMatrix
-                | Function::Bias
+            Function::Bias
                 | Function::ForwardDynamics
                 | Function::InverseDynamics
                 | Function::InverseDynamicsPreloaded
         );
-        let at_ends: &[bool] = match (is_dynamics, &self.mechanism.platform) {
-            (false, _) => &[],
-            (true, None) => &[false],
-            (true, Some(_)) => &[false, true],
-        };
-        let form = |&at_ends: &bool| Selection {
-            dynamics: DynamicsBy::Bodies { at_ends },
+        has_forces.then(|| Selection {
+            dynamics: DynamicsBy::Bodies,
             ..self.selection.clone()
-        };
-        at_ends.iter().map(form).collect()
+        })
     }
+}
+
+/// Operations of a form that is worth a search, in hundredths of those of the cheapest one. Single
+/// replacements take about as much from each form of the dynamics; with and without combined columns they,
+/// and the pairs, take less alike.
+const fn worth_a_search(function: Function) -> usize {
+    match function.columns() {
+        Some(Columns::Standard) => 120,
+        _ => 102,
+    }
+}
+
+/// Whether a program takes fewer operations than another one and no more sines and roots.
+fn is_cheaper(program: &Program, other: &Program) -> bool {
+    let (of_program, of_other) = (program.cost(), other.cost());
+    of_program.operations() < of_other.operations()
+        && of_program.trigonometric_pairs <= of_other.trigonometric_pairs
+        && of_program.square_roots <= of_other.square_roots
 }
 
 /// How the joints follow from the pose: by rule, if one fits every leg.
