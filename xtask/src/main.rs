@@ -1,5 +1,7 @@
 //! The chores of this repository: `cargo xtask TASK`.
 
+mod at_once;
+mod binaries;
 mod files;
 mod freshness;
 mod generated;
@@ -20,6 +22,7 @@ cargo xtask generated           write generated/: five robots as text, all in th
 cargo xtask generated ROBOT...  write robots/ROBOT.toml as target/generated/ROBOT.rs, to read
 cargo xtask freshness           fail unless generated/ is what the generator writes
 cargo xtask release             versions, licences and Rust versions of all packages
+cargo xtask tests               all test binaries, one for each processor at a time
 cargo xtask times [SECONDS]     processor time of each test binary; fail if all take more";
 
 fn main() -> ExitCode {
@@ -30,6 +33,7 @@ fn main() -> ExitCode {
         ["generated", ref robots @ ..] => generated::write_to_read(robots),
         ["freshness"] => freshness::check(),
         ["release"] => release::check(),
+        ["tests"] => at_once::run(),
         ["times"] => times::table(None),
         ["times", seconds] => times::table(Some(seconds)),
         _ => {

@@ -1,20 +1,9 @@
 //! The processor time of each test binary, so that the suite stays one that people run.
 
 use crate::Failure;
+use crate::binaries::binaries;
 use crate::metadata::{cargo, without_examples};
-use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-
-/// A test binary as cargo has built it.
-struct Binary {
-    /// Its package and its own name.
-    name: String,
-    file: PathBuf,
-    /// The package's folder, in which cargo runs it.
-    folder: PathBuf,
-}
 
 /// Builds all tests, runs one binary after the other and says what each took, at once on stderr and then
 /// as a table, most first.
@@ -24,11 +13,7 @@ pub(crate) fn table(most: Option<&str>) -> Result<(), Failure> {
     let mut failed = Vec::new();
     for binary in binaries()? {
         let before = children()?;
-        let mut command = Command::new(&binary.file);
-        command
-            .current_dir(&binary.folder)
-            .env("CARGO_MANIFEST_DIR", &binary.folder);
-        let output = command.stdin(Stdio::null()).output()?;
+        let output = binary.command().output()?;
         let seconds = children()? - before;
         eprintln!("{seconds:8.1} s  {}", binary.name);
         rows.push((seconds, binary.name.clone()));
@@ -64,31 +49,6 @@ pub(crate) fn table(most: Option<&str>) -> Result<(), Failure> {
         return Err(format!("{all:.1} s are more than {most:.1} s").into());
     }
     Ok(())
-}
-
-fn binaries() -> Result<Vec<Binary>, Failure> {
-    let messages = cargo(&["test", "--workspace", "--no-run", "--message-format=json"])?;
-    let mut binaries = Vec::new();
-    for line in messages.lines() {
-        let message: Value = serde_json::from_str(line)?;
-        let is_test = message["profile"]["test"] == true;
-        if let (true, Some(file), Some(manifest)) = (
-            is_test,
-            message["executable"].as_str(),
-            message["manifest_path"].as_str(),
-        ) {
-            let folder = Path::new(manifest).parent().unwrap_or(Path::new("."));
-            let package = folder.file_name().unwrap_or_default().to_string_lossy();
-            let kind = message["target"]["kind"][0].as_str().unwrap_or_default();
-            let name = message["target"]["name"].as_str().unwrap_or_default();
-            binaries.push(Binary {
-                name: format!("{package}: {kind} {name}"),
-                file: file.into(),
-                folder: folder.to_owned(),
-            });
-        }
-    }
-    Ok(binaries)
 }
 
 /// Seconds of the processor that all ended children of this process took, as Linux counts them.

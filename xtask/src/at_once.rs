@@ -1,0 +1,51 @@
+//! All test binaries, one for each processor at a time: cargo runs one after the other, and some have few
+//! tests that take minutes, which leaves processors idle.
+
+use crate::Failure;
+use crate::binaries::{Binary, binaries};
+use std::io::{self, Write as _};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+/// Builds all tests and runs them in the tier that the environment asks for. What a binary says is shown
+/// when it ends. Examples in the documentation are not run.
+pub(crate) fn run() -> Result<(), Failure> {
+    let waiting = Mutex::new(binaries()?.into_iter());
+    let failed = Mutex::new(Vec::new());
+    let next = || {
+        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.next()
+    };
+    let work = || {
+        while let Some(binary) = next() {
+            let error = match shown(&binary) {
+                Ok(true) => continue,
+                Ok(false) => binary.name,
+                Err(failure) => format!("{}: {failure}", binary.name),
+            };
+            let mut failed = failed.lock().unwrap_or_else(PoisonError::into_inner);
+            failed.push(error);
+        }
+    };
+    let count = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        for _ in 0..count {
+            scope.spawn(work);
+        }
+    });
+    let failed = failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    if failed.is_empty() {
+        return Ok(());
+    }
+    Err(format!("failed: {}", failed.join(", ")).into())
+}
+
+/// Runs a binary and shows what it says; whether it succeeds.
+fn shown(binary: &Binary) -> Result<bool, Failure> {
+    let output = binary.command().output()?;
+    let mut out = io::stdout().lock();
+    writeln!(out, "\n     Running {}", binary.name)?;
+    out.write_all(&output.stdout)?;
+    out.write_all(&output.stderr)?;
+    Ok(output.status.success())
+}
