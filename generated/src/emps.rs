@@ -365,7 +365,9 @@ impl Emps {
         parameters: &[::core::primitive::f64; 5],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
         ::overact::guard::finite(&[("joints", joints), ("parameters", parameters)])?;
-        ::core::result::Result::Ok([[parameters[0] + parameters[1]]])
+        // --- axis
+        let masses_axis_1_1 = parameters[0] + parameters[1];
+        ::core::result::Result::Ok([[masses_axis_1_1]])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -425,9 +427,10 @@ impl Emps {
         let tau_1_axis = joint_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], joint_velocities[0])
             + parameters[4];
-        let mass_1_1 = parameters[0] + parameters[1];
-        ::overact::guard::mass(mass_1_1)?;
-        ::core::result::Result::Ok([(torques[0] - tau_1_axis) / mass_1_1])
+        // --- axis
+        let masses_axis_1_1 = parameters[0] + parameters[1];
+        ::overact::guard::mass(masses_axis_1_1)?;
+        ::core::result::Result::Ok([(torques[0] - tau_1_axis) / masses_axis_1_1])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
