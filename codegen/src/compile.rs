@@ -7,7 +7,7 @@ use crate::effort::Effort;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
-use crate::request::{Request, Wanted};
+use crate::request::Request;
 use crate::selection::{self, Assembler, Search};
 
 /// A description and the model that was made from it.
@@ -36,7 +36,7 @@ pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<Compiled, 
     let description = description::parse(source)?;
     let mechanism = mechanism::check(&description)?;
     let effort = request.effort_for(description.effort);
-    let model = derived(mechanism, effort, request.wanted);
+    let model = derived(mechanism, effort, request);
     let model = model.map_err(|error| error.locate(&description))?;
     Ok(Compiled { description, model })
 }
@@ -46,23 +46,28 @@ pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<Compiled, 
 /// # Errors
 /// See [`Underivable`].
 pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotModel, Underivable> {
-    derived(mechanism, request.effort_for(None), request.wanted)
+    derived(mechanism, request.effort_for(None), request)
 }
 
 /// Selects form and columns, then derives and lowers one function after the other.
 fn derived(
     mechanism: Mechanism,
     effort: Effort,
-    is_wanted: Wanted<'_>,
+    request: &Request<'_>,
 ) -> Result<RobotModel, Underivable> {
-    let (selection, base) = selection::select(&mechanism)?;
+    let (mut selection, base) = selection::select(&mechanism)?;
+    let values = |given| selection::regrouped(&mechanism, &selection, &base, given);
+    selection.values = request.parameters.map(values);
     let assembler = Assembler {
         mechanism: &mechanism,
         selection: &selection,
         search: &Search::with(effort, &mechanism),
     };
     let mut wanted = inventory(&mechanism, selection.joints);
-    wanted.retain(|&(function, from)| is_wanted(&mechanism, function, from));
+    wanted.retain(|&(function, from)| {
+        let is_told = selection.values.is_some() && function.columns().is_some();
+        !is_told && (request.wanted)(&mechanism, function, from)
+    });
     let functions = parallel::map(&wanted, |&(function, from)| {
         let program = assembler.cheapest(function, from)?;
         Ok(CompiledFunction::new(&mechanism, function, from, program))

@@ -116,13 +116,7 @@ impl RobotModel {
     /// Name of a parameter, `zz_2_leg3`, `m_platform` or `m_payload`.
     #[must_use]
     pub fn parameter_name(&self, parameter: BodyParameter) -> String {
-        match parameter {
-            BodyParameter::Leg { leg, joint, symbol } => {
-                self.mechanism.parameter_name(symbol, leg, joint)
-            }
-            BodyParameter::Platform(symbol) => format!("{}_platform", symbol.name()),
-            BodyParameter::Payload(symbol) => format!("{}_payload", symbol.name()),
-        }
+        parameter.name(&self.mechanism)
     }
 
     /// Name of a base parameter: with the suffix `R` where others are regrouped into it.

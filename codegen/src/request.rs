@@ -4,6 +4,7 @@ use crate::derivation::MotionInput;
 use crate::effort::Effort;
 use crate::mechanism::Mechanism;
 use overact_core::Function;
+use std::collections::BTreeMap;
 
 /// Which functions of a robot a model shall have.
 pub(crate) type Wanted<'a> = &'a (dyn Fn(&Mechanism, Function, MotionInput) -> bool + Sync);
@@ -17,6 +18,10 @@ pub struct Request<'a> {
     pub otherwise: Effort,
     /// Which functions are derived: most of the time goes into one after the other.
     pub wanted: Wanted<'a>,
+    /// Values of standard parameters by name (SI units), where they are known: the dynamics have them as
+    /// constants, those that are missing as zero. Identification models, which tell them, are left out, and
+    /// the code is no `overact::Model`.
+    pub parameters: Option<&'a BTreeMap<String, f64>>,
 }
 
 impl Default for Request<'_> {
@@ -25,6 +30,7 @@ impl Default for Request<'_> {
             effort: None,
             otherwise: Effort::Quick,
             wanted: &|_, _, _| true,
+            parameters: None,
         }
     }
 }

@@ -18,32 +18,53 @@ pub fn read_parameters(
     description: &Description,
     info: &Info<'_>,
 ) -> Result<BTreeMap<String, f64>, Error> {
+    let values = values(path, description)?;
+    let names = |all: &[Parameter]| all.iter().map(|one| one.name.to_owned()).collect();
+    let (own, payload) = (names(info.parameters), names(info.payload_parameters));
+    complete(path, &values, own, payload)?;
+    Ok(values)
+}
+
+/// What a file says of a robot's standard parameters, by name (SI units).
+pub(crate) fn values(
+    path: &Path,
+    description: &Description,
+) -> Result<BTreeMap<String, f64>, Error> {
     let source = read(path)?;
-    let values = match parse_parameters(&source, description) {
-        Ok(values) => values,
-        Err(diagnostics) => {
-            return Err(Error::Description {
-                source,
-                diagnostics,
-            });
+    match parse_parameters(&source, description) {
+        Ok(values) => {
+            let pairs = values.into_iter().map(|one| (one.name.value, one.value));
+            Ok(pairs.collect())
         }
+        Err(diagnostics) => Err(Error::Description {
+            source,
+            diagnostics,
+        }),
+    }
+}
+
+/// Refuses values of a file without all of the robot's parameters, or with some of the payload's.
+pub(crate) fn complete(
+    path: &Path,
+    values: &BTreeMap<String, f64>,
+    own: Vec<String>,
+    payload: Vec<String>,
+) -> Result<(), Error> {
+    let lacking = |mut names: Vec<String>| {
+        names.retain(|name| !values.contains_key(name));
+        names
     };
-    let pairs = values.into_iter().map(|one| (one.name.value, one.value));
-    let values: BTreeMap<String, f64> = pairs.collect();
-    let lacking = |all: &[Parameter]| -> Vec<&'static str> {
-        let names = all.iter().map(|parameter| parameter.name);
-        names.filter(|name| !values.contains_key(*name)).collect()
-    };
-    let mut missing = lacking(info.parameters);
-    let load = lacking(info.payload_parameters);
-    if load.len() < info.payload_parameters.len() {
+    let count = payload.len();
+    let (mut missing, load) = (lacking(own), lacking(payload));
+    if load.len() < count {
         missing.extend(load);
     }
     if missing.is_empty() {
-        return Ok(values);
+        return Ok(());
     }
     let message = format!("missing parameters: {}", missing.join(", "));
     let help =
         "`overact identify --parameters FILE` writes all of them; write 0 for one that is absent";
-    Err(Problem::new(message).file(source.name).help(help).into())
+    let problem = Problem::new(message).file(path.display().to_string());
+    Err(problem.help(help).into())
 }

@@ -1,12 +1,14 @@
 //! Generates what the tests need compiled and `generated/` does not keep as text: the other robots of
-//! `robots/`, and the DualV in each of its four partitions, the way a user's build script does.
+//! `robots/`, the DualV in each of its four partitions, and the RX90 with known parameters, the way a user's
+//! build script does.
 //!
 //! The default tier searches operations quickly, the full tier thoroughly, as the manifest of
 //! `generated/` has them. The partitions differ in one line of the description, so the variants are made
 //! from the one description here and not kept as copies.
 
-use overact_codegen::{Effort, Request, Source, compile_with, emission};
+use overact_codegen::{Effort, Request, Source, compile_with, description, emission};
 use overact_tier::{VARIABLE, by_tier};
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 use std::{env, fs};
@@ -24,6 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             write(&stem, &stem, &fs::read_to_string(&path)?, effort)?;
         }
     }
+    known_parameters()?;
     let dualv = fs::read_to_string("../../robots/dualv.toml")?;
     for kept in [[1, 2, 3], [1, 2, 4], [1, 3, 4], [2, 3, 4]] {
         let [a, b, c] = kept;
@@ -38,12 +41,47 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Writes the module of a description's text.
 fn write(module: &str, stem: &str, text: &str, effort: Effort) -> Result<(), Box<dyn Error>> {
+    write_as(module, stem, text, &Request::with_effort(effort))
+}
+
+/// Writes the module of what is asked for of a description's text.
+fn write_as(
+    module: &str,
+    stem: &str,
+    text: &str,
+    request: &Request<'_>,
+) -> Result<(), Box<dyn Error>> {
     let name = format!("robots/{stem}.toml");
     let source = Source::new(name.as_str(), text);
-    let compiled = compile_with(&source, &Request::with_effort(effort))
-        .map_err(|errors| errors.render_plain(&source))?;
+    let compiled = compile_with(&source, request).map_err(|errors| errors.render_plain(&source))?;
     let file = Path::new(&env::var("OUT_DIR")?).join(format!("{module}.rs"));
     fs::write(file, emission::file(&compiled.model, &name))?;
+    Ok(())
+}
+
+/// The RX90 with the parameters of its virtual experiment as constants, and a table of these.
+fn known_parameters() -> Result<(), Box<dyn Error>> {
+    let text = fs::read_to_string("../../robots/rx90.toml")?;
+    let source = Source::new("robots/rx90.toml", text.as_str());
+    let described = description::parse(&source).map_err(|errors| errors.render_plain(&source))?;
+    let experiment = described.experiment.ok_or("no experiment")?;
+    let parameters = experiment.parameters.into_iter();
+    let given: BTreeMap<String, f64> = parameters.map(|one| (one.name.value, one.value)).collect();
+    let request = Request {
+        parameters: Some(&given),
+        ..Request::with_effort(Effort::Quick)
+    };
+    write_as("known_rx90", "rx90", &text, &request)?;
+    let entries: Vec<String> = given
+        .iter()
+        .map(|(name, value)| format!("({name:?}, {value:?})"))
+        .collect();
+    let table = format!(
+        "pub const PARAMETERS: &[(&str, f64)] = &[{}];",
+        entries.join(", ")
+    );
+    let file = Path::new(&env::var("OUT_DIR")?).join("known_parameters.rs");
+    fs::write(file, table)?;
     Ok(())
 }
 

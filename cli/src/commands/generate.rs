@@ -28,6 +28,10 @@ pub(crate) struct Arguments {
     /// Write nothing; fail if a file differs from what would be written
     #[arg(long, requires = "output")]
     check: bool,
+    /// Values of all standard parameters, as `identify --parameters` writes them: the dynamics of one
+    /// description with these as constants, without the identification models
+    #[arg(long, value_name = "TOML")]
+    parameters: Option<PathBuf>,
     #[command(flatten)]
     effort: effort::Arguments,
 }
@@ -40,6 +44,9 @@ struct Module {
     file: Option<PathBuf>,
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<String>,
+    /// What stands behind `overact generate`.
+    #[serde(skip)]
+    arguments: String,
     #[serde(skip)]
     code: String,
 }
@@ -54,7 +61,12 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let message = "several descriptions need a folder to write to: add `-o FOLDER`";
         return Err(Failure::Usage(message.to_owned()));
     }
-    let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
+    if arguments.parameters.is_some() && arguments.files.len() > 1 {
+        let message = "parameters are those of one description: generate one at a time";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let inputs = arguments.files.iter().chain(&arguments.parameters);
+    let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     if !arguments.check {
         let mut outputs = inputs
             .iter()
@@ -112,7 +124,12 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<CompiledFile>, F
     let bar = Progress::new("generating", as_json);
     for (at, file) in arguments.files.iter().enumerate() {
         bar.at(at as f64 / count as f64, &file.display().to_string());
-        match CompiledFile::read(file, &arguments.effort.request()) {
+        let request = arguments.effort.request();
+        let compiled = match &arguments.parameters {
+            Some(parameters) => CompiledFile::with_parameters(file, parameters, &request),
+            None => CompiledFile::read(file, &request),
+        };
+        match compiled {
             Ok(robot) => {
                 tell_note(&robot, as_json);
                 good.push(robot);
@@ -137,12 +154,19 @@ fn module_file(description: &Path, arguments: &Arguments) -> Option<PathBuf> {
 }
 
 fn module(robot: &CompiledFile, path: &Path, arguments: &Arguments) -> Module {
+    let mut own = robot.file.clone();
+    let mut labels = label(path);
+    if let Some(parameters) = &arguments.parameters {
+        own += &format!(" --parameters {}", parameters.display());
+        labels += &format!(" --parameters {}", label(parameters));
+    }
     Module {
         robot: robot.model.mechanism.name.clone(),
         description: robot.file.clone(),
         file: module_file(path, arguments),
         source: None,
-        code: emission::file(&robot.model, &label(path)),
+        code: emission::file(&robot.model, &labels),
+        arguments: own,
     }
 }
 
@@ -244,8 +268,8 @@ fn compare(modules: &[Module]) -> Result<(), Failure> {
             Ok(_) => "the file differs from what its description generates".to_owned(),
             Err(error) => format!("the file can't be read: {error}"),
         };
-        let (description, path) = (&module.description, file.display());
-        let help = format!("renew it with `overact generate {description} -o {path}`");
+        let (arguments, path) = (&module.arguments, file.display());
+        let help = format!("renew it with `overact generate {arguments} -o {path}`");
         problems.push(Problem::new(message).file(path.to_string()).help(help));
     }
     if problems.is_empty() {

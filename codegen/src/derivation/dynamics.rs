@@ -8,7 +8,7 @@ use super::regressor::Projection;
 use super::selection::DynamicsBy;
 use super::sheet::{Sheet, column};
 use super::underivable::Underivable;
-use crate::cas::Expr;
+use crate::cas::{Expr, Number};
 use overact_core::{ActuatorGroup, Columns};
 
 impl<'a> Sheet<'a, '_> {
@@ -112,7 +112,7 @@ impl<'a> Sheet<'a, '_> {
         Ok(column((0..kept.len()).map(entry).collect()))
     }
 
-    /// The standard parameters with their values, an input.
+    /// The standard parameters with their values: an input, or constants where they are known.
     fn parameter_values(&mut self) -> Vec<(BodyParameter, Expr<'a>)> {
         let all: Vec<BodyParameter> = self
             .selection
@@ -121,6 +121,14 @@ impl<'a> Sheet<'a, '_> {
             .chain(&self.selection.payload)
             .copied()
             .collect();
+        if let Some(known) = &self.selection.values {
+            let value = |one: &BodyParameter| known.iter().find(|(parameter, _)| parameter == one);
+            let number = |one: BodyParameter| {
+                let value = value(&one).map_or(0.0, |&(_, value)| value);
+                (one, self.robot.arena.number(Number::float(value)))
+            };
+            return all.into_iter().map(number).collect();
+        }
         let values = self.input("parameters", all.len());
         all.into_iter().zip(values).collect()
     }

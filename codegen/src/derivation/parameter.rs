@@ -37,6 +37,16 @@ impl BodyParameter {
         parameters
     }
 
+    /// The name, `zz_2_leg3`, `m_platform` or `m_payload`.
+    #[must_use]
+    pub fn name(self, mechanism: &Mechanism) -> String {
+        match self {
+            Self::Leg { leg, joint, symbol } => mechanism.parameter_name(symbol, leg, joint),
+            Self::Platform(symbol) => format!("{}_platform", symbol.name()),
+            Self::Payload(symbol) => format!("{}_payload", symbol.name()),
+        }
+    }
+
     /// The payload's parameters.
     #[must_use]
     pub fn of_payload(mechanism: &Mechanism) -> Vec<Self> {

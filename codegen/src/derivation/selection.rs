@@ -24,6 +24,9 @@ pub struct Selection {
     pub joints: JointsBy,
     /// How the forces of several bodies are added up.
     pub dynamics: DynamicsBy,
+    /// Values of the standard parameters and the payload's, where they are known: functions of given
+    /// parameters have them as constants then, those that are missing as zero, and no such input.
+    pub values: Option<Vec<(BodyParameter, f64)>>,
 }
 
 /// In which of several equal forms a robot is written; which needs the fewest operations depends on the

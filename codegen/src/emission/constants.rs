@@ -87,7 +87,13 @@ pub fn items(model: &RobotModel) -> TokenStream {
             &model.selection.payload,
         ),
     ];
-    let base = base_parameters(model);
+    let tables = match &model.selection.values {
+        Some(values) => parameter_values(model, values),
+        None => {
+            let base = base_parameters(model);
+            quote!(#(#tables)* #base)
+        }
+    };
     let home = home(model);
     quote! {
         #[doc = " The robot's name."]
@@ -95,8 +101,7 @@ pub fn items(model: &RobotModel) -> TokenStream {
         #(#sizes)*
         #(#strings)*
         #home
-        #(#tables)*
-        #base
+        #tables
     }
 }
 
@@ -167,6 +172,24 @@ fn parameters(name: &str, doc: &str, model: &RobotModel, of: &[BodyParameter]) -
             #names
             [#(#entries),*]
         };
+    }
+}
+
+/// The numbers that stand for the parameters.
+fn parameter_values(model: &RobotModel, values: &[(BodyParameter, f64)]) -> TokenStream {
+    let entries = values.iter().map(|&(parameter, value)| {
+        let base = model.base.iter().find(|base| base.parameter == parameter);
+        let name = base.map_or_else(
+            || model.parameter_name(parameter),
+            |base| model.base_name(base),
+        );
+        let value = number(value);
+        quote!((#name, #value))
+    });
+    let count = Literal::usize_unsuffixed(values.len());
+    quote! {
+        #[doc = " Values of the base parameters, in which all others are regrouped, and of the payload's: constants in the functions (SI)."]
+        pub const PARAMETER_VALUES: [(&'static ::core::primitive::str, ::core::primitive::f64); #count] = [#(#entries),*];
     }
 }
 

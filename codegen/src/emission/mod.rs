@@ -1,7 +1,7 @@
 //! From a [`RobotModel`] to Rust.
 //!
 //! Macro, build script, command line and `generated/` all come from [`robot()`]: one `impl` block with
-//! constants and flat functions, and one `impl overact::Model`. Nothing is allocated, nothing panics,
+//! constants and flat functions, and one `impl overact::Model`, unless the parameters are known. Nothing is allocated, nothing panics,
 //! nothing is unsafe; a singular configuration is an error that names the leg. Paths are absolute, for the
 //! code stands in scopes that are not ours.
 //!
@@ -52,7 +52,9 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     let functions: Vec<Item> = functions.collect();
     let tokens = functions.iter().map(|f| &f.tokens);
     let forward = model_impl::pose_from_actuators(model);
-    let model_impl = model_impl::item(model, name);
+    // The functions of a model take the parameters as an input.
+    let is_model = model.selection.values.is_none();
+    let model_impl = is_model.then(|| model_impl::item(model, name));
     let items = quote! {
         #[allow(
             clippy::all,

@@ -6,7 +6,8 @@
 //! independent columns are found over random states in the symmetric order (43) ([`columns`], [`base`]).
 //! Every other column is a constant combination of them, and is written as one where that takes fewer
 //! operations ([`combine`]). All choices go by one measure: the operations of the program that
-//! [`assemble`] makes of a function, searched as far as [`search`] says.
+//! [`assemble`] makes of a function, searched as far as [`search`] says. Where the parameters are known,
+//! [`values`] says which numbers stand for them.
 
 mod assemble;
 mod base;
@@ -15,11 +16,13 @@ mod combine;
 mod formulation;
 mod regressor;
 mod search;
+mod values;
 
 pub use assemble::Assembler;
 pub use base::BaseParameter;
 pub use columns::sample;
 pub use search::Search;
+pub(crate) use values::regrouped;
 
 use crate::cas::Arena;
 use crate::derivation::{BodyParameter, MotionInput, Selection, Underivable, derive};

@@ -1,6 +1,7 @@
 //! Every robot of `robots/`, compiled and evaluated: against the numeric reference, against the energy,
 //! against the recursive Newton-Euler algorithm, at singularities and where something is exactly zero, the
-//! ranks of its regressor, and backend against backend for every kind of input.
+//! ranks of its regressor, and backend against backend for every kind of input,
+//! and with known parameters.
 //!
 //! One binary, so that each robot is derived once for all of these.
 
@@ -8,6 +9,7 @@ mod agreement;
 mod contract;
 mod finite;
 mod forms;
+mod known;
 mod newton_euler;
 mod power;
 mod ranks;
