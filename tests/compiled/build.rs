@@ -77,7 +77,7 @@ fn known_parameters() -> Result<(), Box<dyn Error>> {
         .map(|(name, value)| format!("({name:?}, {value:?})"))
         .collect();
     let table = format!(
-        "pub const PARAMETERS: &[(&str, f64)] = &[{}];",
+        "/// Names and values (SI).\npub const PARAMETERS: &[(&str, f64)] = &[{}];",
         entries.join(", ")
     );
     let file = Path::new(&env::var("OUT_DIR")?).join("known_parameters.rs");
