@@ -1,14 +1,8 @@
 //! A description from a file, read and compiled, with what is asked for.
 
-use crate::{
-    error::{Error, Problem},
-    parameters::{complete, values},
-};
+use crate::error::{Error, Problem};
 use overact_codegen::{
-    Request, RobotModel, compile_with,
-    derivation::{BodyParameter, Selection},
-    description::{self, Description},
-    diagnostic::Source,
+    Request, RobotModel, compile_with, description::Description, diagnostic::Source,
     mechanism::Mechanism,
 };
 use std::{fs, path::Path};
@@ -34,43 +28,6 @@ impl CompiledFile {
     /// A file that can't be read, or everything that is wrong with the description.
     pub fn read(path: &Path, request: &Request<'_>) -> Result<Self, Error> {
         Self::new(read(path)?, request)
-    }
-
-    /// Reads a description and a file of its standard parameters (see
-    /// [`read_parameters`](crate::read_parameters)), and compiles what is asked for with these as constants.
-    ///
-    /// # Errors
-    /// A file that can't be read, or everything that is wrong with one of them.
-    pub fn with_parameters(
-        path: &Path,
-        parameters: &Path,
-        request: &Request<'_>,
-    ) -> Result<Self, Error> {
-        let source = read(path)?;
-        let description = match description::parse(&source) {
-            Ok(description) => description,
-            Err(diagnostics) => {
-                return Err(Error::Description {
-                    source,
-                    diagnostics,
-                });
-            }
-        };
-        let values = values(parameters, &description)?;
-        let request = Request {
-            parameters: Some(&values),
-            ..*request
-        };
-        let robot = Self::new(source, &request)?;
-        let Selection {
-            standard, payload, ..
-        } = &robot.model.selection;
-        let names = |all: &[BodyParameter]| {
-            let names = all.iter().map(|&one| robot.model.parameter_name(one));
-            names.collect()
-        };
-        complete(parameters, &values, names(standard), names(payload))?;
-        Ok(robot)
     }
 
     /// Compiles what is asked for of a description.

@@ -1,11 +1,15 @@
 //! Standard parameters from a file, as `overact identify --parameters` writes it.
 
 use crate::{
-    compiled_file::read,
+    compiled_file::{CompiledFile, read},
     error::{Error, Problem},
 };
 use overact::{Info, Parameter};
-use overact_codegen::description::{Description, parse_parameters};
+use overact_codegen::{
+    Request,
+    derivation::{BodyParameter, Selection},
+    description::{self, Description, parse_parameters},
+};
 use std::{collections::BTreeMap, path::Path};
 
 /// Reads the standard parameters of a robot from the table `[parameters]` of a TOML file (SI units, or
@@ -25,11 +29,47 @@ pub fn read_parameters(
     Ok(values)
 }
 
+impl CompiledFile {
+    /// Reads a description and a file of its standard parameters (see
+    /// [`read_parameters`]), and compiles what is asked for with these as constants.
+    ///
+    /// # Errors
+    /// A file that can't be read, or everything that is wrong with one of them.
+    pub fn with_parameters(
+        path: &Path,
+        parameters: &Path,
+        request: &Request<'_>,
+    ) -> Result<Self, Error> {
+        let source = read(path)?;
+        let description = match description::parse(&source) {
+            Ok(description) => description,
+            Err(diagnostics) => {
+                return Err(Error::Description {
+                    source,
+                    diagnostics,
+                });
+            }
+        };
+        let values = values(parameters, &description)?;
+        let request = Request {
+            parameters: Some(&values),
+            ..*request
+        };
+        let robot = Self::new(source, &request)?;
+        let Selection {
+            standard, payload, ..
+        } = &robot.model.selection;
+        let names = |all: &[BodyParameter]| {
+            let names = all.iter().map(|&one| robot.model.parameter_name(one));
+            names.collect()
+        };
+        complete(parameters, &values, names(standard), names(payload))?;
+        Ok(robot)
+    }
+}
+
 /// What a file says of a robot's standard parameters, by name (SI units).
-pub(crate) fn values(
-    path: &Path,
-    description: &Description,
-) -> Result<BTreeMap<String, f64>, Error> {
+fn values(path: &Path, description: &Description) -> Result<BTreeMap<String, f64>, Error> {
     let source = read(path)?;
     match parse_parameters(&source, description) {
         Ok(values) => {
@@ -44,7 +84,7 @@ pub(crate) fn values(
 }
 
 /// Refuses values of a file without all of the robot's parameters, or with some of the payload's.
-pub(crate) fn complete(
+fn complete(
     path: &Path,
     values: &BTreeMap<String, f64>,
     own: Vec<String>,
