@@ -59,7 +59,7 @@ fn known_parameters_give_the_same_motion_in_fewer_operations() -> Result<(), Fai
         let request = Request {
             wanted: &|_, function, _| DYNAMICS.contains(&function),
             parameters: Some(&given),
-            ..Request::with_effort(Effort::None)
+            ..Request::with_effort(by_tier([Effort::None, Effort::Quick]))
         };
         let source = description(stem)?;
         let known = compile_with(&source, &request).map_err(|e| e.render_plain(&source))?;
