@@ -1,36 +1,28 @@
 //! Runs whose columns stand in several files, and columns that are expressions of columns.
 
 mod common;
+#[path = "common/drive.rs"]
+mod drive;
 
 use std::{fs, path::Path};
 
-use common::{EMPS, shared};
-use overact::Model;
+use common::shared;
 use overact_identification::{
-    Error, Log, Mapping, Time,
+    Log, Mapping, Time,
     data::{parts, read},
 };
 
 /// Reads the run `name` of these files, by their names and contents.
 fn run(name: &str, files: &[(&str, &str)], mapping: &Mapping) -> Result<Log, String> {
-    let folder = tempfile::tempdir().expect("a folder");
-    for (name, content) in files {
-        fs::write(folder.path().join(name), content).expect("written");
-    }
-    let prefix = format!("{}/", folder.path().display());
-    let path = name.split('+').map(|part| format!("{prefix}{part}"));
-    let path = path.collect::<Vec<_>>().join("+");
-    let result = read(Path::new(&path), mapping, false);
-    result.map_err(|error: Error| error.to_string().replace(&prefix, ""))
+    let files = files.iter().map(|&(name, text)| (name, text.as_bytes()));
+    drive::run(name, &files.collect::<Vec<_>>(), mapping)
 }
 
 /// A mapping of one drive.
 fn mapping(time: Time, position: &str, torque: &str) -> Mapping {
     Mapping {
         time,
-        positions: vec![position.to_owned()],
-        torques: vec![torque.to_owned()],
-        ..Mapping::for_robot(&EMPS.info())
+        ..drive::timed(position, torque)
     }
 }
 

@@ -18,6 +18,12 @@ use parquet::{
 use parquet_drive::{SCHEMA, log, samples};
 use parquet_file::{Cells, written, written_with};
 
+/// A message can stand in a terminal.
+fn assert_legible(told: &str) {
+    let is_control = |c: char| c.is_control() && c != '\n';
+    assert!(!told.contains(is_control), "{told:?}");
+}
+
 #[test]
 fn cells_without_numbers_are_located() {
     let file = written(
@@ -129,10 +135,7 @@ fn files_that_are_cut_off_or_empty_are_refused() {
             told.contains("\n  help: if it was copied or its writer was stopped, "),
             "{told}"
         );
-        assert!(
-            !told.contains(|c: char| c.is_control() && c != '\n'),
-            "{told:?}"
-        );
+        assert_legible(&told);
     }
     // A middle that is lost: the pages are somewhere else than the file says.
     let half = [&file[..4], &file[file.len() / 2..]].concat();
@@ -187,10 +190,7 @@ fn files_with_any_wrong_byte_are_read_or_refused() {
             if let Err(told) = log(&broken, &mapping) {
                 refused += 1;
                 assert!(told.starts_with("a.parquet: "), "{told}");
-                assert!(
-                    !told.contains(|c: char| c.is_control() && c != '\n'),
-                    "{told:?}"
-                );
+                assert_legible(&told);
             }
         }
     }
