@@ -30,11 +30,10 @@ fn spread(misses: &[f64]) -> (f64, f64) {
 fn the_truth_is_within_three_correlated_deviations() {
     let robot = DualV::new();
     let (mut white, mut correlated) = (Vec::new(), Vec::new());
-    // Noise alone, then drives that fight a torque which returns with every tooth of the motor.
-    let seeds: &[(f64, u64)] = by_tier([
-        &[(0.0, 1), (0.3, 3)],
-        &[(0.0, 1), (0.0, 2), (0.3, 3), (0.3, 4)],
-    ]);
+    // Drives that fight a torque which returns with every tooth of the motor; before these, in the full tier,
+    // noise alone.
+    let seeds: &[(f64, u64)] =
+        by_tier([&[(0.3, 3)][..], &[(0.0, 1), (0.0, 2), (0.3, 3), (0.3, 4)]]);
     for &(cogging, seed) in seeds {
         let mut made = Vec::new();
         let mut experiment = experiment(&robot, 1.0, seed);

@@ -144,7 +144,7 @@ fn config() -> ProptestConfig {
         given @ RngSeed::Fixed(_) => given,
     };
     ProptestConfig {
-        cases: by_tier([128, 256]),
+        cases: by_tier([64, 256]),
         max_shrink_iters: 0,
         failure_persistence: None,
         rng_seed,

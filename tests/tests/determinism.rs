@@ -30,7 +30,7 @@ fn the_same_description_gives_the_same_bytes() -> Result<(), Failure> {
 
 #[test]
 fn threads_give_the_same_bytes() -> Result<(), Failure> {
-    let source = description(by_tier(["three_leg_point", "dualv"]))?;
+    let source = description(by_tier(["five_bar", "dualv"]))?;
     let one = || model_of(&source).map(|model| emission::file(&model, &source.name));
     let (a, b) = std::thread::scope(|scope| {
         let (a, b) = (scope.spawn(one), scope.spawn(one));

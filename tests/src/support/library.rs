@@ -2,9 +2,9 @@
 
 use super::conversion::reference;
 use super::expected::Expected;
-use super::{Failure, description, repository};
+use super::{Failure, description, model_with, repository};
 use overact_codegen::mechanism::{JointKind, TwistCoordinate};
-use overact_codegen::{Effort, Request, RobotModel, compile_with};
+use overact_codegen::{Effort, Request, RobotModel};
 use overact_tier::{by_tier, is_full};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, OnceLock};
@@ -113,8 +113,7 @@ pub fn described(stem: &str) -> Result<&'static Described, Failure> {
 fn derived(stem: &str) -> Result<Described, Failure> {
     let source = description(stem)?;
     let request = Request::with_effort(by_tier([Effort::None, Effort::Quick]));
-    let compiled = compile_with(&source, &request).map_err(|e| e.render_plain(&source))?;
-    let model = compiled.model;
+    let model = model_with(&source, &request)?;
     let mechanism = reference(&model.mechanism, workspace(&model));
     let expected = Expected::by_position(&model, mechanism);
     Ok((model, expected))

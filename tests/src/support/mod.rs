@@ -20,7 +20,7 @@ pub use comparison::Comparison;
 pub use sample::Sample;
 pub use served::Served;
 
-use overact_codegen::{Effort, Request, RobotModel, Source, compile, compile_with};
+use overact_codegen::{Effort, Request, RobotModel, Source, compile_with};
 use overact_tier::by_tier;
 use std::error::Error;
 use std::path::PathBuf;
@@ -54,7 +54,16 @@ pub fn description(stem: &str) -> Result<Source, Failure> {
 ///
 /// The description's errors as text.
 pub fn model_of(source: &Source) -> Result<RobotModel, Failure> {
-    match compile(source) {
+    model_with(source, &Request::default())
+}
+
+/// What is asked for of a description's model.
+///
+/// # Errors
+///
+/// The description's errors as text.
+pub fn model_with(source: &Source, request: &Request<'_>) -> Result<RobotModel, Failure> {
+    match compile_with(source, request) {
         Ok(compiled) => Ok(compiled.model),
         Err(errors) => Err(errors.render_plain(source).into()),
     }
@@ -69,15 +78,9 @@ pub fn model_of(source: &Source) -> Result<RobotModel, Failure> {
 pub fn dualv() -> Result<&'static RobotModel, Failure> {
     static MODEL: OnceLock<Result<RobotModel, String>> = OnceLock::new();
     let compiled = MODEL.get_or_init(|| {
+        let request = Request::with_effort(by_tier([Effort::None, Effort::Thorough]));
         description("dualv")
-            .and_then(|source| {
-                compile_with(
-                    &source,
-                    &Request::with_effort(by_tier([Effort::None, Effort::Thorough])),
-                )
-                .map(|compiled| compiled.model)
-                .map_err(|errors| errors.render_plain(&source).into())
-            })
+            .and_then(|source| model_with(&source, &request))
             .map_err(|error| error.to_string())
     });
     compiled.as_ref().map_err(|error| error.as_str().into())

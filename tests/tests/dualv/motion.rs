@@ -15,17 +15,25 @@ use overact_tests::reference::{Mechanism, State, robots, trajectory};
 use overact_tests::support::expected::Expected;
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Backend, Failure, Sample, dualv};
+use overact_tier::by_tier;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-const STATES: usize = 200;
+/// States in the default tier and in the full one.
+const STATES: [usize; 2] = [40, 200];
 
 redundant_backend!(Generated, "generated", DualV);
 
 fn dualv_samples(seed: u64) -> Result<(Mechanism, Expected, Vec<Sample>), Failure> {
     let mechanism = robots::dualv();
     let expected = Expected::new(dualv()?, mechanism.clone())?;
-    let all = samples(&mechanism, &expected.parameters(), STATES, seed, false)?;
+    let all = samples(
+        &mechanism,
+        &expected.parameters(),
+        by_tier(STATES),
+        seed,
+        false,
+    )?;
     Ok((mechanism, expected, all))
 }
 

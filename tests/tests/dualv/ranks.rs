@@ -6,17 +6,19 @@
 
 use overact_codegen::derivation::BodyParameter;
 use overact_codegen::mechanism::StandardParameter;
-use overact_codegen::{RobotModel, Source};
+use overact_codegen::{Effort, Request, RobotModel, Source};
 use overact_tests::reference::robots;
 use overact_tests::reference::robots::{DUALV_LINK as D, DUALV_PLATFORM_RADIUS as RP};
 use overact_tests::support::expected::Expected;
 use overact_tests::support::rank::{Rank, regressor};
 use overact_tests::support::sample::samples;
-use overact_tests::support::{Failure, dualv, model_of};
+use overact_tests::support::{Failure, dualv, model_with};
+use overact_tier::by_tier;
 
 const FULL: &str = include_str!("../../fixtures/dualv_full.toml");
-/// Enough rows for 172 columns, and states enough to tell them apart.
-const STATES: usize = 120;
+/// States in the default tier and in the full one, with four rows each: more than the 88 columns of all
+/// parameters.
+const STATES: [usize; 2] = [50, 120];
 
 /// The full fixture with other parameters on the three links.
 fn variant(parameters: [&str; 3]) -> Result<RobotModel, Failure> {
@@ -25,14 +27,17 @@ fn variant(parameters: [&str; 3]) -> Result<RobotModel, Failure> {
     for (own, rest) in parameters.iter().zip(pieces) {
         text += &format!("parameters = {own}{rest}");
     }
-    model_of(&Source::new("fixtures/dualv_full.toml", text))
+    let source = Source::new("fixtures/dualv_full.toml", text);
+    // Ranks do not depend on how operations are searched.
+    let request = Request::with_effort(by_tier([Effort::None, Effort::Quick]));
+    model_with(&source, &request)
 }
 
 /// The rank of a model's regressor has a clear gap, and the model has as many base parameters.
 fn check(what: &str, model: &RobotModel, expected: usize) -> Result<(), Failure> {
     let mechanism = robots::dualv();
     let columns = Expected::new(model, mechanism.clone())?.parameters();
-    let all = samples(&mechanism, &columns, STATES, 61, false)?;
+    let all = samples(&mechanism, &columns, by_tier(STATES), 61, false)?;
     let rank = Rank::of(&regressor(model, &all)?);
     println!("{what}: {rank}");
     assert!(rank.is_clear(), "{what}: no clear gap: {rank}");
