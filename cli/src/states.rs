@@ -19,7 +19,15 @@ use std::{
 #[derive(Debug)]
 pub(crate) struct States {
     file: String,
+    format: Format,
     states: Vec<State>,
+}
+
+/// How a file holds states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Json,
+    Csv,
 }
 
 /// One state: quantities by name. Those that nobody asks for may be anything.
@@ -52,10 +60,13 @@ impl States {
 
     fn parse(file: String, text: &str) -> Result<Self, Failure> {
         let text = text.trim_start_matches('\u{feff}');
-        let states = if text.trim_start().starts_with(['[', '{']) {
-            from_json(text)
-        } else {
-            from_csv(text)
+        let format = match text.trim_start().starts_with(['[', '{']) {
+            true => Format::Json,
+            false => Format::Csv,
+        };
+        let states = match format {
+            Format::Json => from_json(text),
+            Format::Csv => from_csv(text),
         };
         match states {
             Ok(states) if states.is_empty() => {
@@ -65,7 +76,11 @@ impl States {
                     .help(help)
                     .into())
             }
-            Ok(states) => Ok(Self { file, states }),
+            Ok(states) => Ok(Self {
+                file,
+                format,
+                states,
+            }),
             Err(problem) => Err(Problem {
                 file: Some(file),
                 ..problem
@@ -84,6 +99,26 @@ impl States {
         self.states
             .first()
             .is_some_and(|state| state.quantities.contains_key(name))
+    }
+
+    /// How a file of this format holds a quantity.
+    pub(crate) fn form(&self, name: &str, length: usize) -> String {
+        match (self.format, length) {
+            (Format::Csv, 2..) => format!("`{name}[0]` to `{name}[{}]`", length - 1),
+            (Format::Csv, _) => format!("`{name}[0]`"),
+            (Format::Json, 1) => format!("`{name}` (1 number)"),
+            (Format::Json, _) => format!("`{name}` ({length} numbers)"),
+        }
+    }
+
+    /// Names of what a state holds, as the file writes them.
+    pub(crate) fn found(&self, at: usize) -> Vec<&str> {
+        let quantities = self.states.get(at).map(|state| state.quantities.keys());
+        quantities
+            .into_iter()
+            .flatten()
+            .map(String::as_str)
+            .collect()
     }
 
     /// The numbers of a quantity in a state; `None` where the state does not hold it.

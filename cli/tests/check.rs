@@ -168,3 +168,30 @@ fn filters_and_names_that_nothing_can_be_done_with_are_found() {
         );
     }
 }
+
+#[test]
+fn bodies_that_nobody_can_build_are_found_as_identification_finds_them() {
+    let bench = Bench::with("serial-2r", |text| {
+        format!(
+            "{text}\n[prior.values]\nm_1 = \"1 kg\"\nmx_1 = \"5 kg m\"\nzz_1 = \"0.001 kg m^2\"\n"
+        )
+    });
+    let said = bench.bad(&["check", "my.toml"]);
+    assert!(
+        said.contains("no body has the prior parameters of `m_1`"),
+        "{said}"
+    );
+    let known = [
+        line(&bench, "m_1 = \"1"),
+        line(&bench, "mx_1 = \"5"),
+        line(&bench, "zz_1 = \"0"),
+    ];
+    let at = known.map(|line| said.contains(&format!("my.toml:{line}:")));
+    assert!(at.contains(&true), "{said}");
+    let refused = bench.bad(&["identify", "my.toml", "-o", "result.json"]);
+    assert!(
+        refused.contains("no body has the prior parameters of `m_1`"),
+        "{refused}"
+    );
+    assert_eq!(bench.files(), ["my.toml"]);
+}

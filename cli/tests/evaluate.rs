@@ -159,7 +159,29 @@ fn bad_states_are_told_of() {
     assert!(bad("joints", "none.json").contains("none.json"));
     let text = bad("inverse_dynamics", "states.json");
     assert!(
-        text.contains("state 1 of 2: missing `parameters`"),
+        text.contains("state 1 of 2: missing `parameters`; the state holds ")
+            && text.contains("`parameters` (")
+            && text.contains("`--parameters FILE`"),
+        "{text}"
+    );
+    bench.write("named.csv", "x,y,phi\n0,0,0\n");
+    let text = bad("joints", "named.csv");
+    assert!(
+        text.contains("missing `pose`; the state holds `phi`, `x`, `y`")
+            && text.contains("the function takes `pose[0]` to `pose[2]`"),
+        "{text}"
+    );
+    let text = bench.bad(&[
+        "evaluate",
+        &dualv,
+        "mass_matrix",
+        "--states",
+        "named.csv",
+        "--parameters",
+        "none.toml",
+    ]);
+    assert!(
+        text.contains("`overact identify my.toml --parameters"),
         "{text}"
     );
     bench.write("few.csv", "twist[0]\n1\n");

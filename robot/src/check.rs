@@ -2,14 +2,17 @@
 //! identification would refuse, all of it at once and without simulating.
 
 use crate::{
+    body::body,
     compiled_file::{note, read},
     error::Error,
     experiment,
+    prior::{Named, prior},
     settings::settings,
 };
 use overact::{Info, Sizes};
 use overact_codegen::{
     Checked,
+    derivation::BodyParameter,
     description::{self, Description},
     diagnostic::{Diagnostic, Diagnostics, Source},
     mechanism::{JointKind, Mechanism},
@@ -52,10 +55,40 @@ pub fn check(path: &Path) -> Result<CheckedFile, Error> {
 fn checked(source: &Source) -> Result<Checked, Diagnostics> {
     let checked = overact_codegen::check(source)?;
     let mut errors = Diagnostics::new();
+    check_prior(
+        source,
+        &checked.description,
+        &checked.mechanism,
+        &mut errors,
+    );
     with_info(&checked.mechanism, |info| {
         check_experiment(source, &checked.description, info, &mut errors);
     });
     errors.into_result(checked)
+}
+
+/// Bodies of the table `[prior]` that nobody can build.
+fn check_prior(
+    source: &Source,
+    description: &Description,
+    mechanism: &Mechanism,
+    errors: &mut Diagnostics,
+) {
+    let all = BodyParameter::all(mechanism).into_iter();
+    let all = all.chain(BodyParameter::of_payload(mechanism));
+    let names: Vec<_> = all.map(|one| (one.name(mechanism), one)).collect();
+    let named: Vec<Named<'_>> = names
+        .iter()
+        .map(|(name, one)| (name.as_str(), one.symbol(), body(mechanism, *one)))
+        .collect();
+    let symbols: Vec<_> = named.iter().map(|(name, of, _)| (*name, *of)).collect();
+    let prior = prior(description, &named, &mechanism.home.joints);
+    for problem in prior.problems(&symbols) {
+        let name = problem.column.unwrap_or_default();
+        let at = description::place(source, &format!("prior.values.{name}"));
+        let help = problem.help.unwrap_or_default();
+        errors.push(Diagnostic::global(problem.message).help(help).at(at));
+    }
 }
 
 /// What simulation and identification of the virtual experiment would refuse.

@@ -81,6 +81,14 @@ pub(crate) fn note(description: &Description, mechanism: &Mechanism) -> Option<S
 /// # Errors
 /// A file that can't be read or is not UTF-8.
 pub(crate) fn read(path: &Path) -> Result<Source, Error> {
+    read_or(path, "`overact new planar-4rrr my.toml` writes a first one")
+}
+
+/// Reads a text; `origin` says what writes such a file, where there is none.
+///
+/// # Errors
+/// A file that can't be read or is not UTF-8.
+pub(crate) fn read_or(path: &Path, origin: &str) -> Result<Source, Error> {
     let name = path.display().to_string();
     match fs::read_to_string(path) {
         Ok(text) => Ok(Source::new(name, text)),
@@ -88,7 +96,7 @@ pub(crate) fn read(path: &Path) -> Result<Source, Error> {
             let missing = error.kind() == std::io::ErrorKind::NotFound;
             let problem = Problem::new(format!("the file can't be read: {error}")).file(name);
             Err(match missing {
-                true => problem.help("`overact new planar-4rrr my.toml` writes a first one"),
+                true => problem.help(origin),
                 false => problem,
             }
             .into())

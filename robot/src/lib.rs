@@ -21,6 +21,7 @@
 //! Modules, from the bottom up:
 //!
 //! - `error`: what is wrong;
+//! - `body`: where the bodies of standard parameters are;
 //! - `interpreted`: a model served as [`overact::Model`] without a compiler at hand;
 //! - `compiled_file`: a description read and compiled with what is asked for;
 //! - `robot`: the running robot; `settings`, `experiment`: its tables as inputs of identification and
@@ -31,6 +32,7 @@
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
 
+mod body;
 mod calibration;
 mod check;
 mod compiled_file;

@@ -1,7 +1,7 @@
 //! Standard parameters from a file, as `overact identify --parameters` writes it.
 
 use crate::{
-    compiled_file::{CompiledFile, read},
+    compiled_file::{CompiledFile, read, read_or},
     error::{Error, Problem},
 };
 use overact::{Info, Parameter};
@@ -70,7 +70,8 @@ impl CompiledFile {
 
 /// What a file says of a robot's standard parameters, by name (SI units).
 fn values(path: &Path, description: &Description) -> Result<BTreeMap<String, f64>, Error> {
-    let source = read(path)?;
+    let origin = "`overact identify my.toml --parameters parameters.toml` writes one";
+    let source = read_or(path, origin)?;
     match parse_parameters(&source, description) {
         Ok(values) => {
             let pairs = values.into_iter().map(|one| (one.name.value, one.value));

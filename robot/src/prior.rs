@@ -3,9 +3,10 @@
 
 use std::collections::BTreeMap;
 
+use crate::body::leg_body;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use overact::{Body, Info, StandardParameter};
-use overact_codegen::description::{Description, Joint, JointKind, Leg};
+use overact_codegen::description::{Description, Joint, JointKind};
 use overact_identification::Prior;
 
 /// A body is at least this part as long as the robot's bodies are on average.
@@ -14,23 +15,36 @@ const SHORTEST: f64 = 0.3;
 /// Mean square half width of a body by the square of the average length.
 const SQUARE_WIDTH: f64 = 0.01;
 
-/// The prior of a description.
-pub(crate) fn prior(description: &Description, info: &Info<'_>) -> Prior {
+/// A standard parameter of a robot: its name, what it is, and of which body.
+pub(crate) type Named<'a> = (&'a str, StandardParameter, Body);
+
+/// The standard parameters of a robot and its payload.
+pub(crate) fn named<'a>(info: &Info<'a>) -> Vec<Named<'a>> {
+    let all = info.parameters.iter().chain(info.payload_parameters);
+    all.map(|one| (one.name, one.symbol, one.body)).collect()
+}
+
+/// The prior of a description of a robot with these standard parameters and this home configuration.
+pub(crate) fn prior(
+    description: &Description,
+    parameters: &[Named<'_>],
+    home_joints: &[f64],
+) -> Prior {
     let mut prior = Prior {
         values: description.prior.values.iter().cloned().collect(),
         bounds: description.prior.bounds.iter().cloned().collect(),
         ..Prior::default()
     };
-    let links = links(description, info);
+    let links = links(description, home_joints);
     let lengths: Vec<f64> = links.values().map(|link| link.norm()).collect();
     let moving: Vec<&f64> = lengths.iter().filter(|length| **length > 0.0).collect();
     let mean = moving.iter().copied().sum::<f64>() / moving.len().max(1) as f64;
     let mean = if mean > 0.0 { mean } else { 0.1 };
-    let all = info.parameters.iter().chain(info.payload_parameters);
-    for parameter in all.filter(|one| one.symbol.is_inertial()) {
-        let suffix = parameter.name.strip_prefix(parameter.symbol.name());
-        let name = |symbol: StandardParameter| format!("{}{}", symbol.name(), suffix.unwrap_or(""));
-        let link = links.get(&parameter.body).copied().unwrap_or_default();
+    let inertial = parameters.iter();
+    for (name, symbol, body) in inertial.filter(|(_, symbol, _)| symbol.is_inertial()) {
+        let suffix = name.strip_prefix(symbol.name()).unwrap_or_default();
+        let name = |symbol: StandardParameter| format!("{}{suffix}", symbol.name());
+        let link = links.get(body).copied().unwrap_or_default();
         let values = rod(link, mean);
         let named = StandardParameter::INERTIA.map(name).into_iter().zip(values);
         prior.uniform.extend(named);
@@ -39,8 +53,8 @@ pub(crate) fn prior(description: &Description, info: &Info<'_>) -> Prior {
 }
 
 /// For each body of a leg the way from its joint to the next ones, on average, in its own frame, m.
-fn links(description: &Description, info: &Info<'_>) -> BTreeMap<Body, Vector3<f64>> {
-    let mut positions = info.home_joints.iter();
+fn links(description: &Description, home_joints: &[f64]) -> BTreeMap<Body, Vector3<f64>> {
+    let mut positions = home_joints.iter();
     let mut links = BTreeMap::new();
     for (number, leg) in description.legs.iter().enumerate() {
         let mut ends: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); leg.joints.len()];
@@ -56,19 +70,10 @@ fn links(description: &Description, info: &Info<'_>) -> BTreeMap<Body, Vector3<f
         for (index, ends) in ends.iter().enumerate() {
             let count = ends.len().max(1) as f64;
             let mean: Vector3<f64> = ends.iter().sum::<Vector3<f64>>() / count;
-            links.insert(body(leg, number, index), mean);
+            links.insert(leg_body(number, index, leg.shape), mean);
         }
     }
     links
-}
-
-fn body(leg: &Leg, number: usize, index: usize) -> Body {
-    let short = |number: usize| u16::try_from(number).unwrap_or(u16::MAX);
-    Body::Leg {
-        leg: short(number),
-        index: short(index),
-        shape: short(leg.shape),
-    }
 }
 
 /// Where a joint's frame stands in that of its antecedent, for a position of the joint.

@@ -1,6 +1,9 @@
 //! A description's tables `[data]` and `[identification]` as settings of the identification.
 
-use crate::{prior::prior, robot::Robot};
+use crate::{
+    prior::{named, prior},
+    robot::Robot,
+};
 use overact::{Info, Model};
 use overact_codegen::description::{
     self, Clock, Description, Factor, Friction, Normalisation, Reversals,
@@ -69,7 +72,7 @@ pub(crate) fn settings(description: &Description, info: &Info<'_>, frequency: f6
             description::Instruments::None => Instruments::None,
         },
         period_s: table.period,
-        prior: prior(description, info),
+        prior: prior(description, &named(info), info.home_joints),
         known: table.known.iter().cloned().collect(),
         ..usual
     };

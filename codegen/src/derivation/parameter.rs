@@ -47,6 +47,14 @@ impl BodyParameter {
         }
     }
 
+    /// Which of the standard parameters it is.
+    #[must_use]
+    pub const fn symbol(self) -> StandardParameter {
+        match self {
+            Self::Leg { symbol, .. } | Self::Platform(symbol) | Self::Payload(symbol) => symbol,
+        }
+    }
+
     /// The payload's parameters.
     #[must_use]
     pub fn of_payload(mechanism: &Mechanism) -> Vec<Self> {

@@ -28,8 +28,6 @@ mod values;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-pub(crate) use prior::problems;
-
 use self::{
     pseudo_inertia::{Inertia, definiteness},
     solve::{Solution, solve},
@@ -117,7 +115,7 @@ pub(crate) fn consistent(
     prior: &Prior,
 ) -> Option<Consistent> {
     let (reduced, b) = observed(system, estimate, base.columns.len());
-    let values = Values::new(prior, columns).with_estimate(columns, base, estimate);
+    let values = Values::new(prior, &columns.named()).with_estimate(columns, base, estimate);
     let unknowns = Unknowns::new(columns, prior, &values);
     let a = &reduced * regroupings(base, &unknowns);
     let values = values.with_density(&unknowns, &a, &b);

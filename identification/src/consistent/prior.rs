@@ -9,52 +9,81 @@ use super::{
     pseudo_inertia::{Inertia, divergence},
     values::{Values, ball, suffix},
 };
-use crate::{error::Problem, prior::Prior, regression::columns::ColumnSet};
+use crate::{error::Problem, prior::Prior};
 
-/// What is wrong with a prior for a model's columns.
-pub(crate) fn problems(prior: &Prior, columns: &ColumnSet) -> Vec<Problem> {
-    let values = Values::new(prior, columns);
-    let mut problems = Vec::new();
-    for (suffix, inertia) in &values.given {
-        if divergence(inertia, inertia).is_none() {
-            let message = format!(
-                "no body has the prior parameters of `m{suffix}`: whatever the others are, its pseudo-inertia is not positive definite"
-            );
-            let help = "give moments about the origin of the body's frame, products of inertia with the sign -∫xy dm, a positive mass";
-            problems.push(Problem::new(message).help(help));
+/// A standard parameter as a prior speaks of it: its name and what it is.
+pub(super) type Named<'a> = (&'a str, StandardParameter);
+
+impl Prior {
+    /// What is wrong with it for a robot of these standard parameters: bodies that nobody can build (the
+    /// problem's column is a parameter of the body) and bounds that leave nothing.
+    #[must_use]
+    pub fn problems(&self, parameters: &[Named<'_>]) -> Vec<Problem> {
+        let values = Values::new(self, parameters);
+        let impossible = values
+            .given
+            .iter()
+            .filter(|(_, inertia)| divergence(inertia, inertia).is_none());
+        let bodies = impossible.map(|(suffix, _)| self.impossible_body(suffix));
+        let bounds = self.bounds.iter().filter_map(|(name, bounds)| {
+            let known = parameters.iter().find(|(own, _)| own == name);
+            impossible_bounds(name, *bounds, known.map(|(_, symbol)| *symbol))
+        });
+        bodies.chain(bounds).collect()
+    }
+
+    /// The problem of a body whose values can't be those of any body.
+    fn impossible_body(&self, suffix: &str) -> Problem {
+        let message = format!(
+            "no body has the prior parameters of `m{suffix}`: whatever the others are, its pseudo-inertia is not positive definite"
+        );
+        let help = "give moments about the origin of the body's frame, products of inertia with the sign -∫xy dm, a positive mass";
+        let problem = Problem::new(message).help(help);
+        let names = StandardParameter::INERTIA.map(|symbol| format!("{}{suffix}", symbol.name()));
+        let given = names
+            .into_iter()
+            .find(|name| self.values.contains_key(name));
+        match given {
+            Some(name) => problem.column(name),
+            None => problem,
         }
     }
-    for (name, [low, high]) in &prior.bounds {
-        let bounded =
-            |symbol: StandardParameter| !symbol.is_inertial() || symbol == StandardParameter::M;
-        let known = columns.as_slice().iter().find(|one| one.name == *name);
-        if low.partial_cmp(high) != Some(std::cmp::Ordering::Less) {
-            let message = format!("the bounds of `{name}` are {low} and {high}");
-            problems.push(Problem::new(message).help("give the smaller one first"));
-        } else if known.is_some_and(|one| !bounded(one.symbol)) {
-            let message = format!("`{name}` can't be bounded");
-            let help = "masses, and coefficients of friction and rotors can";
-            problems.push(Problem::new(message).help(help));
-        } else if *high <= 0.0 && known.is_some_and(|one| one.symbol != StandardParameter::Off) {
-            let message = format!("the bounds of `{name}` leave no positive value");
-            problems.push(Problem::new(message).help("it can't be negative"));
-        }
-    }
-    problems
+}
+
+/// What is wrong with a parameter's bounds, if anything.
+fn impossible_bounds(
+    name: &str,
+    [low, high]: [f64; 2],
+    known: Option<StandardParameter>,
+) -> Option<Problem> {
+    let bounded =
+        |symbol: StandardParameter| !symbol.is_inertial() || symbol == StandardParameter::M;
+    let (message, help) = if low.partial_cmp(&high) != Some(std::cmp::Ordering::Less) {
+        let message = format!("the bounds of `{name}` are {low} and {high}");
+        (message, "give the smaller one first")
+    } else if known.is_some_and(|symbol| !bounded(symbol)) {
+        let help = "masses, and coefficients of friction and rotors can";
+        (format!("`{name}` can't be bounded"), help)
+    } else if high <= 0.0 && known.is_some_and(|symbol| symbol != StandardParameter::Off) {
+        let message = format!("the bounds of `{name}` leave no positive value");
+        (message, "it can't be negative")
+    } else {
+        return None;
+    };
+    Some(Problem::new(message).help(help))
 }
 
 impl Values {
     /// The values that are given, and uniform bodies of density 1.
-    pub(super) fn new(prior: &Prior, columns: &ColumnSet) -> Self {
+    pub(super) fn new(prior: &Prior, parameters: &[Named<'_>]) -> Self {
         let mut values = Self {
             given: BTreeMap::new(),
             uniform: BTreeMap::new(),
             density: 1.0,
             scalars: prior.values.clone(),
         };
-        let inertial = columns.as_slice().iter();
-        for column in inertial.filter(|column| column.symbol.is_inertial()) {
-            let suffix = suffix(column);
+        for &(name, symbol) in parameters.iter().filter(|(_, s)| s.is_inertial()) {
+            let suffix = suffix(name, symbol);
             let named = |from: &BTreeMap<String, f64>| {
                 StandardParameter::INERTIA
                     .map(|p| from.get(&format!("{}{suffix}", p.name())).copied())

@@ -104,7 +104,8 @@ impl Unknowns {
     }
 
     fn add_body(&mut self, columns: &[Column], own: &[usize], values: &Values) {
-        let suffix = own.first().map_or("", |&index| suffix(&columns[index]));
+        let body = own.first().map(|&index| &columns[index]);
+        let suffix = body.map_or("", |one| suffix(&one.standard, one.symbol));
         let names = StandardParameter::INERTIA.map(|symbol| format!("{}{suffix}", symbol.name()));
         let first = self.names.len();
         for &index in own {

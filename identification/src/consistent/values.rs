@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use overact::StandardParameter;
+
 use super::pseudo_inertia::Inertia;
 use crate::{
     estimation::base::BaseParameters,
@@ -75,8 +77,7 @@ pub(super) fn ball() -> Inertia {
     Inertia::from([moment, 0.0, 0.0, moment, 0.0, moment, 0.0, 0.0, 0.0, 1.0])
 }
 
-/// What follows the symbol in the name of a column's parameter.
-pub(super) fn suffix(column: &Column) -> &str {
-    let symbol = column.symbol.name();
-    column.standard.strip_prefix(symbol).unwrap_or_default()
+/// What follows the symbol in the name of a parameter.
+pub(super) fn suffix(name: &str, symbol: StandardParameter) -> &str {
+    name.strip_prefix(symbol.name()).unwrap_or_default()
 }

@@ -6,7 +6,7 @@ use overact::Model;
 use super::{instruments::Companions, progress::Progress};
 use crate::{
     assessment,
-    consistent::{Consistent, consistent, problems},
+    consistent::{Consistent, consistent},
     data::Log,
     error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
@@ -101,7 +101,7 @@ pub fn prepare(
         settings.asymmetric_friction,
         settings.seed,
     )?;
-    Error::check(problems(&settings.prior, &columns))?;
+    Error::check(settings.prior.problems(&columns.named()))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
     // Relations between columns are those of the model; reversals are those of the data.
     let columns = columns.with_reversals(model, settings)?;

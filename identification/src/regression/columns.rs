@@ -228,6 +228,12 @@ impl ColumnSet {
         &self.columns
     }
 
+    /// The columns' names and what they are.
+    pub(crate) fn named(&self) -> Vec<(&str, StandardParameter)> {
+        let columns = self.columns.iter();
+        columns.map(|one| (one.name.as_str(), one.symbol)).collect()
+    }
+
     /// Number of columns.
     #[must_use]
     pub fn len(&self) -> usize {

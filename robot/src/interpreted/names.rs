@@ -1,6 +1,7 @@
 //! What a model says about its robot, as [`overact::Info`] wants it.
 
-use overact::{Body, Info, Parameter, Sizes};
+use crate::body::body;
+use overact::{Info, Parameter, Sizes};
 use overact_codegen::{RobotModel, derivation::BodyParameter, mechanism::JointKind};
 
 /// Names, sizes and parameters of a robot.
@@ -81,31 +82,11 @@ fn leaked(name: String) -> &'static str {
 }
 
 fn parameters(model: &RobotModel, all: &[BodyParameter]) -> Vec<Parameter> {
-    let parameter = |&parameter: &BodyParameter| {
-        let (symbol, body) = match parameter {
-            BodyParameter::Platform(symbol) => (symbol, Body::Platform),
-            BodyParameter::Payload(symbol) => (symbol, Body::Payload),
-            BodyParameter::Leg { leg, joint, symbol } => {
-                let shape = small(model.mechanism.legs[leg].shape);
-                let body = Body::Leg {
-                    leg: small(leg),
-                    index: small(joint),
-                    shape,
-                };
-                (symbol, body)
-            }
-        };
-        Parameter {
-            name: leaked(model.parameter_name(parameter)),
-            symbol,
-            unit: leaked(model.parameter_unit(parameter).to_owned()),
-            body,
-        }
+    let parameter = |&parameter: &BodyParameter| Parameter {
+        name: leaked(model.parameter_name(parameter)),
+        symbol: parameter.symbol(),
+        unit: leaked(model.parameter_unit(parameter).to_owned()),
+        body: body(&model.mechanism, parameter),
     };
     all.iter().map(parameter).collect()
-}
-
-/// No robot has so many legs or joints that this saturates.
-fn small(index: usize) -> u16 {
-    u16::try_from(index).unwrap_or(u16::MAX)
 }

@@ -19,6 +19,9 @@ const STEP: f64 = 0.05;
 /// Most steps of such a walk.
 const STEPS: usize = 200;
 
+/// Most quantities of a state that a message names.
+const MOST_NAMED: usize = 12;
+
 /// A problem of a state, or the names of quantities that it lacks.
 enum Lack {
     Missing(Vec<String>),
@@ -60,27 +63,34 @@ pub(super) fn inputs(
         }
         missing.dedup();
         if !missing.is_empty() {
-            let names: Vec<String> = missing.iter().map(|name| format!("`{name}`")).collect();
-            let problem = states.problem(at, &format!("missing {}", names.join(", ")));
-            let takes: Vec<String> = program
-                .inputs
-                .iter()
-                .map(|a| described(a, from, robot))
-                .collect();
-            return Err(problem
-                .help(format!("the function takes {}", takes.join(", ")))
-                .into());
+            return Err(lacking(at, &missing, states, &gatherer.takes(program)).into());
         }
     }
     Ok(inputs)
 }
 
-/// An input as the states are to hold it: from actuators, the pose is found and not given.
-fn described(array: &Array, from: MotionInput, robot: &InterpretedRobot) -> String {
-    if array.name == "pose" && from == MotionInput::Actuators {
-        return format!("`actuators` ({} numbers)", robot.info().sizes.actuators);
+/// A state without some of what a function takes.
+fn lacking(at: usize, missing: &[String], states: &States, takes: &[String]) -> Problem {
+    let quoted = |names: &mut dyn Iterator<Item = &str>| {
+        let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+        names.join(", ")
+    };
+    let found = states.found(at);
+    let more = match found.len().saturating_sub(MOST_NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let held = match found.is_empty() {
+        true => "nothing".to_owned(),
+        false => quoted(&mut found.into_iter().take(MOST_NAMED)) + &more,
+    };
+    let mut help = format!("the function takes {}", takes.join(", "));
+    if missing.iter().any(|name| name == "parameters") {
+        help += "; `--parameters FILE` gives those of all states";
     }
-    format!("`{}` ({} numbers)", array.name, array.len())
+    let missing = quoted(&mut missing.iter().map(String::as_str));
+    let message = format!("missing {missing}; the state holds {held}");
+    states.problem(at, &message).help(help)
 }
 
 struct Gatherer<'a> {
@@ -94,6 +104,17 @@ struct Gatherer<'a> {
 }
 
 impl Gatherer<'_> {
+    /// The inputs as the states are to hold them: from actuators, the pose is found and not given.
+    fn takes(&self, program: &Program) -> Vec<String> {
+        let form = |array: &Array| match array.name.as_str() {
+            "pose" if self.from == MotionInput::Actuators => self
+                .states
+                .form("actuators", self.robot.info().sizes.actuators),
+            name => self.states.form(name, array.len()),
+        };
+        program.inputs.iter().map(form).collect()
+    }
+
     fn input(&mut self, at: usize, array: &Array) -> Result<Vec<f64>, Lack> {
         let is_tree = self.robot.model().is_tree();
         match array.name.as_str() {

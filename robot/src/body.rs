@@ -1,0 +1,27 @@
+//! Where the bodies of a robot's standard parameters are.
+
+use overact::Body;
+use overact_codegen::{derivation::BodyParameter, mechanism::Mechanism};
+
+/// The body of a standard parameter.
+pub(crate) fn body(mechanism: &Mechanism, parameter: BodyParameter) -> Body {
+    match parameter {
+        BodyParameter::Platform(_) => Body::Platform,
+        BodyParameter::Payload(_) => Body::Payload,
+        BodyParameter::Leg { leg, joint, .. } => leg_body(
+            leg,
+            joint,
+            mechanism.legs.get(leg).map_or(0, |leg| leg.shape),
+        ),
+    }
+}
+
+/// A body of a leg, by their numbers. No robot has so many legs or joints that these saturate.
+pub(crate) fn leg_body(leg: usize, index: usize, shape: usize) -> Body {
+    let small = |number: usize| u16::try_from(number).unwrap_or(u16::MAX);
+    Body::Leg {
+        leg: small(leg),
+        index: small(index),
+        shape: small(shape),
+    }
+}
