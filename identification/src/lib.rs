@@ -57,7 +57,7 @@ pub use calibration::{
     Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
 pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
-pub use data::{Dataset, Gain, Log, Mapping, Periods, Time};
+pub use data::{Dataset, Gain, Log, Mapping, Periods, Time, Variant};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},

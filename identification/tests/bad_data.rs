@@ -39,6 +39,7 @@ fn identified(runs: &[Log]) -> Result<Identification, Error> {
         runs,
         validation: &[],
         true_values: None,
+        variants: &[],
     };
     identify(&robot, &dataset, &settings(&robot).trimmed(1000.0), &|_| {})
 }

@@ -257,6 +257,7 @@ fn experiments_are_checked() {
             runs: experiment,
             validation: &[],
             true_values: None,
+            variants: &[],
         };
         identify(model, &dataset, &settings(), &|_| {})
             .expect_err("an error")
@@ -276,6 +277,7 @@ fn experiments_are_checked() {
         runs: &[still],
         validation: &[],
         true_values: None,
+        variants: &[],
     };
     // At rest only the offset has a column, and it explains torques of zero.
     let result = identify(&PAIR, &dataset, &settings(), &|_| {}).expect("an estimate");

@@ -15,6 +15,7 @@ fn identified(robot: &DualV, rotation: f64) -> Identification {
         runs: &runs,
         validation: &[],
         true_values: Some(&truth),
+        variants: &[],
     };
     identify(robot, &dataset, &settings(robot), &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -47,6 +47,7 @@ fn identified(settings: &Settings) -> Option<Identification> {
         runs: &runs,
         validation: &validation,
         true_values: None,
+        variants: &[],
     };
     Some(identify(&EMPS, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}")))
 }

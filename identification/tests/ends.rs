@@ -24,6 +24,7 @@ fn identified(log: &Log, settings: &Settings) -> Result<Identification, Error> {
         runs: std::slice::from_ref(log),
         validation: &[],
         true_values: None,
+        variants: &[],
     };
     identify(&EMPS, &dataset, settings, &|_| {})
 }

@@ -14,6 +14,7 @@ fn identified(robot: &DualV, runs: &[Log], settings: &Settings) -> Identificatio
         runs,
         validation: &[],
         true_values: Some(&truth),
+        variants: &[],
     };
     identify(robot, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }

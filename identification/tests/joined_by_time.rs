@@ -172,6 +172,7 @@ fn the_result_says_what_was_interpolated() {
         runs: std::slice::from_ref(&log),
         validation: &[],
         true_values: None,
+        variants: &[],
     };
     let result =
         identify(&EMPS, &dataset, &settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"));

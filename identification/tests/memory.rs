@@ -74,6 +74,7 @@ fn identified(
             runs: std::slice::from_ref(&log),
             validation: &[],
             true_values: None,
+            variants: &[],
         },
         &settings,
         &|progress| {

@@ -185,6 +185,7 @@ fn noise_is_covered_by_the_standard_deviations() {
         runs: &runs,
         validation: &validation,
         true_values: Some(&truth),
+        variants: &[],
     };
     let result = identify(&Point, &dataset, &settings(), &|_| {}).expect("a result");
     println!("{:#?}", result.estimates);
@@ -227,6 +228,7 @@ fn predicted(run: &Log, from: &Log) -> (f64, f64) {
         runs: std::slice::from_ref(from),
         validation: std::slice::from_ref(run),
         true_values: None,
+        variants: &[],
     };
     let result = identify(&Point, &dataset, &settings(), &|_| {}).expect("a result");
     let mut all = result.cross_validation.iter();
@@ -250,6 +252,7 @@ fn choices_are_judged_by_runs_that_were_held_out() {
         runs: &runs,
         validation: &[],
         true_values: None,
+        variants: &[],
     };
     let choices = [vec![0, 1], vec![0, 2], vec![1, 2]];
     let study = study(&Point, &dataset, &choices, &settings(), &|_| {}).expect("a study");

@@ -96,6 +96,7 @@ fn identified(runs: &[Log], settings: &Settings) -> Identification {
         runs,
         validation: &validation,
         true_values: Some(&truth),
+        variants: &[],
     };
     identify(&PAIR, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -189,6 +190,7 @@ fn times_count_from_the_start_of_the_log() {
         runs: &runs,
         validation: &runs,
         true_values: None,
+        variants: &[],
     };
     let figures = identify(&PAIR, &dataset, &settings, &|_| {})
         .expect("an identification")

@@ -45,6 +45,7 @@ fn identified(limit: Vec<f64>) -> Identification {
         runs: std::slice::from_ref(&log),
         validation: &[],
         true_values: None,
+        variants: &[],
     };
     identify(&EMPS, &dataset, &settings(limit), &|_| {}).expect("an identification")
 }

@@ -36,6 +36,7 @@ fn identified(log: &Log, validation: &[Log]) -> Identification {
         runs: std::slice::from_ref(log),
         validation,
         true_values: None,
+        variants: &[],
     };
     identify(&EMPS, &dataset, &settings, &|_| {}).expect("an identification")
 }

@@ -221,8 +221,10 @@ impl<'a> Identifier<'a> {
             Instruments::Simulated => Some(self.robot.simulated(self.runs, &settings)?),
             _ => None,
         };
+        let variants = self.robot.variants();
         let dataset = Dataset {
             runs: beside.as_deref().unwrap_or(self.runs),
+            variants: &variants.lent(),
             ..self.dataset()
         };
         let mut result = identify(
@@ -265,6 +267,7 @@ impl<'a> Identifier<'a> {
             runs: self.runs,
             validation: self.validation,
             true_values: self.true_values,
+            variants: &[],
         }
     }
 

@@ -28,6 +28,7 @@
 //!   simulation; `runs`: logs and virtual runs;
 //! - `check`: everything that is wrong with a description, found without its model;
 //! - `excitation`: runs that determine the parameters best inside limits;
+//! - `variants`: the robot with other lengths, by which wrong ones are told;
 //! - `instruments`: the motion of the simulated robot beside runs, by which errors of theirs are told;
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
@@ -49,6 +50,7 @@ mod robot;
 mod runs;
 mod settings;
 mod tracking;
+mod variants;
 
 pub use check::{CheckedFile, check};
 pub use compiled_file::CompiledFile;
@@ -65,3 +67,4 @@ pub use partitions::partitions;
 pub use robot::Robot;
 pub use runs::Runs;
 pub use tracking::tracking;
+pub use variants::Variants;

@@ -102,6 +102,7 @@ const HOUSES: [House; 6] = [
         folder: "robot",
         order: &[
             "error",
+            "body",
             "interpreted",
             "compiled_file",
             "parameters",
@@ -109,6 +110,7 @@ const HOUSES: [House; 6] = [
             "prior",
             "settings",
             "calibration",
+            "variants",
             "experiment",
             "check",
             "runs",

@@ -3,7 +3,7 @@
 use crate::Failure;
 use overact::{Info, Model};
 use overact_identification::{Projection, Settings};
-use overact_robot::Robot;
+use overact_robot::{Robot, Variants};
 use overact_simulation::Experiment;
 use std::{collections::BTreeMap, ffi::OsStr, fs, path::Path};
 
@@ -16,6 +16,8 @@ pub struct Subject {
     pub experiment: Experiment,
     /// The true values by name.
     pub truth: BTreeMap<String, f64>,
+    /// The robot with other lengths, where nothing but the torques tells of them.
+    pub variants: Variants,
     /// How it is identified.
     pub settings: Settings,
 }
@@ -53,6 +55,7 @@ impl Subject {
         Ok(Self {
             settings: robot.settings(experiment.sampling_hz),
             truth: robot.true_values().unwrap_or_default(),
+            variants: robot.variants(),
             experiment,
             compiled,
             robot,

@@ -40,6 +40,9 @@ pub struct Cell {
     pub spread: f64,
     /// The parameter whose intervals contain the truth least often, and how often, percent.
     pub worst: (String, f64),
+    /// For each parameter in how many draws it was estimated, and in how many of these its interval
+    /// contains the truth.
+    pub each: BTreeMap<String, [usize; 2]>,
 }
 
 /// Collects the draws of one robot.
@@ -70,20 +73,17 @@ impl Tally {
         let all = || own.iter().flat_map(|one| &one.parameters);
         let squares: f64 = all().map(|one| one.miss.powi(2)).sum();
         let mut widths: Vec<f64> = all().map(|one| one.relative_width).collect();
-        let mut names: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+        let mut each: BTreeMap<String, [usize; 2]> = BTreeMap::new();
         for one in all() {
-            let count = names.entry(one.name.as_str()).or_default();
-            count.0 += usize::from(one.covers);
-            count.1 += 1;
+            let count = each.entry(one.name.clone()).or_default();
+            count[0] += 1;
+            count[1] += usize::from(one.covers);
         }
         // A parameter that is rarely among the chosen ones says little.
-        let often = names
-            .iter()
-            .filter(|(_, (_, count))| 2 * count >= own.len());
-        let rates = often.map(|(name, (hits, count))| (*name, *hits as f64 / *count as f64));
-        let worst = rates
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .unwrap_or(("", f64::NAN));
+        let often = each.iter().filter(|(_, [count, _])| 2 * count >= own.len());
+        let rates = often.map(|(name, [count, hits])| (name.clone(), *hits as f64 / *count as f64));
+        let worst = rates.min_by(|a, b| a.1.total_cmp(&b.1));
+        let worst = worst.unwrap_or((String::new(), f64::NAN));
         Cell {
             robot: robot.to_owned(),
             model: key.model,
@@ -100,7 +100,8 @@ impl Tally {
             ],
             relative_width: median(&mut widths),
             spread: 1.96 * (squares / all().count() as f64).sqrt(),
-            worst: (worst.0.to_owned(), 100.0 * worst.1),
+            worst: (worst.0, 100.0 * worst.1),
+            each,
         }
     }
 }

@@ -136,6 +136,8 @@ pub enum CheckKind {
     Clock,
     /// The torques speak of an offset or a play of an encoder.
     EncoderOffset,
+    /// The torques speak of another length than the described one.
+    Length,
     /// The residual holds something that the model lacks.
     MissingParameter,
     /// A parameter that can't be negative is.
@@ -172,6 +174,7 @@ impl CheckKind {
             Self::Delay => "delay",
             Self::Clock => "clock",
             Self::EncoderOffset => "encoder offset",
+            Self::Length => "length",
             Self::MissingParameter => "missing parameter",
             Self::NegativeParameter => "negative parameter",
             Self::Partition => "partition",

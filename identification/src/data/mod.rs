@@ -36,7 +36,7 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-pub use dataset::Dataset;
+pub use dataset::{Dataset, Variant};
 pub use log::{Log, Reader};
 pub use mapping::{Gain, Mapping, Time};
 pub use periods::Periods;

@@ -91,7 +91,8 @@ pub fn identify(
     let scores = base.map(|(_, base)| {
         let columns = (&prepared.columns, prepared.base.columns.as_slice());
         let reaches = reaches(&watched[..dataset.runs.len()]);
-        scores(model, dataset.runs, columns, (base, &reaches), settings)
+        let runs = (dataset.runs, dataset.variants);
+        scores(model, runs, columns, (base, &reaches), settings)
     });
     let scores = scores.transpose()?;
     let checks = assessment::checks(&Context {

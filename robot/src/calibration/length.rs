@@ -89,6 +89,14 @@ impl Length {
     /// All lengths of a leg. Those of its chain that are zero are so by design; the points where it stands
     /// and ends may be off in any direction. The constant of a sliding joint is the offset of its position.
     fn all(leg: &Leg) -> Vec<Self> {
+        let mut all = Self::steps(leg);
+        all.extend((0..AXES.len()).map(Self::Base));
+        all.extend((0..AXES.len()).map(Self::End));
+        all
+    }
+
+    /// The lengths of a leg's chain.
+    fn steps(leg: &Leg) -> Vec<Self> {
         let mut all = Vec::new();
         for (index, joint) in leg.joints.iter().enumerate() {
             let slides = joint.kind == JointKind::Prismatic;
@@ -98,9 +106,26 @@ impl Length {
                 .filter(|step| !(slides && *step == Self::R(index)));
             all.extend(steps.filter(|step| step.value(leg) != 0.0));
         }
-        all.extend((0..AXES.len()).map(Self::Base));
-        all.extend((0..AXES.len()).map(Self::End));
         all
+    }
+}
+
+/// The lengths of a robot without loops, with their names and values (m).
+pub(crate) fn of_tree(mechanism: &Mechanism) -> Vec<(LegLength, String, f64)> {
+    let legs = mechanism.legs.iter().enumerate();
+    let each = legs.flat_map(|(leg, own)| {
+        let of_leg = move |length: Length| {
+            (
+                LegLength { leg, length },
+                length.name(own),
+                length.value(own),
+            )
+        };
+        Length::steps(own).into_iter().map(of_leg)
+    });
+    match mechanism.platform {
+        Some(_) => Vec::new(),
+        None => each.collect(),
     }
 }
 

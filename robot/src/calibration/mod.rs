@@ -9,6 +9,8 @@ mod closure;
 mod length;
 mod text;
 
+pub(crate) use length::of_tree;
+
 use crate::{error::Error, robot::Robot};
 use closure::MechanismGeometry;
 use overact_identification::{Calibration, CalibrationScope, Log, calibrate};

@@ -214,6 +214,7 @@ pub fn identified(subject: &Subject, records: Vec<Record>) -> Result<Identificat
         runs: &runs,
         validation: &[],
         true_values: Some(&subject.truth),
+        variants: &subject.variants.lent(),
     };
     Ok(identify(
         subject.model(),

@@ -4,8 +4,8 @@
 mod clock;
 mod closure;
 mod delay;
-mod encoders;
 mod gains;
+mod geometry;
 mod held_out;
 pub(crate) mod level;
 mod missing_parameters;
@@ -99,7 +99,7 @@ const CHECKS: [Function; 15] = [
     delay::check,
     clock::check,
     gains::check,
-    encoders::check,
+    geometry::check,
     payload_labels::check,
     missing_parameters::check,
     negative_parameters::check,

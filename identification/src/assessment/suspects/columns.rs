@@ -23,6 +23,8 @@ pub(crate) enum Suspect {
     Offset(usize),
     /// The position of an actuator is behind by this half of a play.
     Play(usize),
+    /// A length is too large by this.
+    Length(usize),
     /// A torque of an actuator that the model lacks.
     Torque(usize, Shape),
     /// A force on a coordinate of the platform that the model lacks.
@@ -87,8 +89,9 @@ impl Layout {
     }
 }
 
-/// The suspects of a robot whose estimate explains the inputs of a model; waves come last.
-pub(super) fn suspects(model: &dyn Model, kind: ModelKind) -> Vec<Suspect> {
+/// The suspects of a robot whose estimate explains the inputs of a model, and of which so many lengths are
+/// asked for; waves come last.
+pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Vec<Suspect> {
     let info = model.info();
     let sizes = info.sizes;
     let mut all = vec![Suspect::Delay, Suspect::Clock];
@@ -98,6 +101,7 @@ pub(super) fn suspects(model: &dyn Model, kind: ModelKind) -> Vec<Suspect> {
         all.extend((0..sizes.actuators).map(Suspect::Offset));
         all.extend((0..sizes.actuators).map(Suspect::Play));
     }
+    all.extend((0..lengths).map(Suspect::Length));
     for actuator in 0..sizes.actuators {
         // An angle that is unwound has no place among springs, but its sine has; a length has neither.
         let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
@@ -131,10 +135,11 @@ pub(super) struct Sample<'a> {
     pub(super) reaches: &'a [Reach],
     /// The pose.
     pub(super) pose: &'a [f64],
-    /// By how much Γ¹ would change with the clock, and with the position of each actuator, n x r; empty
-    /// where that is not asked for.
+    /// By how much Γ¹ would change with the clock, with the position of each actuator, n x r, and with each
+    /// length; empty where that is not asked for.
     pub(super) clock: &'a [f64],
     pub(super) offsets: &'a [f64],
+    pub(super) lengths: &'a [f64],
 }
 
 impl Sample<'_> {
@@ -152,6 +157,7 @@ impl Sample<'_> {
             Suspect::Clock => self.clock[line],
             Suspect::Offset(i) => self.offsets[i * r + line],
             Suspect::Play(i) => shaped(i, Shape::Sign) * self.offsets[i * r + line],
+            Suspect::Length(length) => self.lengths[length * r + line],
             Suspect::Torque(i, shape) => share(i) * shaped(i, shape),
             Suspect::Force(own, _) if own != line => 0.0,
             Suspect::Force(own, shape) => {

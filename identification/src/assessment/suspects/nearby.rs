@@ -6,6 +6,7 @@ use overact::{Function, Model};
 use super::shapes::Moment;
 use crate::{
     blocks::{BLOCK, evaluate, slice},
+    data::Variant,
     error::Error,
     kinematics::{
         Motion,
@@ -29,7 +30,12 @@ pub(super) struct Nearby<'a> {
     pub(super) values: &'a [f64],
 }
 
-impl Nearby<'_> {
+impl<'a> Nearby<'a> {
+    /// Of another robot with the same parameters.
+    fn of(&self, model: &'a dyn Model) -> Self {
+        Self { model, ..*self }
+    }
+
     /// Γ¹ as the estimate explains it, samples x r, of samples one `interval` (s) apart.
     fn explained(
         &self,
@@ -120,6 +126,30 @@ impl Nearby<'_> {
             .zip(there)
             .map(|(a, b)| (a - b) / STEP)
             .collect())
+    }
+
+    /// By how much Y - W χ changes with each length that is described too large, samples x lengths x r.
+    pub(super) fn lengths(
+        &self,
+        motion: &Motion,
+        variants: &[Variant<'a>],
+    ) -> Result<Vec<f64>, Error> {
+        if variants.is_empty() {
+            return Ok(Vec::new());
+        }
+        let r = self.model.info().sizes.dof;
+        let interval = 1.0 / motion.sampling_frequency;
+        let states: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
+        let here = self.explained(motion, states, interval)?;
+        let mut all = vec![0.0; here.len() * variants.len()];
+        for (number, variant) in variants.iter().enumerate() {
+            let there = self.of(variant.model).explained(motion, states, interval)?;
+            for (place, (a, b)) in here.iter().zip(&there).enumerate() {
+                let (sample, line) = (place / r, place % r);
+                all[(sample * variants.len() + number) * r + line] = (a - b) / variant.step;
+            }
+        }
+        Ok(all)
     }
 
     /// By how much Y - W χ changes with the position of each actuator while its velocity and acceleration

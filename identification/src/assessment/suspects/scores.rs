@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     blocks::{BLOCK, evaluate, slice},
-    data::Log,
+    data::{Log, Variant},
     error::Error,
     filters::{DECIMATION_PADDING, Decimation, Decimator},
     kinematics::{
@@ -61,6 +61,7 @@ pub(crate) struct Scores {
 /// What a pass needs.
 struct Pass<'a> {
     model: &'a dyn Model,
+    variants: &'a [Variant<'a>],
     columns: &'a ColumnSet,
     base: &'a [usize],
     /// Places of the columns of dry friction among the base parameters.
@@ -78,12 +79,12 @@ struct Pass<'a> {
 /// As [`Motions::next`]; the runs have been gone through before.
 pub(crate) fn scores(
     model: &dyn Model,
-    runs: &[Log],
+    (runs, variants): (&[Log], &[Variant<'_>]),
     (columns, base): (&ColumnSet, &[usize]),
     (estimate, reaches): (&Estimate, &[Reach]),
     settings: &Settings,
 ) -> Result<Scores, Error> {
-    let suspects = suspects(model, estimate.model);
+    let suspects = suspects(model, variants.len(), estimate.model);
     let payload = model.info().payload_parameters;
     let friction = coulomb(columns, base);
     let layout = Layout::new(base.len() + friction.len(), &suspects, payload.len());
@@ -97,6 +98,7 @@ pub(crate) fn scores(
     let narrower = narrower(&runs, settings, (layout.base, model.info().sizes.dof));
     let pass = Pass {
         model,
+        variants,
         columns,
         base,
         friction: &friction,
@@ -299,6 +301,7 @@ impl Pass<'_> {
             false => Vec::new(),
         };
         let width = self.width();
+        let lengths = nearby.lengths(motion, self.variants)?;
         let own = layout.base + 1;
         for sample in 0..motion.samples {
             let here = Sample {
@@ -310,6 +313,7 @@ impl Pass<'_> {
                 pose: slice(&motion.pose, info.sizes.pose, sample, 1),
                 clock: slice(&clock, r, sample, 1),
                 offsets: slice(&offsets, n * r, sample, 1),
+                lengths: slice(&lengths, self.variants.len() * r, sample, 1),
             };
             for (line, rows) in lines.iter_mut().enumerate() {
                 let row = &mut rows[sample * width..(sample + 1) * width];

@@ -15,28 +15,32 @@
 //! of about B degrees of freedom.
 //!
 //! The residual is not the noise: the fit has taken a part away, the more the closer the other columns
-//! are to column i times a slow cosine. For white noise ε, ρ = (I - H) ε with H = Λ W A^-1 Wᵀ Λ, so that
-//! T_1 … T_B of parameter i have the covariance matrix
+//! are to column i times a slow cosine. For noise ε that is white in time, with the covariance Ω of the
+//! lines at an instant, ρ = (I - H) ε with H = Λ W A^-1 Wᵀ Λ, so that T_1 … T_B of parameter i have the
+//! covariance matrix
 //!
 //! ```text
-//! C_bb' = Σ_t φ_b φ_b' [A^-1 G_t A^-1]_ii - z_b · z_b',   z_b = R^-T (Σ_t φ_b G_t) A^-1 e_i,   A = RᵀR.
+//! C_bb' = Σ_t φ_b φ_b' [A^-1 V_t A^-1]_ii - z_b · y_b' - y_b · z_b' + z_bᵀ R^-T (Σ_t V_t) R^-1 z_b',
+//! V_t = Σ_jk λ_j λ_k Ω_jk w_jt w_ktᵀ,   A = RᵀR,
+//! z_b = R^-T (Σ_t φ_b G_t) A^-1 e_i,   y_b = R^-T (Σ_t φ_b V_t) A^-1 e_i.
 //! ```
 //!
-//! Its trace tells by how much σ_i² is too small, which is made good, and (tr C)²/tr C² are the degrees
-//! of freedom of σ_i² (Bell and McCaffrey, *Survey Methodology* 28, 2002), which are few where a few
-//! instants outweigh all others.
+//! Ω is that of the weighted residuals. Lines share noise: in case 2 the torque of an omitted actuator
+//! enters the equations of all kept ones. The trace of C tells by how much σ_i² is too small, which is made
+//! good, and (tr C)²/tr C² are the degrees of freedom of σ_i² (Bell and McCaffrey, *Survey Methodology* 28,
+//! 2002), which are few where a few instants outweigh all others.
 //!
 //! Any other estimate that is linear in Y serves, too: with instruments Z, rows x = [w z] and the
-//! estimate M Σ λ² x y, the scores are M x ρ, the matrix A^-1 G_t A^-1 becomes M G_t Mᵀ with G_t of the
-//! rows x, and z_b = R^-T (Σ_t φ_b G_t)_w Mᵀ e_i with the rows of G_t that belong to w.
+//! estimate M Σ λ² x y, the scores are M x ρ, the matrix A^-1 V_t A^-1 becomes M V_t Mᵀ with V_t of the
+//! rows x, and z_b = R^-T (Σ_t φ_b G_t)_w Mᵀ e_i with the rows of G_t that belong to w; so with y_b.
 
 use std::ops::Range;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::{
-    estimation::estimate::Estimation,
+    estimation::{correlation::residual, estimate::Estimation},
     regression::system::{Stretch, System},
 };
 
@@ -48,6 +52,9 @@ const MOST_COSINES: usize = 64;
 
 /// Sections of a stretch for each cosine; within a section the cosines count as constant.
 const SECTIONS: usize = 4;
+
+/// Equations of a line of which products are made at once.
+const AT_ONCE: usize = 512;
 
 /// The covariance of an estimate, with the degrees of freedom of its variances.
 #[derive(Debug, Clone)]
@@ -62,10 +69,16 @@ impl Covariance {
     /// That of an estimate; none without successive equations.
     pub(crate) fn new(system: &System, context: &Context<'_>) -> Option<Self> {
         let p = context.selected.len();
-        let shares: Vec<Share> = system
-            .stretches
-            .par_iter()
-            .filter_map(|stretch| context.share(stretch))
+        let stretches = || system.stretches.par_iter();
+        let count = system.lines.len();
+        let common = stretches().map(|stretch| context.products(stretch));
+        let common = mixture(common.reduce(|| DMatrix::zeros(count, count), |a, b| a + b))?;
+        let noise = stretches().map(|stretch| context.noise(stretch, &common));
+        let noise = noise.reduce(|| DMatrix::zeros(p, p), |a, b| a + b);
+        let inverse = &context.estimation.inverse;
+        let noise = inverse.tr_mul(&noise) * inverse;
+        let shares: Vec<Share> = stretches()
+            .filter_map(|stretch| context.share(stretch, &common, &noise))
             .collect();
         let kept: usize = shares.iter().map(|share| share.equations).sum();
         let equations = system.lines.iter().map(|line| line.equations()).max()?;
@@ -135,13 +148,15 @@ struct Share {
 struct Sections {
     /// Σ x ρ, q x sections, of rows x of q values.
     scores: DMatrix<f64>,
-    /// [M G Mᵀ]_ii, p x sections.
+    /// [M V Mᵀ]_ii, p x sections.
     variances: DMatrix<f64>,
     /// The rows of G Mᵀ that belong to columns, p² x sections.
     fitted: DMatrix<f64>,
+    /// The rows of V Mᵀ that belong to columns, p² x sections.
+    noisy: DMatrix<f64>,
 }
 
-/// For one parameter, what white noise of unit variance gives.
+/// For one parameter, what noise of the covariance Ω gives.
 struct Moments {
     /// The variance that is looked for.
     wanted: f64,
@@ -183,14 +198,52 @@ impl<'a> Context<'a> {
         self.influence.as_ref().unwrap_or(&self.inverse)
     }
 
-    fn share(&self, stretch: &Stretch) -> Option<Share> {
+    /// Σ_t ρ_j ρ_k of the weighted residuals of a stretch.
+    fn products(&self, stretch: &Stretch) -> DMatrix<f64> {
+        let lines = stretch.lines.iter().zip(&self.estimation.weights);
+        let residuals = lines.map(|(line, weight)| {
+            let rows = line.rows(0, line.nrows());
+            DVector::from_vec(residual(&rows, self.selected, &self.estimation.values)) * *weight
+        });
+        let residuals = DMatrix::from_columns(&residuals.collect::<Vec<_>>());
+        residuals.tr_mul(&residuals)
+    }
+
+    /// Σ_t V_t of a stretch, of columns.
+    fn noise(&self, stretch: &Stretch, common: &DMatrix<f64>) -> DMatrix<f64> {
+        let p = self.selected.len();
+        let rows = stretch.lines.first().map_or(0, DMatrix::nrows);
+        let mut sum = DMatrix::zeros(p, p);
+        let mut first = 0;
+        while first < rows {
+            let count = AT_ONCE.min(rows - first);
+            let lines = stretch.lines.iter().zip(&self.estimation.weights);
+            let lines: Vec<_> = lines
+                .map(|(line, weight)| {
+                    line.rows(first, count).select_columns(self.selected) * *weight
+                })
+                .collect();
+            for mixed in mixed(&lines, common) {
+                sum.gemm_tr(1.0, &mixed, &mixed, 1.0);
+            }
+            first += count;
+        }
+        sum
+    }
+
+    fn share(
+        &self,
+        stretch: &Stretch,
+        common: &DMatrix<f64>,
+        noise: &DMatrix<f64>,
+    ) -> Option<Share> {
         let equations = stretch.lines.first()?.nrows();
         let cosines = cosines(equations);
         let sections = (SECTIONS * cosines).min(equations);
         if sections <= cosines {
             return None;
         }
-        let told = self.sections(stretch, equations, sections);
+        let told = self.sections(stretch, equations, sections, common);
         let waves = DMatrix::from_fn(sections, cosines, |k, b| {
             std::f64::consts::SQRT_2 * cosine(b + 1, k, sections)
         });
@@ -199,23 +252,31 @@ impl<'a> Context<'a> {
         Some(Share {
             equations,
             matrix,
-            moments: self.moments(&told, &waves),
+            moments: self.moments(&told, &waves, noise),
         })
     }
 
     /// What is needed of each section of a stretch.
-    fn sections(&self, stretch: &Stretch, equations: usize, sections: usize) -> Sections {
+    fn sections(
+        &self,
+        stretch: &Stretch,
+        equations: usize,
+        sections: usize,
+        common: &DMatrix<f64>,
+    ) -> Sections {
         let turned = self.influence().transpose();
         let (q, p) = turned.shape();
         let mut told = Sections {
             scores: DMatrix::zeros(q, sections),
             variances: DMatrix::zeros(p, sections),
             fitted: DMatrix::zeros(p * p, sections),
+            noisy: DMatrix::zeros(p * p, sections),
         };
         for section in 0..sections {
             let first = equations * section / sections;
             let count = equations * (section + 1) / sections - first;
             let mut gram = DMatrix::zeros(q, q);
+            let mut all = Vec::new();
             for (number, (line, weight)) in stretch
                 .lines
                 .iter()
@@ -233,17 +294,22 @@ impl<'a> Context<'a> {
                     .column_mut(section)
                     .gemv_tr(1.0, &own, &residual, 1.0);
                 gram.gemm_tr(1.0, &own, &own, 1.0);
+                all.push(own);
             }
-            let product = gram * &turned;
+            let mut noise = DMatrix::zeros(q, q);
+            for mixed in mixed(&all, common) {
+                noise.gemm_tr(1.0, &mixed, &mixed, 1.0);
+            }
+            let (product, noise) = (gram * &turned, noise * &turned);
             for i in 0..p {
-                told.variances[(i, section)] = turned.column(i).dot(&product.column(i));
+                told.variances[(i, section)] = turned.column(i).dot(&noise.column(i));
             }
-            let columns = product.rows(0, p);
-            let mut place = told.fitted.column_mut(section);
-            place
-                .iter_mut()
-                .zip(columns.iter())
-                .for_each(|(to, from)| *to = *from);
+            for (to, from) in [(&mut told.fitted, &product), (&mut told.noisy, &noise)] {
+                let mut place = to.column_mut(section);
+                let columns = from.rows(0, p);
+                let values = place.iter_mut().zip(columns.iter());
+                values.for_each(|(to, from)| *to = *from);
+            }
         }
         told
     }
@@ -267,17 +333,22 @@ impl<'a> Context<'a> {
         }
     }
 
-    fn moments(&self, told: &Sections, waves: &DMatrix<f64>) -> Vec<Moments> {
+    /// R^-T (Σ φ_b X) of each cosine, for X of each section.
+    fn turned(&self, sections: &DMatrix<f64>, waves: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
+        let p = self.selected.len();
+        let sums = sections * waves;
+        let sums = sums.column_iter().map(|sum| {
+            let sum = nalgebra::DMatrixView::from_slice(sum.as_slice(), p, p);
+            self.estimation.inverse.tr_mul(&sum)
+        });
+        sums.collect()
+    }
+
+    fn moments(&self, told: &Sections, waves: &DMatrix<f64>, noise: &DMatrix<f64>) -> Vec<Moments> {
         let p = self.selected.len();
         let (sections, cosines) = waves.shape();
-        let sums = &told.fitted * waves;
-        let fitted: Vec<DMatrix<f64>> = sums
-            .column_iter()
-            .map(|sum| {
-                let sum = nalgebra::DMatrixView::from_slice(sum.as_slice(), p, p);
-                self.estimation.inverse.tr_mul(&sum)
-            })
-            .collect();
+        let fitted = self.turned(&told.fitted, waves);
+        let noisy = self.turned(&told.noisy, waves);
         (0..p)
             .map(|i| {
                 let own = told.variances.row(i);
@@ -289,9 +360,13 @@ impl<'a> Context<'a> {
                     })
                     .collect();
                 let z = DMatrix::from_fn(p, cosines, |row, b| fitted[b][(row, i)]);
-                let taken = z.tr_mul(&z);
+                let y = DMatrix::from_fn(p, cosines, |row, b| noisy[b][(row, i)]);
+                let crossed = z.tr_mul(&y);
+                let taken = z.tr_mul(&(noise * &z));
                 let c = DMatrix::from_fn(cosines, cosines, |a, b| {
-                    spectrum[a.abs_diff(b)] + spectrum[a + b + 2] - taken[(a, b)]
+                    spectrum[a.abs_diff(b)] + spectrum[a + b + 2] + taken[(a, b)]
+                        - crossed[(a, b)]
+                        - crossed[(b, a)]
                 });
                 let count = cosines as f64;
                 Moments {
@@ -302,6 +377,32 @@ impl<'a> Context<'a> {
             })
             .collect()
     }
+}
+
+/// L with Ω = L Lᵀ, of a multiple of Ω that has the mean variance 1; none of residuals that are no numbers.
+fn mixture(products: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let mean = products.trace() / products.nrows() as f64;
+    if !(mean > 0.0 && mean.is_finite()) {
+        return (mean == 0.0).then(|| DMatrix::identity(products.nrows(), products.nrows()));
+    }
+    let decomposed = (products / mean).symmetric_eigen();
+    let roots = decomposed.eigenvalues.map(|value| value.max(0.0).sqrt());
+    Some(decomposed.eigenvectors * DMatrix::from_diagonal(&roots))
+}
+
+/// Σ_j L_jm W_j for each m, of the rows W_j of all lines.
+fn mixed<'a>(
+    lines: &'a [DMatrix<f64>],
+    mixture: &'a DMatrix<f64>,
+) -> impl Iterator<Item = DMatrix<f64>> + 'a {
+    mixture.column_iter().filter_map(move |column| {
+        let mut parts = lines
+            .iter()
+            .zip(column.iter())
+            .map(|(line, part)| line * *part);
+        let first = parts.next()?;
+        Some(parts.fold(first, |sum, part| sum + part))
+    })
 }
 
 /// cos(π b (k + 1/2)/K).

@@ -1,0 +1,148 @@
+//! Whether encoders have offsets or play and lengths are as described, as far as the torques tell. Where there
+//! are more encoders than degrees of freedom the closure of the loops tells much more.
+
+use super::{
+    Context,
+    level::{level, origin},
+    suspected::{Tested, guilty, parabola, tested, worst_harm},
+};
+use crate::{
+    assessment::{
+        check::{About, Check, CheckKind},
+        suspects::{Group, Suspect},
+    },
+    error::Error,
+    significant,
+};
+
+/// Tests an offset and a play of each actuator's position, and each length that is asked for.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let Some(scores) = context.scores else {
+        return Ok(Vec::new());
+    };
+    let mut suspects: Vec<Suspect> = Vec::new();
+    let mut found: Vec<Tested> = Vec::new();
+    for (place, suspect) in scores.suspects.iter().enumerate() {
+        if let Suspect::Offset(_) | Suspect::Play(_) | Suspect::Length(_) = *suspect {
+            for one in tested(scores, std::iter::once(Group::suspect(place))) {
+                suspects.push(*suspect);
+                found.push(one);
+            }
+        }
+    }
+    if found.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (tests, level) = (found.len(), level(found.len()));
+    let Some(worst) = guilty(&found, level) else {
+        return Ok(vec![nothing(context, (&suspects, &found), level)]);
+    };
+    let place = found
+        .iter()
+        .position(|one| std::ptr::eq(one, worst))
+        .unwrap_or(0);
+    let suspect = suspects[place];
+    let harm = worst_harm(context, scores, (&found, worst), level);
+    let (name, unit) = (name(context, suspect), unit(context, suspect));
+    let size = significant(worst.accused.size().abs(), 3);
+    let deviation = significant(worst.accused.deviation, 2);
+    let spread = format!("(standard deviation {deviation} {unit}); {}", harm.words());
+    let zero = "Check its zero and its mounting, or the lengths of the description";
+    let (kind, words, title, axis) = match suspect {
+        Suspect::Length(_) => {
+            let sense = if worst.accused.size() > 0.0 {
+                "large"
+            } else {
+                "small"
+            };
+            let words = format!(
+                "the torques speak of a length `{name}` that is described {size} {unit} too {sense} {spread}. Measure it, or check the zeros of the encoders"
+            );
+            let title = format!("Residual for other lengths {name}");
+            (CheckKind::Length, words, title, "described too large by")
+        }
+        _ => {
+            let what = match suspect {
+                Suspect::Play(_) => "play of about twice",
+                _ => "an offset of",
+            };
+            let words = format!(
+                "the torques speak of {what} {size} {unit} at the encoder of `{name}` {spread}. {zero}"
+            );
+            let title = format!("Residual for other offsets of {name}");
+            let axis = "offset or half of the play";
+            (CheckKind::EncoderOffset, words, title, axis)
+        }
+    };
+    let check = Check::new(kind, About::Model, words)
+        .measured(ratio(worst), "standard deviations")
+        .against(worst.accused.quantile(level), origin(tests))
+        .shown_by(parabola(&worst.accused, &title, (axis, unit, 1.0)))
+        .because(&harm);
+    Ok(vec![match suspect {
+        Suspect::Length(_) => check,
+        _ => check.of_actuator(&name),
+    }])
+}
+
+/// What is said where none of the suspects is guilty: from which size on they would have been seen.
+fn nothing(context: &Context<'_>, (suspects, found): (&[Suspect], &[Tested]), level: f64) -> Check {
+    let visible = |of: fn(&Suspect) -> bool| -> String {
+        let own = suspects
+            .iter()
+            .zip(found)
+            .filter(|(suspect, _)| of(suspect));
+        let each = own.map(|(suspect, one)| {
+            let visible = significant(one.accused.visible(level), 2);
+            let (name, unit) = (name(context, *suspect), unit(context, *suspect));
+            format!("`{name}` {visible} {unit}")
+        });
+        each.collect::<Vec<_>>().join(", ")
+    };
+    let offsets = visible(|suspect| matches!(suspect, Suspect::Offset(_)));
+    let lengths = visible(|suspect| matches!(suspect, Suspect::Length(_)));
+    let mut words = Vec::new();
+    if !offsets.is_empty() {
+        words.push(format!(
+            "the torques speak of no offset and no play of an encoder; an offset would have been seen from so much on: {offsets}"
+        ));
+    }
+    if !lengths.is_empty() {
+        words.push(format!(
+            "the torques speak of no wrong length; it would have been seen from so much on: {lengths}"
+        ));
+    }
+    let largest = found.iter().map(ratio).fold(0.0, f64::max);
+    let threshold = found
+        .first()
+        .map_or(f64::NAN, |one| one.accused.quantile(level));
+    Check::new(CheckKind::EncoderOffset, About::Model, words.join("; "))
+        .measured(largest, "standard deviations")
+        .against(threshold, origin(found.len()))
+}
+
+fn ratio(one: &Tested) -> f64 {
+    one.accused.size().abs() / one.accused.deviation
+}
+
+/// The actuator or the length.
+fn name(context: &Context<'_>, suspect: Suspect) -> String {
+    let name = match suspect {
+        Suspect::Offset(at) | Suspect::Play(at) => context.model.info().actuators.get(at).copied(),
+        Suspect::Length(at) => context.dataset.variants.get(at).map(|one| one.length),
+        _ => None,
+    };
+    name.unwrap_or_default().to_owned()
+}
+
+/// The unit of an actuator's position, or of a length.
+fn unit(context: &Context<'_>, suspect: Suspect) -> &'static str {
+    match suspect {
+        Suspect::Offset(at) | Suspect::Play(at)
+            if context.model.info().actuator_is_revolute.get(at) == Some(&true) =>
+        {
+            "rad"
+        }
+        _ => "m",
+    }
+}
