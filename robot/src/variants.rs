@@ -1,7 +1,7 @@
 //! A robot without loops with other lengths: what its torques say of them is all that is known of them.
 
 use crate::{calibration::of_tree, interpreted::InterpretedRobot, robot::Robot};
-use overact::{Function, Model};
+use overact::{Columns, Function, Model};
 use overact_codegen::{Effort, Request, derivation::MotionInput, mechanism::Mechanism, model_with};
 use overact_identification::Variant;
 
@@ -58,11 +58,15 @@ impl Robot {
     }
 }
 
-/// The regressor of a mechanism.
+/// What an identification asks of a mechanism for its columns.
 fn regressor(mechanism: Mechanism) -> Option<InterpretedRobot> {
     let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
-        matches!(function, Function::IdmRedPlatform(_))
-            && InterpretedRobot::serves(mechanism, function, from)
+        let asked = match function {
+            Function::IdmRedPlatform(columns) => columns == Columns::Standard,
+            Function::JointVelocities | Function::JointAccelerations => true,
+            _ => false,
+        };
+        asked && InterpretedRobot::serves(mechanism, function, from)
     };
     let request = Request {
         wanted: &wanted,

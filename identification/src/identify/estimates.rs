@@ -295,7 +295,7 @@ impl Context<'_> {
                 relative_standard_deviation_percent: estimation
                     .relative_standard_deviations_percent[place],
                 correlated_standard_deviation: correlated[place],
-                interval_95: intervals.of(column).unwrap_or([value; 2]),
+                interval_95: intervals.of(column, selected.len()).unwrap_or([value; 2]),
                 true_value,
                 error_percent: true_value
                     .filter(|truth| *truth != 0.0)

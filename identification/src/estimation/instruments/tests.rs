@@ -93,7 +93,7 @@ fn instruments_and_total_least_squares_are_not_biased_by_errors_of_a_column() {
         total += compared[0] / DRAWS as f64;
         let intervals = found.intervals.as_ref().expect("successive equations");
         for (column, truth) in TRUTH.into_iter().enumerate() {
-            let [low, high] = intervals.of(column).expect("an interval");
+            let [low, high] = intervals.of(column, SELECTED.len()).expect("an interval");
             covering += usize::from((low..=high).contains(&truth));
         }
         let test = Hausman::new(&system, &SELECTED, &start, &found).expect("a test");

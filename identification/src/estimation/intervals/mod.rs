@@ -13,6 +13,13 @@
 //! whatever the cancelled parameters are, does not exist (Leeb and Pötscher, *Econometric Theory* 21,
 //! 2005). So the interval of a parameter in a smaller model is that of the base model. An estimate
 //! that lies outside of it has been moved there by cancelling, and the data speak against it.
+//!
+//! One thing more has been decided: that the parameter stays. Of parameters whose effect is hardly larger
+//! than the noise those stay whose errors happen to be large, and their intervals would contain the truth
+//! in half of the cases. If all p base parameters were zero, the largest |χ_i|/σ_i would be below
+//! t_1-0.025/p in 95 % of all cases (Bonferroni). What is beyond stays, whatever chance does. What is below
+//! may be a choice of chance, and gets the interval that holds for all p parameters at once,
+//! χ_i ± t_1-0.025/p σ_i, whichever of them are chosen (Berk et al., *Annals of Statistics* 41, 2013).
 
 pub(crate) mod distributions;
 pub(crate) mod repeats;
@@ -39,6 +46,8 @@ pub(crate) struct Intervals {
     freedom: f64,
     /// Ends of the 95 % intervals.
     ends: Vec<[f64; 2]>,
+    /// Those of parameters that were chosen.
+    chosen: Vec<[f64; 2]>,
 }
 
 impl Intervals {
@@ -62,13 +71,14 @@ impl Intervals {
         sorted.sort_by(f64::total_cmp);
         let freedom = sorted[sorted.len() / 2];
         covariance.enlarge(&ratios(system, context));
-        let ends = ends(values, &covariance.matrix, &covariance.freedoms);
+        let (ends, chosen) = ends(values, &covariance.matrix, &covariance.freedoms);
         Some(Self {
             columns,
             values: values.clone(),
             covariance: covariance.matrix,
             freedom,
             ends,
+            chosen,
         })
     }
 
@@ -85,8 +95,10 @@ impl Intervals {
         covariance: DMatrix<f64>,
         freedom: f64,
     ) -> Self {
+        let (ends, chosen) = ends(values, &covariance, &vec![freedom; values.len()]);
         Self {
-            ends: ends(values, &covariance, &vec![freedom; values.len()]),
+            ends,
+            chosen,
             columns,
             values: values.to_vec(),
             covariance,
@@ -94,10 +106,14 @@ impl Intervals {
         }
     }
 
-    /// The interval of a column; none that was not estimated.
-    pub(crate) fn of(&self, column: usize) -> Option<[f64; 2]> {
+    /// The interval of a column in a model of so many of the parameters; none that was not estimated.
+    pub(crate) fn of(&self, column: usize, parameters: usize) -> Option<[f64; 2]> {
         let place = self.columns.iter().position(|own| *own == column)?;
-        self.ends.get(place).copied()
+        let ends = match parameters < self.columns.len() {
+            true => &self.chosen,
+            false => &self.ends,
+        };
+        ends.get(place).copied()
     }
 
     /// χᵀ V^-1 χ of some columns, and the degrees of freedom of V; none where V is singular.
@@ -119,18 +135,28 @@ impl Intervals {
     }
 }
 
-/// χ ± t σ.
-fn ends(values: &[f64], covariance: &DMatrix<f64>, freedoms: &[f64]) -> Vec<[f64; 2]> {
+/// χ ± t σ of all parameters, and of chosen ones.
+fn ends(
+    values: &[f64],
+    covariance: &DMatrix<f64>,
+    freedoms: &[f64],
+) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
     let variances = covariance.diagonal();
     let spreads = variances.iter().zip(freedoms);
     let ends = values
         .iter()
         .zip(spreads)
         .map(|(value, (variance, freedom))| {
-            let half = student_quantile(MISSES, *freedom) * variance.sqrt();
-            [value - half, value + half]
+            let deviation = variance.sqrt();
+            let around = |misses: f64| {
+                let half = student_quantile(misses, *freedom) * deviation;
+                [value - half, value + half]
+            };
+            let (own, all) = (around(MISSES), around(MISSES / values.len() as f64));
+            let may_be_zero = all[0] < 0.0 && all[1] > 0.0;
+            (own, if may_be_zero { all } else { own })
         });
-    ends.collect()
+    ends.unzip()
 }
 
 #[cfg(test)]

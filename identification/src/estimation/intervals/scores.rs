@@ -53,8 +53,8 @@ const MOST_COSINES: usize = 64;
 /// Sections of a stretch for each cosine; within a section the cosines count as constant.
 const SECTIONS: usize = 4;
 
-/// Equations of a line of which products are made at once.
-const AT_ONCE: usize = 512;
+/// Equations from which the covariance of the lines at an instant is told.
+const AROUND: usize = 32;
 
 /// The covariance of an estimate, with the degrees of freedom of its variances.
 #[derive(Debug, Clone)]
@@ -70,15 +70,12 @@ impl Covariance {
     pub(crate) fn new(system: &System, context: &Context<'_>) -> Option<Self> {
         let p = context.selected.len();
         let stretches = || system.stretches.par_iter();
-        let count = system.lines.len();
-        let common = stretches().map(|stretch| context.products(stretch));
-        let common = mixture(common.reduce(|| DMatrix::zeros(count, count), |a, b| a + b))?;
-        let noise = stretches().map(|stretch| context.noise(stretch, &common));
+        let noise = stretches().map(|stretch| context.noise(stretch));
         let noise = noise.reduce(|| DMatrix::zeros(p, p), |a, b| a + b);
         let inverse = &context.estimation.inverse;
         let noise = inverse.tr_mul(&noise) * inverse;
         let shares: Vec<Share> = stretches()
-            .filter_map(|stretch| context.share(stretch, &common, &noise))
+            .filter_map(|stretch| context.share(stretch, &noise))
             .collect();
         let kept: usize = shares.iter().map(|share| share.equations).sum();
         let equations = system.lines.iter().map(|line| line.equations()).max()?;
@@ -198,72 +195,68 @@ impl<'a> Context<'a> {
         self.influence.as_ref().unwrap_or(&self.inverse)
     }
 
-    /// Σ_t ρ_j ρ_k of the weighted residuals of a stretch.
-    fn products(&self, stretch: &Stretch) -> DMatrix<f64> {
+    /// Σ_t V_t of a stretch, of columns.
+    fn noise(&self, stretch: &Stretch) -> DMatrix<f64> {
+        let p = self.selected.len();
+        let mut sum = DMatrix::zeros(p, p);
+        let Some((_, sections)) = counts(stretch) else {
+            return sum;
+        };
+        let mixtures = self.mixtures(stretch, sections);
+        for (section, mixture) in mixtures.iter().enumerate() {
+            let range = range(stretch, section, sections);
+            let lines = stretch.lines.iter().zip(&self.estimation.weights);
+            let lines: Vec<_> = lines
+                .map(|(line, weight)| {
+                    let rows = line.rows(range.start, range.len());
+                    rows.select_columns(self.selected) * *weight
+                })
+                .collect();
+            for mixed in mixed(&lines, mixture) {
+                sum.gemm_tr(1.0, &mixed, &mixed, 1.0);
+            }
+        }
+        sum
+    }
+
+    /// L with Ω = L Lᵀ of each section of a stretch, from the weighted residuals around it.
+    fn mixtures(&self, stretch: &Stretch, sections: usize) -> Vec<DMatrix<f64>> {
         let lines = stretch.lines.iter().zip(&self.estimation.weights);
         let residuals = lines.map(|(line, weight)| {
             let rows = line.rows(0, line.nrows());
             DVector::from_vec(residual(&rows, self.selected, &self.estimation.values)) * *weight
         });
         let residuals = DMatrix::from_columns(&residuals.collect::<Vec<_>>());
-        residuals.tr_mul(&residuals)
+        let rows = residuals.nrows();
+        (0..sections)
+            .map(|section| {
+                let own = range(stretch, section, sections);
+                let missing = AROUND.saturating_sub(own.len()).div_ceil(2);
+                let start = own.start.saturating_sub(missing);
+                let end = (own.end + missing).min(rows);
+                let around = residuals.rows(start, end - start);
+                mixture(around.tr_mul(&around) / (end - start) as f64)
+            })
+            .collect()
     }
 
-    /// Σ_t V_t of a stretch, of columns.
-    fn noise(&self, stretch: &Stretch, common: &DMatrix<f64>) -> DMatrix<f64> {
-        let p = self.selected.len();
-        let rows = stretch.lines.first().map_or(0, DMatrix::nrows);
-        let mut sum = DMatrix::zeros(p, p);
-        let mut first = 0;
-        while first < rows {
-            let count = AT_ONCE.min(rows - first);
-            let lines = stretch.lines.iter().zip(&self.estimation.weights);
-            let lines: Vec<_> = lines
-                .map(|(line, weight)| {
-                    line.rows(first, count).select_columns(self.selected) * *weight
-                })
-                .collect();
-            for mixed in mixed(&lines, common) {
-                sum.gemm_tr(1.0, &mixed, &mixed, 1.0);
-            }
-            first += count;
-        }
-        sum
-    }
-
-    fn share(
-        &self,
-        stretch: &Stretch,
-        common: &DMatrix<f64>,
-        noise: &DMatrix<f64>,
-    ) -> Option<Share> {
-        let equations = stretch.lines.first()?.nrows();
-        let cosines = cosines(equations);
-        let sections = (SECTIONS * cosines).min(equations);
-        if sections <= cosines {
-            return None;
-        }
-        let told = self.sections(stretch, equations, sections, common);
+    fn share(&self, stretch: &Stretch, noise: &DMatrix<f64>) -> Option<Share> {
+        let (cosines, sections) = counts(stretch)?;
+        let told = self.sections(stretch, sections);
         let waves = DMatrix::from_fn(sections, cosines, |k, b| {
             std::f64::consts::SQRT_2 * cosine(b + 1, k, sections)
         });
         let sums = self.influence() * &told.scores * &waves;
         let matrix = &sums * sums.transpose() / cosines as f64;
         Some(Share {
-            equations,
+            equations: stretch.lines.first()?.nrows(),
             matrix,
             moments: self.moments(&told, &waves, noise),
         })
     }
 
     /// What is needed of each section of a stretch.
-    fn sections(
-        &self,
-        stretch: &Stretch,
-        equations: usize,
-        sections: usize,
-        common: &DMatrix<f64>,
-    ) -> Sections {
+    fn sections(&self, stretch: &Stretch, sections: usize) -> Sections {
         let turned = self.influence().transpose();
         let (q, p) = turned.shape();
         let mut told = Sections {
@@ -272,9 +265,9 @@ impl<'a> Context<'a> {
             fitted: DMatrix::zeros(p * p, sections),
             noisy: DMatrix::zeros(p * p, sections),
         };
-        for section in 0..sections {
-            let first = equations * section / sections;
-            let count = equations * (section + 1) / sections - first;
+        let mixtures = self.mixtures(stretch, sections);
+        for (section, mixture) in mixtures.iter().enumerate() {
+            let range = range(stretch, section, sections);
             let mut gram = DMatrix::zeros(q, q);
             let mut all = Vec::new();
             for (number, (line, weight)) in stretch
@@ -283,8 +276,8 @@ impl<'a> Context<'a> {
                 .zip(&self.estimation.weights)
                 .enumerate()
             {
-                let rows = line.rows(first, count);
-                let own = self.rows(stretch, number, first..first + count) * *weight;
+                let rows = line.rows(range.start, range.len());
+                let own = self.rows(stretch, number, range.clone()) * *weight;
                 let mut residual = rows.column(rows.ncols() - 1) * *weight;
                 // The columns come before the instruments.
                 for (column, value) in own.column_iter().zip(&self.estimation.values) {
@@ -297,7 +290,7 @@ impl<'a> Context<'a> {
                 all.push(own);
             }
             let mut noise = DMatrix::zeros(q, q);
-            for mixed in mixed(&all, common) {
+            for mixed in mixed(&all, mixture) {
                 noise.gemm_tr(1.0, &mixed, &mixed, 1.0);
             }
             let (product, noise) = (gram * &turned, noise * &turned);
@@ -379,15 +372,28 @@ impl<'a> Context<'a> {
     }
 }
 
-/// L with Ω = L Lᵀ, of a multiple of Ω that has the mean variance 1; none of residuals that are no numbers.
-fn mixture(products: DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let mean = products.trace() / products.nrows() as f64;
-    if !(mean > 0.0 && mean.is_finite()) {
-        return (mean == 0.0).then(|| DMatrix::identity(products.nrows(), products.nrows()));
+/// Cosines and sections of a stretch; none of one that is too short.
+fn counts(stretch: &Stretch) -> Option<(usize, usize)> {
+    let equations = stretch.lines.first()?.nrows();
+    let cosines = cosines(equations);
+    let sections = (SECTIONS * cosines).min(equations);
+    (sections > cosines).then_some((cosines, sections))
+}
+
+/// The equations of a section.
+fn range(stretch: &Stretch, section: usize, sections: usize) -> Range<usize> {
+    let equations = stretch.lines.first().map_or(0, DMatrix::nrows);
+    equations * section / sections..equations * (section + 1) / sections
+}
+
+/// L with Ω = L Lᵀ; of residuals that are no numbers it is none, either.
+fn mixture(covariance: DMatrix<f64>) -> DMatrix<f64> {
+    if covariance.iter().any(|value| !value.is_finite()) {
+        return covariance;
     }
-    let decomposed = (products / mean).symmetric_eigen();
+    let decomposed = covariance.symmetric_eigen();
     let roots = decomposed.eigenvalues.map(|value| value.max(0.0).sqrt());
-    Some(decomposed.eigenvectors * DMatrix::from_diagonal(&roots))
+    decomposed.eigenvectors * DMatrix::from_diagonal(&roots)
 }
 
 /// Σ_j L_jm W_j for each m, of the rows W_j of all lines.
