@@ -105,6 +105,7 @@ fn stages(criterion: &mut Criterion) {
         runs: &runs,
         validation: &runs[3..],
         true_values: Some(&truth),
+        variants: &[],
     };
     group.bench_function("everything, with a held-out run", |bench| {
         bench.iter(|| identify(&robot, &dataset, &settings, &|_| {}).expect("a result"));
