@@ -88,7 +88,11 @@ fn intervals(kind: Kind, samples: usize, seed: u64) -> Vec<[f64; 2]> {
     let system = system(kind, samples, seed);
     let selected = [0, 1, 2];
     let found = estimate(&system, &selected, &settings()).expect("an estimate");
-    Intervals::new(&system, &selected, &found).ends
+    let intervals = Intervals::new(&system, &selected, &found);
+    let each = selected
+        .iter()
+        .map(|column| intervals.of(*column, selected.len()));
+    each.collect::<Option<_>>().expect("estimated columns")
 }
 
 #[test]
