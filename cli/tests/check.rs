@@ -189,9 +189,6 @@ fn bodies_that_nobody_can_build_are_found_as_identification_finds_them() {
     let at = known.map(|line| said.contains(&format!("my.toml:{line}:")));
     assert!(at.contains(&true), "{said}");
     let refused = bench.bad(&["identify", "my.toml", "-o", "result.json"]);
-    assert!(
-        refused.contains("no body has the prior parameters of `m_1`"),
-        "{refused}"
-    );
+    assert_eq!(refused, said);
     assert_eq!(bench.files(), ["my.toml"]);
 }

@@ -7,6 +7,7 @@ use crate::{
     error::Error,
     experiment,
     prior::{Named, prior},
+    robot::Robot,
     settings::settings,
 };
 use overact::{Info, Sizes};
@@ -49,6 +50,21 @@ pub fn check(path: &Path) -> Result<CheckedFile, Error> {
             source,
             diagnostics,
         }),
+    }
+}
+
+impl Robot {
+    /// Refuses a table `[prior]` with bodies that nobody can build.
+    pub(crate) fn check_prior(&self) -> Result<(), Error> {
+        let mut errors = Diagnostics::new();
+        let mechanism = &self.model().model().mechanism;
+        check_prior(self.source(), self.description(), mechanism, &mut errors);
+        errors
+            .into_result(())
+            .map_err(|diagnostics| Error::Description {
+                source: self.source().clone(),
+                diagnostics,
+            })
     }
 }
 

@@ -215,6 +215,7 @@ impl<'a> Identifier<'a> {
 
     /// The identification with the torques as they are.
     fn estimated(&self) -> Result<Identification, Error> {
+        self.robot.check_prior()?;
         let settings = self.with_defaults();
         let essential = self.essential();
         let beside = match settings.instruments {
