@@ -139,8 +139,11 @@ impl States {
             Err(message) => return Err(self.problem(at, &format!("`{name}` {message}"))),
         };
         if values.len() != length {
-            let found = values.len();
-            let message = format!("`{name}` has {found} numbers, expected {length}");
+            let found = match values.len() {
+                1 => "1 number".to_owned(),
+                count => format!("{count} numbers"),
+            };
+            let message = format!("`{name}` has {found}, expected {length}");
             return Err(self.problem(at, &message));
         }
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
@@ -227,6 +230,7 @@ fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
         .trim(csv::Trim::All)
         .flexible(true)
         .comment(Some(b'#'))
+        .delimiter(separator(text))
         .from_reader(text.as_bytes());
     let broken = |error: csv::Error| {
         let line = error.position().map(|position| position.line() as usize);
@@ -268,6 +272,14 @@ fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
         });
     }
     Ok(states)
+}
+
+/// What stands between the names of the header: `,`, `;` or a tab.
+fn separator(text: &str) -> u8 {
+    let mut lines = text.lines();
+    let header = lines.find(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let holds = |separator: &&u8| header.is_some_and(|own| own.as_bytes().contains(separator));
+    b";\t".iter().find(holds).copied().unwrap_or(b',')
 }
 
 /// The line of a record: the reader's position is before comments and empty lines that precede it.
@@ -317,6 +329,11 @@ mod tests {
         assert_eq!(csv.get(1, "pose", 2).unwrap(), Some(&[4.0, 5.0][..]));
         assert_eq!(csv.get(1, "twist", 1).unwrap_err().line, Some(4));
         assert!(csv.get(0, "note", 1).is_err() && csv.get(1, "note", 1).unwrap().is_none());
+        for separator in [";", "\t"] {
+            let text = "# c\n\npose[1],pose[0],note\n2,1,x\n".replace(',', separator);
+            let other = States::parse("a.csv".into(), &text).unwrap();
+            assert_eq!(other.get(0, "pose", 2).unwrap(), Some(&[1.0, 2.0][..]));
+        }
         assert!(
             States::parse("a.json".into(), json).is_err(),
             "1e999 is no number"

@@ -88,6 +88,23 @@ fn a_file_of_parameters_that_does_not_fit_is_refused() {
     assert!(
         told(&format!("{text}nonsense = 1\n")).contains("the robot has no parameter `nonsense`")
     );
+    // Estimates may be what no body has: a warning at its line, and the command goes on as far as it can.
+    let place = text.lines().position(|line| line.starts_with("fv_"));
+    let place = place.expect("viscous friction");
+    let symbol = |line: &str| line.split('=').next().unwrap_or_default().to_owned();
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    lines[place] = symbol(&lines[place]) + "= -1.5";
+    bench.write("negative.toml", &lines.join("\n"));
+    let wanted = format!("warning: negative.toml:{}: `fv_", place + 1);
+    let generated = ["generate", "my.toml", "--effort", "none", "-o", "my.rs"];
+    let read = [&generated[..], &["--parameters", "negative.toml"]].concat();
+    let said = bench.run(&read);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(
+        said.err.contains(&wanted) && said.err.contains("= -1.5 is negative"),
+        "{}",
+        said.err
+    );
     let outputs = bench.run(&["identify", "my.toml", "--parameters", "my.toml"]);
     assert_eq!(outputs.code, Some(2), "{}", outputs.err);
     assert!(outputs.err.contains("my.toml"));

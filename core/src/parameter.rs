@@ -108,6 +108,15 @@ impl StandardParameter {
         !matches!(self, Self::Ia | Self::Fv | Self::Fs | Self::Off | Self::K)
     }
 
+    /// Whether no body or joint has a negative one.
+    #[must_use]
+    pub const fn is_nonnegative(self) -> bool {
+        matches!(
+            self,
+            Self::Xx | Self::Yy | Self::Zz | Self::M | Self::Ia | Self::Fv | Self::Fs
+        )
+    }
+
     /// SI unit; `slides` says whether the joint is prismatic.
     #[must_use]
     pub const fn unit(self, slides: bool) -> &'static str {

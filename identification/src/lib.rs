@@ -48,7 +48,7 @@ mod thresholds;
 mod validation;
 
 pub use assessment::{
-    check::{About, Check, CheckKind, Grade},
+    check::{About, Check, CheckKind, Detectable, Grade},
     evidence::{Axis, Curve, Evidence},
     verdict::{StageVerdict, Verdict},
 };

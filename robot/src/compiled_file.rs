@@ -19,6 +19,8 @@ pub struct CompiledFile {
     pub description: Description,
     /// The model.
     pub model: RobotModel,
+    /// Values of a file of parameters that no body or joint has, a sentence for each.
+    pub doubts: Vec<String>,
 }
 
 impl CompiledFile {
@@ -41,6 +43,7 @@ impl CompiledFile {
                 source,
                 description: compiled.description,
                 model: compiled.model,
+                doubts: Vec::new(),
             }),
             Err(diagnostics) => Err(Error::Description {
                 source,

@@ -62,7 +62,7 @@ pub use experiment::VirtualExperiment;
 pub use identifier::Identifier;
 pub use instruments::beside_simulated;
 pub use interpreted::InterpretedRobot;
-pub use parameters::read_parameters;
+pub use parameters::{GivenParameters, read_parameters};
 pub use partitions::partitions;
 pub use robot::Robot;
 pub use runs::Runs;

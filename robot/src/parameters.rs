@@ -8,9 +8,20 @@ use overact::{Info, Parameter};
 use overact_codegen::{
     Request,
     derivation::{BodyParameter, Selection},
-    description::{self, Description, parse_parameters},
+    description::{self, Description, TrueParameter, parse_parameters},
+    diagnostic::Source,
 };
 use std::{collections::BTreeMap, path::Path};
+
+/// Standard parameters that a file gives.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GivenParameters {
+    /// Values by name (SI units).
+    pub values: BTreeMap<String, f64>,
+    /// Values that no body or joint has, a sentence with file and line for each.
+    pub doubts: Vec<String>,
+}
 
 /// Reads the standard parameters of a robot from the table `[parameters]` of a TOML file (SI units, or
 /// quantities with units): all of the robot's, and all or none of the payload's.
@@ -21,12 +32,12 @@ pub fn read_parameters(
     path: &Path,
     description: &Description,
     info: &Info<'_>,
-) -> Result<BTreeMap<String, f64>, Error> {
-    let values = values(path, description)?;
+) -> Result<GivenParameters, Error> {
+    let given = given(path, description)?;
     let names = |all: &[Parameter]| all.iter().map(|one| one.name.to_owned()).collect();
     let (own, payload) = (names(info.parameters), names(info.payload_parameters));
-    complete(path, &values, own, payload)?;
-    Ok(values)
+    complete(path, &given.values, own, payload)?;
+    Ok(given)
 }
 
 impl CompiledFile {
@@ -50,12 +61,12 @@ impl CompiledFile {
                 });
             }
         };
-        let values = values(parameters, &description)?;
+        let given = given(parameters, &description)?;
         let request = Request {
-            parameters: Some(&values),
+            parameters: Some(&given.values),
             ..*request
         };
-        let robot = Self::new(source, &request)?;
+        let mut robot = Self::new(source, &request)?;
         let Selection {
             standard, payload, ..
         } = &robot.model.selection;
@@ -63,25 +74,41 @@ impl CompiledFile {
             let names = all.iter().map(|&one| robot.model.parameter_name(one));
             names.collect()
         };
-        complete(parameters, &values, names(standard), names(payload))?;
+        complete(parameters, &given.values, names(standard), names(payload))?;
+        robot.doubts = given.doubts;
         Ok(robot)
     }
 }
 
 /// What a file says of a robot's standard parameters, by name (SI units).
-fn values(path: &Path, description: &Description) -> Result<BTreeMap<String, f64>, Error> {
+fn given(path: &Path, description: &Description) -> Result<GivenParameters, Error> {
     let origin = "`overact identify my.toml --parameters parameters.toml` writes one";
     let source = read_or(path, origin)?;
     match parse_parameters(&source, description) {
         Ok(values) => {
+            let doubts = values.iter().filter_map(|one| doubt(&source, one));
+            let doubts = doubts.collect();
             let pairs = values.into_iter().map(|one| (one.name.value, one.value));
-            Ok(pairs.collect())
+            let values = pairs.collect();
+            Ok(GivenParameters { values, doubts })
         }
         Err(diagnostics) => Err(Error::Description {
             source,
             diagnostics,
         }),
     }
+}
+
+/// What is wrong with a value that no body or joint has: estimates may be such, so it is no error.
+fn doubt(source: &Source, one: &TrueParameter) -> Option<String> {
+    let TrueParameter { name, value, .. } = one;
+    (one.symbol.is_nonnegative() && *value < 0.0).then(|| {
+        let line = source.position(&name.span).line;
+        format!(
+            "{}:{line}: `{}` = {value} is negative, which no body or joint is",
+            source.name, name.value
+        )
+    })
 }
 
 /// Refuses values of a file without all of the robot's parameters, or with some of the payload's.

@@ -4,7 +4,7 @@
 //! their parameters are not, so the coverage is the mean of the fractions and its deviation that of a
 //! mean of as many values as there are draws, by Student's distribution.
 
-use crate::{Counted, Noise};
+use crate::{Counted, Noise, measure::Interval};
 use overact_identification::{Estimator, ModelKind, Stage};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -40,9 +40,37 @@ pub struct Cell {
     pub spread: f64,
     /// The parameter whose intervals contain the truth least often, and how often, percent.
     pub worst: (String, f64),
-    /// For each parameter in how many draws it was estimated, and in how many of these its interval
-    /// contains the truth.
-    pub each: BTreeMap<String, [usize; 2]>,
+    /// The draws of each parameter.
+    pub each: BTreeMap<String, Each>,
+}
+
+/// The intervals of one parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Each {
+    /// In how many draws it was estimated.
+    pub draws: usize,
+    /// How many of its intervals contain the truth.
+    pub covering: usize,
+    /// Mean of the errors by half of the width, times 1.96.
+    pub mean: f64,
+    /// Root mean square of the same.
+    pub spread: f64,
+}
+
+impl Each {
+    fn new(intervals: &[&Interval]) -> Self {
+        let draws = intervals.len();
+        let over = |of: &dyn Fn(f64) -> f64| -> f64 {
+            let sum: f64 = intervals.iter().map(|one| of(1.96 * one.miss)).sum();
+            sum / draws as f64
+        };
+        Self {
+            draws,
+            covering: intervals.iter().filter(|one| one.covers).count(),
+            mean: over(&|miss| miss),
+            spread: over(&|miss| miss * miss).sqrt(),
+        }
+    }
 }
 
 /// Collects the draws of one robot.
@@ -73,15 +101,16 @@ impl Tally {
         let all = || own.iter().flat_map(|one| &one.parameters);
         let squares: f64 = all().map(|one| one.miss.powi(2)).sum();
         let mut widths: Vec<f64> = all().map(|one| one.relative_width).collect();
-        let mut each: BTreeMap<String, [usize; 2]> = BTreeMap::new();
+        let mut intervals: BTreeMap<String, Vec<&Interval>> = BTreeMap::new();
         for one in all() {
-            let count = each.entry(one.name.clone()).or_default();
-            count[0] += 1;
-            count[1] += usize::from(one.covers);
+            intervals.entry(one.name.clone()).or_default().push(one);
         }
+        let each = intervals.into_iter();
+        let each: BTreeMap<String, Each> =
+            each.map(|(name, own)| (name, Each::new(&own))).collect();
         // A parameter that is rarely among the chosen ones says little.
-        let often = each.iter().filter(|(_, [count, _])| 2 * count >= own.len());
-        let rates = often.map(|(name, [count, hits])| (name.clone(), *hits as f64 / *count as f64));
+        let often = each.iter().filter(|(_, one)| 2 * one.draws >= own.len());
+        let rates = often.map(|(name, one)| (name.clone(), one.covering as f64 / one.draws as f64));
         let worst = rates.min_by(|a, b| a.1.total_cmp(&b.1));
         let worst = worst.unwrap_or((String::new(), f64::NAN));
         Cell {

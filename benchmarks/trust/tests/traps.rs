@@ -42,8 +42,7 @@ fn every_trap_of_the_dualv_is_refused_named_or_an_assumption() {
             own = prepared(&plant, &plant.experiment).expect("records");
         }
         (trap.alter)(&mut own);
-        let mut told = outcome(&subject, &trap.name, own, Some(&faultless));
-        told.assumed = trap.assumed.is_some();
+        let told = outcome(&subject, &trap, own, &faultless);
         let used = told.grade == Some(Grade::Use);
         assert_eq!(used, USED.contains(&trap.name.as_str()), "{told:?}");
         assert_ne!(told.standing(), Standing::Missed, "{told:?}");

@@ -5,6 +5,7 @@ mod resolve;
 
 use crate::{
     failure::{Failure, Problem},
+    note::tell_doubts,
     output,
     states::States,
 };
@@ -134,7 +135,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let (function, from, name) = (function.computes, function.from, function.name.clone());
     let robot = InterpretedRobot::new(model);
     let given = match &arguments.parameters {
-        Some(path) => in_order(&read_parameters(path, &description, &robot.info())?, &robot),
+        Some(path) => {
+            let given = read_parameters(path, &description, &robot.info())?;
+            tell_doubts(&given.doubts, as_json);
+            in_order(&given.values, &robot)
+        }
         None => None,
     };
     let values = evaluate(&robot, &program, (from, given), &states)?;

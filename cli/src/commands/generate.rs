@@ -3,7 +3,7 @@
 use crate::{
     effort,
     failure::{Failure, Problem},
-    note::tell_note,
+    note::{tell_doubts, tell_note},
     output::{self, json, print, write},
     progress::Progress,
 };
@@ -132,6 +132,7 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<CompiledFile>, F
         match compiled {
             Ok(robot) => {
                 tell_note(&robot, as_json);
+                tell_doubts(&robot.doubts, as_json);
                 good.push(robot);
             }
             Err(failure) => bad.push(failure),

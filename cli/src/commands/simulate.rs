@@ -3,6 +3,7 @@
 use crate::{
     failure::{Failure, Problem},
     names::file_stem,
+    note::tell_doubts,
     output::{self, json, print, table},
     progress::Progress,
 };
@@ -60,7 +61,9 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     keep_runs(&mut experiment, &arguments.runs)?;
     if let Some(path) = &arguments.parameters {
         let info = robot.model().info();
-        experiment.set_parameters(&read_parameters(path, robot.description(), &info)?);
+        let given = read_parameters(path, robot.description(), &info)?;
+        tell_doubts(&given.doubts, as_json);
+        experiment.set_parameters(&given.values);
     }
     if let Some(seed) = arguments.seed {
         experiment.plan_mut().seed = seed;

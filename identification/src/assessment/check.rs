@@ -42,9 +42,25 @@ pub struct Check {
     /// Parameters that are not to be used, where only some are not.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub spoiled: Vec<String>,
+    /// What these data would have shown of each fault that was looked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub detectable: Vec<Detectable>,
     /// The series that shows it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<Evidence>,
+}
+
+/// How well these data tell the size of a fault that was looked for, be it there or not.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Detectable {
+    /// The actuator or the length; empty for what concerns all.
+    pub name: String,
+    /// Unit of its size: `rad`, `m`, `s`; empty for a part of one.
+    pub unit: &'static str,
+    /// Standard deviation of its size.
+    pub deviation: f64,
+    /// The size that nine of ten such data would have shown, were it there.
+    pub size: f64,
 }
 
 /// What a check is about.
@@ -205,6 +221,7 @@ impl Check {
             grade: Grade::Use,
             words: words.into(),
             spoiled: Vec::new(),
+            detectable: Vec::new(),
             evidence: None,
         }
     }
@@ -270,6 +287,13 @@ impl Check {
     #[must_use]
     pub fn spoiling(mut self, parameters: Vec<String>) -> Self {
         self.spoiled = parameters;
+        self
+    }
+
+    /// With what these data would have shown.
+    #[must_use]
+    pub fn detecting(mut self, detectable: Vec<Detectable>) -> Self {
+        self.detectable = detectable;
         self
     }
 

@@ -54,10 +54,9 @@ fn trapped(arguments: &Arguments, path: &Path) -> Result<Vec<Outcome>, Failure> 
             prepared(&plant, &plant.experiment)?
         };
         (trap.alter)(&mut own);
-        let mut told = outcome(&subject, &trap.name, own, Some(&faultless));
+        let mut told = outcome(&subject, trap, own, &faultless);
         if let Some(why) = trap.assumed {
             told.words = format!("assumption: {why}. {}", told.words);
-            told.assumed = true;
         }
         eprintln!("{told:?}");
         Ok(told)
@@ -78,7 +77,7 @@ const WORDS: usize = 200;
 /// One row for each trap of a robot.
 fn table(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
-        "| trap | worst error | of what may be used | visible | power | verdict | stands | checks | first words |\n|---|---:|---:|---:|---:|---|---|---|---|\n",
+        "| trap | worst error | of what may be used | visible | honestly | power | verdict | stands | checks | first words |\n|---|---:|---:|---:|---:|---:|---|---|---|---|\n",
     );
     let number = |worst: &Option<(f64, String)>| match worst {
         Some((size, name)) if size.is_nan() => format!("undefined `{name}`"),
@@ -103,11 +102,14 @@ fn table(outcomes: &[Outcome]) -> String {
         }
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {short} |",
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {short} |",
             one.trap,
             number(&one.worst),
             number(&one.worst_listed),
             optional(one.oracle.map(|size| format!("{size:.1}"))),
+            one.honest
+                .map(|size| format!("{size:.1}"))
+                .unwrap_or_default(),
             optional(one.power.map(|power| format!("{:.0} %", 100.0 * power))),
             one.grade.map_or("refused with an error", Grade::words),
             one.standing().name(),

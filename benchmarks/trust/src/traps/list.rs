@@ -1,6 +1,7 @@
 //! The faults.
 
 use super::alter;
+use overact_identification::CheckKind;
 use overact_simulation::Record;
 
 /// What is done to records.
@@ -17,6 +18,9 @@ pub struct Trap {
     pub alter: Box<Change>,
     /// Why no data can show it, where none can.
     pub assumed: Option<&'static str>,
+    /// Its size, where it is one that every report looks for: the check, the name of the actuator or the
+    /// length, and the size.
+    pub size: Option<(CheckKind, &'static str, f64)>,
 }
 
 impl Trap {
@@ -26,6 +30,7 @@ impl Trap {
             plant: Vec::new(),
             alter: Box::new(alter),
             assumed: None,
+            size: None,
         }
     }
 
@@ -51,6 +56,13 @@ impl Trap {
     fn assumed(self, why: &'static str) -> Self {
         Self {
             assumed: Some(why),
+            ..self
+        }
+    }
+
+    fn sized(self, kind: CheckKind, name: &'static str, size: f64) -> Self {
+        Self {
+            size: Some((kind, name, size)),
             ..self
         }
     }
@@ -245,7 +257,11 @@ fn geometry(robot: &str) -> Vec<Trap> {
             ),
         ],
         "Rx90" => vec![
-            Trap::plant("upper arm 1 % long", "d3 = \"0.45 m\"", "d3 = \"0.4545 m\""),
+            Trap::plant("upper arm 1 % long", "d3 = \"0.45 m\"", "d3 = \"0.4545 m\"").sized(
+                CheckKind::EncoderOffset,
+                "d3",
+                0.0045,
+            ),
             Trap::plant(
                 "gravity tilted by 5 deg",
                 "gravity = [0, 0, \"-9.81 m/s^2\"]",

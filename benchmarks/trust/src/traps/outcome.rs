@@ -1,8 +1,9 @@
 //! How wrong the parameters of an identification get, and what its verdict says.
 
+use super::Trap;
 use crate::{Failure, Subject};
 use overact_identification::{
-    Check, Dataset, Estimate, Grade, Identification, LineError, Log, Stage, identify,
+    Check, CheckKind, Dataset, Estimate, Grade, Identification, LineError, Log, Stage, identify,
 };
 use overact_simulation::{Experiment, Record, simulate};
 use serde::Serialize;
@@ -35,8 +36,10 @@ pub struct Outcome {
     /// By how many deviations a test would see the fault that knew it beforehand: the root of what it adds
     /// to the squared residual, by the deviation of the residual; none for the faultless data themselves.
     pub oracle: Option<f64>,
-    /// How often a test at the level of the report would see it that knew it beforehand, with white noise
-    /// and all else known.
+    /// The size of the fault by its deviation in faultless data, where every report looks for such faults.
+    pub honest: Option<f64>,
+    /// How often a test at the level of the report would see it: by the deviation in faultless data where
+    /// there is one, else by white noise and all else known.
     pub power: Option<f64>,
     /// The grade; none where the data are refused with an error.
     pub grade: Option<Grade>,
@@ -121,34 +124,36 @@ pub fn prepared(subject: &Subject, experiment: &Experiment) -> Result<Vec<Record
     Ok(simulate(subject.model(), experiment, &|_, _| ()).map_err(|error| error.to_string())?)
 }
 
-/// What the identification of records says; `name` is what is wrong with them, beside what it says of
-/// `faultless` ones.
+/// What the identification of records says in which a trap was set, beside what it says of `faultless` ones.
 #[must_use]
 pub fn outcome(
     subject: &Subject,
-    name: &str,
+    trap: &Trap,
     records: Vec<Record>,
-    faultless: Option<&Identification>,
+    faultless: &Identification,
 ) -> Outcome {
     let result = identified(subject, records);
     let start = Outcome {
         robot: subject.info().name.to_owned(),
-        trap: name.to_owned(),
+        trap: trap.name.clone(),
         worst: None,
         worst_listed: None,
         oracle: None,
+        honest: None,
         power: None,
         grade: None,
         found: Vec::new(),
         words: String::new(),
-        assumed: false,
+        assumed: trap.assumed.is_some(),
     };
     match result {
         Ok(result) => {
-            let oracle = faultless.and_then(|faultless| oracle(&result, faultless));
+            let oracle = oracle(&result, faultless);
+            let honest = trap.size.and_then(|size| honest(faultless, size));
             Outcome {
                 oracle,
-                power: oracle.map(power),
+                honest,
+                power: honest.or(oracle).map(power),
                 ..told(&result, start)
             }
         }
@@ -188,6 +193,14 @@ fn oracle(result: &Identification, faultless: &Identification) -> Option<f64> {
         })
         .sum();
     Some(added.max(0.0).sqrt() / without.residual_deviation)
+}
+
+/// The size of a fault by its deviation in faultless data.
+fn honest(faultless: &Identification, (kind, name, size): (CheckKind, &str, f64)) -> Option<f64> {
+    let own = faultless.checks.iter().filter(|check| check.kind == kind);
+    let mut detectable = own.flat_map(|check| &check.detectable);
+    let found = detectable.find(|one| one.name == name)?;
+    Some(size.abs() / found.deviation)
 }
 
 /// Identifies from records.

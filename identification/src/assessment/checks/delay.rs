@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     assessment::{
-        check::{About, Check, CheckKind},
+        check::{About, Check, CheckKind, Detectable},
         suspects::{Group, Suspect},
     },
     error::Error,
@@ -44,6 +44,10 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 accused.quantile(level),
                 format!("{}, of what exceeds {HARMLESS} sampling intervals", origin(1)),
             )
+            .detecting(vec![Detectable {
+                size: harmless + accused.visible(level),
+                ..one.detectable(String::new(), "s", level)
+            }])
             .shown_by(parabola(
                 accused,
                 "Residual for torques that are shifted in time",

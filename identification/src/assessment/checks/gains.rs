@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     assessment::{
-        check::{About, Check, CheckKind},
+        check::{About, Check, CheckKind, Detectable},
         suspects::{Group, Suspect},
     },
     error::Error,
@@ -39,14 +39,15 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let percent = |value: f64| significant(100.0 * value, 3);
     let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
     let (actuators, found): (Vec<usize>, Vec<Tested>) = found.into_iter().unzip();
+    let detectable: Vec<Detectable> = actuators
+        .iter()
+        .zip(&found)
+        .map(|(actuator, one)| one.detectable(name(*actuator).to_owned(), "", level))
+        .collect();
     let Some(worst) = guilty(&found, level) else {
-        let visible: Vec<String> = actuators
+        let visible: Vec<String> = detectable
             .iter()
-            .zip(&found)
-            .map(|(actuator, one)| {
-                let visible = percent(one.accused.visible(level));
-                format!("`{}` {visible} %", name(*actuator))
-            })
+            .map(|one| format!("`{}` {} %", one.name, percent(one.size)))
             .collect();
         let words = format!(
             "no drive has a gain unlike the others'; an error of one drive would have been seen from so much on: {}",
@@ -59,7 +60,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(vec![
             Check::new(CheckKind::WrongGain, About::Model, words)
                 .measured(largest, "standard deviations")
-                .against(found[0].accused.quantile(level), origin(gains.len())),
+                .against(found[0].accused.quantile(level), origin(gains.len()))
+                .detecting(detectable),
         ]);
     };
     let place = found.iter().position(|one| std::ptr::eq(one, worst));
@@ -83,6 +85,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 &worst.accused,
                 &format!("Residual for other gains of {actuator}"),
                 ("error of the gain", "%", 100.0),
-            )),
+            ))
+            .detecting(detectable),
     ])
 }

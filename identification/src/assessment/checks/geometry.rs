@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     assessment::{
-        check::{About, Check, CheckKind},
+        check::{About, Check, CheckKind, Detectable},
         suspects::{Group, Suspect},
     },
     error::Error,
@@ -79,6 +79,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .against(worst.accused.quantile(level), origin(tests))
         .shown_by(parabola(&worst.accused, &title, (axis, unit, 1.0)))
         .because(&harm);
+    let check = check.detecting(detectable(context, (&suspects, &found), level));
     Ok(vec![match suspect {
         Suspect::Length(_) => check,
         _ => check.of_actuator(&name),
@@ -87,15 +88,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 
 /// What is said where none of the suspects is guilty: from which size on they would have been seen.
 fn nothing(context: &Context<'_>, (suspects, found): (&[Suspect], &[Tested]), level: f64) -> Check {
+    let detectable = detectable(context, (suspects, found), level);
     let visible = |of: fn(&Suspect) -> bool| -> String {
-        let own = suspects
-            .iter()
-            .zip(found)
-            .filter(|(suspect, _)| of(suspect));
-        let each = own.map(|(suspect, one)| {
-            let visible = significant(one.accused.visible(level), 2);
-            let (name, unit) = (name(context, *suspect), unit(context, *suspect));
-            format!("`{name}` {visible} {unit}")
+        let own = suspects.iter().zip(&detectable);
+        let own = own.filter(|(suspect, _)| of(suspect));
+        let each = own.map(|(_, one)| {
+            let size = significant(one.size, 2);
+            format!("`{}` {size} {}", one.name, one.unit)
         });
         each.collect::<Vec<_>>().join(", ")
     };
@@ -119,6 +118,21 @@ fn nothing(context: &Context<'_>, (suspects, found): (&[Suspect], &[Tested]), le
     Check::new(CheckKind::EncoderOffset, About::Model, words.join("; "))
         .measured(largest, "standard deviations")
         .against(threshold, origin(found.len()))
+        .detecting(detectable)
+}
+
+/// From which size on each offset and each length would have been seen.
+fn detectable(
+    context: &Context<'_>,
+    (suspects, found): (&[Suspect], &[Tested]),
+    level: f64,
+) -> Vec<Detectable> {
+    let both = suspects.iter().zip(found);
+    let sizes = both.filter(|(suspect, _)| !matches!(suspect, Suspect::Play(_)));
+    let one = |(suspect, one): (&Suspect, &Tested)| {
+        one.detectable(name(context, *suspect), unit(context, *suspect), level)
+    };
+    sizes.map(one).collect()
 }
 
 fn ratio(one: &Tested) -> f64 {

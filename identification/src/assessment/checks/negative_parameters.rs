@@ -73,18 +73,8 @@ fn told(negative: &[&ParameterEstimate]) -> String {
 fn is_positive(context: &Context<'_>, place: usize) -> bool {
     let columns = context.columns.as_slice();
     let positive = |column: usize| {
-        columns.get(column).is_some_and(|column| {
-            matches!(
-                column.symbol,
-                StandardParameter::M
-                    | StandardParameter::Ia
-                    | StandardParameter::Fv
-                    | StandardParameter::Fs
-                    | StandardParameter::Xx
-                    | StandardParameter::Yy
-                    | StandardParameter::Zz
-            )
-        })
+        let symbol = columns.get(column).map(|column| column.symbol);
+        symbol.is_some_and(StandardParameter::is_nonnegative)
     };
     let base = context.base;
     base.columns.get(place).is_some_and(|&kept| positive(kept))

@@ -3,7 +3,7 @@
 use super::Context;
 use crate::{
     assessment::{
-        check::{Check, Grade},
+        check::{Check, Detectable, Grade},
         evidence::{Axis, Curve, Evidence},
         suspects::{Accused, Group, Scores},
     },
@@ -26,6 +26,18 @@ const HALF_WIDTH: f64 = 1.96;
 pub(super) struct Tested {
     pub(super) group: Group,
     pub(super) accused: Accused,
+}
+
+impl Tested {
+    /// How well the data tell its size.
+    pub(super) fn detectable(&self, name: String, unit: &'static str, level: f64) -> Detectable {
+        Detectable {
+            name,
+            unit,
+            deviation: self.accused.deviation,
+            size: self.accused.visible(level),
+        }
+    }
 }
 
 /// What a suspect does to the parameters.

@@ -15,20 +15,22 @@
 //! of about B degrees of freedom.
 //!
 //! The residual is not the noise: the fit has taken a part away, the more the closer the other columns
-//! are to column i times a slow cosine. For noise ε that is white in time, with the covariance Ω of the
-//! lines at an instant, ρ = (I - H) ε with H = Λ W A^-1 Wᵀ Λ, so that T_1 … T_B of parameter i have the
+//! are to column i times a slow cosine. For noise ε that is white in time, of any covariance of the lines at
+//! each instant, ρ = (I - H) ε with H = Λ W A^-1 Wᵀ Λ, so that T_1 … T_B of parameter i have the
 //! covariance matrix
 //!
 //! ```text
 //! C_bb' = Σ_t φ_b φ_b' [A^-1 V_t A^-1]_ii - z_b · y_b' - y_b · z_b' + z_bᵀ R^-T (Σ_t V_t) R^-1 z_b',
-//! V_t = Σ_jk λ_j λ_k Ω_jk w_jt w_ktᵀ,   A = RᵀR,
-//! z_b = R^-T (Σ_t φ_b G_t) A^-1 e_i,   y_b = R^-T (Σ_t φ_b V_t) A^-1 e_i.
+//! A = RᵀR,   z_b = R^-T (Σ_t φ_b G_t) A^-1 e_i,   y_b = R^-T (Σ_t φ_b V_t) A^-1 e_i,
 //! ```
 //!
-//! Ω is that of the weighted residuals. Lines share noise: in case 2 the torque of an omitted actuator
-//! enters the equations of all kept ones. The trace of C tells by how much σ_i² is too small, which is made
-//! good, and (tr C)²/tr C² are the degrees of freedom of σ_i² (Bell and McCaffrey, *Survey Methodology* 28,
-//! 2002), which are few where a few instants outweigh all others.
+//! with V_t the covariance of the score of instant t. It is not known, but C is linear in it, so that each
+//! may be told by the instant's own s_t s_tᵀ (White, *Econometrica* 48, 1980). That matters where noise grows
+//! and shrinks within a few instants, and where lines share it: in case 2 the torque of an omitted actuator
+//! enters the equations of all kept ones, the more the closer they are to a singularity of their choice.
+//! The trace of C tells by how much σ_i² is too small, which is made good, and (tr C)²/tr C² are the degrees
+//! of freedom of σ_i² (Bell and McCaffrey, *Survey Methodology* 28, 2002), which are few where a few instants
+//! outweigh all others.
 //!
 //! Any other estimate that is linear in Y serves, too: with instruments Z, rows x = [w z] and the
 //! estimate M Σ λ² x y, the scores are M x ρ, the matrix A^-1 V_t A^-1 becomes M V_t Mᵀ with V_t of the
@@ -36,11 +38,11 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::{
-    estimation::{correlation::residual, estimate::Estimation},
+    estimation::estimate::Estimation,
     regression::system::{Stretch, System},
 };
 
@@ -53,8 +55,8 @@ const MOST_COSINES: usize = 64;
 /// Sections of a stretch for each cosine; within a section the cosines count as constant.
 const SECTIONS: usize = 4;
 
-/// Equations from which the covariance of the lines at an instant is told.
-const AROUND: usize = 32;
+/// The variance of the square of a normal variable by the mean of its fourth power.
+const SCATTER: f64 = 2.0 / 3.0;
 
 /// The covariance of an estimate, with the degrees of freedom of its variances.
 #[derive(Debug, Clone)]
@@ -147,13 +149,23 @@ struct Sections {
     scores: DMatrix<f64>,
     /// [M V Mᵀ]_ii, p x sections.
     variances: DMatrix<f64>,
+    /// Σ_t (M s_t)_i⁴ of the stretch.
+    fourths: Vec<f64>,
     /// The rows of G Mᵀ that belong to columns, p² x sections.
     fitted: DMatrix<f64>,
     /// The rows of V Mᵀ that belong to columns, p² x sections.
     noisy: DMatrix<f64>,
 }
 
-/// For one parameter, what noise of the covariance Ω gives.
+/// Equations of a section.
+struct Section {
+    /// The scores s_t, a row for each instant.
+    scores: DMatrix<f64>,
+    /// G.
+    gram: DMatrix<f64>,
+}
+
+/// For one parameter, what noise gives that is white in time.
 struct Moments {
     /// The variance that is looked for.
     wanted: f64,
@@ -199,45 +211,14 @@ impl<'a> Context<'a> {
     fn noise(&self, stretch: &Stretch) -> DMatrix<f64> {
         let p = self.selected.len();
         let mut sum = DMatrix::zeros(p, p);
-        let Some((_, sections)) = counts(stretch) else {
-            return sum;
-        };
-        let mixtures = self.mixtures(stretch, sections);
-        for (section, mixture) in mixtures.iter().enumerate() {
+        let sections = counts(stretch).map_or(0, |(_, sections)| sections);
+        for section in 0..sections {
             let range = range(stretch, section, sections);
-            let lines = stretch.lines.iter().zip(&self.estimation.weights);
-            let lines: Vec<_> = lines
-                .map(|(line, weight)| {
-                    let rows = line.rows(range.start, range.len());
-                    rows.select_columns(self.selected) * *weight
-                })
-                .collect();
-            for mixed in mixed(&lines, mixture) {
-                sum.gemm_tr(1.0, &mixed, &mixed, 1.0);
-            }
+            let scores = self.section(stretch, range).scores;
+            let own = scores.columns(0, p);
+            sum.gemm_tr(1.0, &own, &own, 1.0);
         }
         sum
-    }
-
-    /// L with Ω = L Lᵀ of each section of a stretch, from the weighted residuals around it.
-    fn mixtures(&self, stretch: &Stretch, sections: usize) -> Vec<DMatrix<f64>> {
-        let lines = stretch.lines.iter().zip(&self.estimation.weights);
-        let residuals = lines.map(|(line, weight)| {
-            let rows = line.rows(0, line.nrows());
-            DVector::from_vec(residual(&rows, self.selected, &self.estimation.values)) * *weight
-        });
-        let residuals = DMatrix::from_columns(&residuals.collect::<Vec<_>>());
-        let rows = residuals.nrows();
-        (0..sections)
-            .map(|section| {
-                let own = range(stretch, section, sections);
-                let missing = AROUND.saturating_sub(own.len()).div_ceil(2);
-                let start = own.start.saturating_sub(missing);
-                let end = (own.end + missing).min(rows);
-                let around = residuals.rows(start, end - start);
-                mixture(around.tr_mul(&around) / (end - start) as f64)
-            })
-            .collect()
     }
 
     fn share(&self, stretch: &Stretch, noise: &DMatrix<f64>) -> Option<Share> {
@@ -262,40 +243,19 @@ impl<'a> Context<'a> {
         let mut told = Sections {
             scores: DMatrix::zeros(q, sections),
             variances: DMatrix::zeros(p, sections),
+            fourths: vec![0.0; p],
             fitted: DMatrix::zeros(p * p, sections),
             noisy: DMatrix::zeros(p * p, sections),
         };
-        let mixtures = self.mixtures(stretch, sections);
-        for (section, mixture) in mixtures.iter().enumerate() {
-            let range = range(stretch, section, sections);
-            let mut gram = DMatrix::zeros(q, q);
-            let mut all = Vec::new();
-            for (number, (line, weight)) in stretch
-                .lines
-                .iter()
-                .zip(&self.estimation.weights)
-                .enumerate()
-            {
-                let rows = line.rows(range.start, range.len());
-                let own = self.rows(stretch, number, range.clone()) * *weight;
-                let mut residual = rows.column(rows.ncols() - 1) * *weight;
-                // The columns come before the instruments.
-                for (column, value) in own.column_iter().zip(&self.estimation.values) {
-                    residual.axpy(-value, &column, 1.0);
-                }
-                told.scores
-                    .column_mut(section)
-                    .gemv_tr(1.0, &own, &residual, 1.0);
-                gram.gemm_tr(1.0, &own, &own, 1.0);
-                all.push(own);
-            }
-            let mut noise = DMatrix::zeros(q, q);
-            for mixed in mixed(&all, mixture) {
-                noise.gemm_tr(1.0, &mixed, &mixed, 1.0);
-            }
+        for section in 0..sections {
+            let Section { scores, gram } = self.section(stretch, range(stretch, section, sections));
+            told.scores.set_column(section, &scores.row_sum_tr());
+            let noise = scores.tr_mul(&scores);
             let (product, noise) = (gram * &turned, noise * &turned);
-            for i in 0..p {
-                told.variances[(i, section)] = turned.column(i).dot(&noise.column(i));
+            let own = scores * &turned;
+            for (i, column) in own.column_iter().enumerate() {
+                told.variances[(i, section)] = column.norm_squared();
+                told.fourths[i] += column.iter().map(|value| value.powi(4)).sum::<f64>();
             }
             for (to, from) in [(&mut told.fitted, &product), (&mut told.noisy, &noise)] {
                 let mut place = to.column_mut(section);
@@ -303,6 +263,30 @@ impl<'a> Context<'a> {
                 let values = place.iter_mut().zip(columns.iter());
                 values.for_each(|(to, from)| *to = *from);
             }
+        }
+        told
+    }
+
+    /// The equations of a section of a stretch.
+    fn section(&self, stretch: &Stretch, range: Range<usize>) -> Section {
+        let q = self.influence().ncols();
+        let mut told = Section {
+            scores: DMatrix::zeros(range.len(), q),
+            gram: DMatrix::zeros(q, q),
+        };
+        let lines = stretch.lines.iter().zip(&self.estimation.weights);
+        for (number, (line, weight)) in lines.enumerate() {
+            let rows = line.rows(range.start, range.len());
+            let own = self.rows(stretch, number, range.clone()) * *weight;
+            let mut residual = rows.column(rows.ncols() - 1) * *weight;
+            // The columns come before the instruments.
+            for (column, value) in own.column_iter().zip(&self.estimation.values) {
+                residual.axpy(-value, &column, 1.0);
+            }
+            for (mut scores, column) in told.scores.column_iter_mut().zip(own.column_iter()) {
+                scores += column.component_mul(&residual);
+            }
+            told.gram.gemm_tr(1.0, &own, &own, 1.0);
         }
         told
     }
@@ -362,10 +346,14 @@ impl<'a> Context<'a> {
                         - crossed[(b, a)]
                 });
                 let count = cosines as f64;
+                let expected = c.trace() / count;
+                // Squares of single instants scatter, which adds to every C_bb'².
+                let by_chance = SCATTER * told.fourths[i];
+                let squares = c.norm_squared() / (count * count) - by_chance;
                 Moments {
                     wanted: own.iter().sum(),
-                    expected: c.trace() / count,
-                    squares: c.norm_squared() / (count * count),
+                    expected,
+                    squares: squares.max(expected * expected / count),
                 }
             })
             .collect()
@@ -384,31 +372,6 @@ fn counts(stretch: &Stretch) -> Option<(usize, usize)> {
 fn range(stretch: &Stretch, section: usize, sections: usize) -> Range<usize> {
     let equations = stretch.lines.first().map_or(0, DMatrix::nrows);
     equations * section / sections..equations * (section + 1) / sections
-}
-
-/// L with Ω = L Lᵀ; of residuals that are no numbers it is none, either.
-fn mixture(covariance: DMatrix<f64>) -> DMatrix<f64> {
-    if covariance.iter().any(|value| !value.is_finite()) {
-        return covariance;
-    }
-    let decomposed = covariance.symmetric_eigen();
-    let roots = decomposed.eigenvalues.map(|value| value.max(0.0).sqrt());
-    decomposed.eigenvectors * DMatrix::from_diagonal(&roots)
-}
-
-/// Σ_j L_jm W_j for each m, of the rows W_j of all lines.
-fn mixed<'a>(
-    lines: &'a [DMatrix<f64>],
-    mixture: &'a DMatrix<f64>,
-) -> impl Iterator<Item = DMatrix<f64>> + 'a {
-    mixture.column_iter().filter_map(move |column| {
-        let mut parts = lines
-            .iter()
-            .zip(column.iter())
-            .map(|(line, part)| line * *part);
-        let first = parts.next()?;
-        Some(parts.fold(first, |sum, part| sum + part))
-    })
 }
 
 /// cos(π b (k + 1/2)/K).

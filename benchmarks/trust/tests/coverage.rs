@@ -1,0 +1,53 @@
+//! A sample of the table in `docs/trust.md`: intervals that say 95 % contain the truth so often. It takes
+//! dozens of identifications, so only the full tier does it.
+
+use overact_identification::Stage;
+use overact_tier::is_full;
+use overact_trust::{Cell, Noise, Subject, Tally, measure};
+use std::path::Path;
+
+/// What the intervals say, percent.
+const NOMINAL: f64 = 95.0;
+
+/// What those of the paper's rule keep, which omits friction that is there, percent.
+const ESSENTIAL: f64 = 93.0;
+
+/// Most by which these are wider than the base model's.
+const WIDEST: f64 = 3.0;
+
+/// The cells of a robot with so many draws of a part of its runs.
+fn cells(robot: &str, draws: u64, part: f64) -> Vec<Cell> {
+    let file = format!("../../robots/{robot}.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    let mut subject = Subject::load(&path).expect("a robot of the library");
+    subject.shorten(part);
+    let mut tally = Tally::default();
+    for draw in 1..=draws {
+        tally.add(measure(&subject, draw, &[Noise::PLAIN]).expect("an identification"));
+    }
+    tally.cells(subject.info().name)
+}
+
+#[test]
+fn intervals_contain_the_truth_as_often_as_they_say() {
+    if !is_full() {
+        return;
+    }
+    for (robot, draws, part) in [("five_bar", 60, 0.5), ("dualv", 16, 0.25)] {
+        let cells = cells(robot, draws, part);
+        assert!(cells.len() >= 3);
+        for cell in cells {
+            let [low, high] = cell.coverage_interval_percent;
+            let wanted = match cell.stage {
+                Stage::Essential => ESSENTIAL,
+                _ => NOMINAL,
+            };
+            assert!(high >= wanted, "{cell:#?}");
+            assert!(
+                low <= NOMINAL || cell.stage == Stage::Essential,
+                "{cell:#?}"
+            );
+            assert!(cell.relative_width <= WIDEST, "{cell:#?}");
+        }
+    }
+}
