@@ -79,7 +79,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .against(worst.accused.quantile(level), origin(tests))
         .shown_by(parabola(&worst.accused, &title, (axis, unit, 1.0)))
         .because(&harm);
-    let check = check.detecting(detectable(context, (&suspects, &found), level));
+    let detectable = detectable(context, (&suspects, &found), level).into_iter();
+    let check = check.detecting(detectable.map(|(_, one)| one).collect());
     Ok(vec![match suspect {
         Suspect::Length(_) => check,
         _ => check.of_actuator(&name),
@@ -90,8 +91,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 fn nothing(context: &Context<'_>, (suspects, found): (&[Suspect], &[Tested]), level: f64) -> Check {
     let detectable = detectable(context, (suspects, found), level);
     let visible = |of: fn(&Suspect) -> bool| -> String {
-        let own = suspects.iter().zip(&detectable);
-        let own = own.filter(|(suspect, _)| of(suspect));
+        let own = detectable.iter().filter(|(suspect, _)| of(suspect));
         let each = own.map(|(_, one)| {
             let size = significant(one.size, 2);
             format!("`{}` {size} {}", one.name, one.unit)
@@ -118,7 +118,7 @@ fn nothing(context: &Context<'_>, (suspects, found): (&[Suspect], &[Tested]), le
     Check::new(CheckKind::EncoderOffset, About::Model, words.join("; "))
         .measured(largest, "standard deviations")
         .against(threshold, origin(found.len()))
-        .detecting(detectable)
+        .detecting(detectable.into_iter().map(|(_, one)| one).collect())
 }
 
 /// From which size on each offset and each length would have been seen.
@@ -126,11 +126,12 @@ fn detectable(
     context: &Context<'_>,
     (suspects, found): (&[Suspect], &[Tested]),
     level: f64,
-) -> Vec<Detectable> {
+) -> Vec<(Suspect, Detectable)> {
     let both = suspects.iter().zip(found);
     let sizes = both.filter(|(suspect, _)| !matches!(suspect, Suspect::Play(_)));
-    let one = |(suspect, one): (&Suspect, &Tested)| {
-        one.detectable(name(context, *suspect), unit(context, *suspect), level)
+    let one = |(&suspect, one): (&Suspect, &Tested)| {
+        let (name, unit) = (name(context, suspect), unit(context, suspect));
+        (suspect, one.detectable(name, unit, level))
     };
     sizes.map(one).collect()
 }
