@@ -259,7 +259,7 @@ fn geometry(robot: &str) -> Vec<Trap> {
         "Rx90" => vec![
             Trap::plant("upper arm 1 % long", "d3 = \"0.45 m\"", "d3 = \"0.4545 m\"").sized(
                 CheckKind::EncoderOffset,
-                "d3",
+                "d_3_arm",
                 0.0045,
             ),
             Trap::plant(
