@@ -71,6 +71,10 @@ pub struct Settings {
     pub filter_order: usize,
     /// Its cutoff frequency, Hz.
     pub filter_cutoff_hz: f64,
+    /// Order of the error of the central differences by which positions and velocities are differentiated, 2
+    /// or 4: (ωT)²/6 or (ωT)⁴/30 of a velocity of frequency ω at a sampling period T.
+    #[serde(default = "finest_differences")]
+    pub difference_order: usize,
     /// n_d: one sample in so many is kept after the parallel decimation; 1 keeps all, unfiltered.
     pub decimation: usize,
     /// Samples dropped from the start of each run after differentiation.
@@ -125,6 +129,11 @@ pub struct Settings {
     pub seed: u64,
 }
 
+/// The order of differences where none is asked for.
+const fn finest_differences() -> usize {
+    4
+}
+
 impl Settings {
     /// The usual rules for a robot of bandwidth `dynamics_hz` (f_dyn) sampled at
     /// `sampling_frequency` (f_m, Hz): order 4, cutoff 10 f_dyn, decimation to 4 f_dyn.
@@ -142,6 +151,7 @@ impl Settings {
         Self {
             filter_order: 4,
             filter_cutoff_hz: (10.0 * dynamics_hz).min(LARGEST_CUTOFF * nyquist),
+            difference_order: finest_differences(),
             // A cast from a float saturates, and `max` takes care of NaN.
             decimation: decimation.max(1.0) as usize,
             skip_start: 0,
@@ -214,6 +224,15 @@ impl Settings {
                     self.filter_cutoff_hz
                 ))
                 .help("choose about ten times the bandwidth of the motion"),
+            );
+        }
+        if !matches!(self.difference_order, 2 | 4) {
+            problems.push(
+                Problem::new(format!(
+                    "there are no central differences of order {}",
+                    self.difference_order
+                ))
+                .help("use order 4, or 2 as published work does"),
             );
         }
         if self.filter_order == 0 {

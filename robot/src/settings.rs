@@ -51,6 +51,7 @@ pub(crate) fn settings(description: &Description, info: &Info<'_>, frequency: f6
     let settings = Settings {
         filter_order: table.filter_order,
         filter_cutoff_hz: table.filter_cutoff.unwrap_or(usual.filter_cutoff_hz),
+        difference_order: table.difference_order.unwrap_or(usual.difference_order),
         decimation: table.decimation.unwrap_or(usual.decimation),
         skip_start: table.skip_start.unwrap_or(0),
         skip_end: table.skip_end.unwrap_or(0),

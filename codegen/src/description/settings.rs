@@ -101,6 +101,8 @@ pub struct Identification {
     pub filter_order: usize,
     /// Its cutoff, Hz; chosen from the sampling frequency if absent.
     pub filter_cutoff: Option<f64>,
+    /// Order of the error of differences, 2 or 4; the usual one if absent.
+    pub difference_order: Option<usize>,
     /// One sample in so many is kept; chosen from the sampling frequency if absent.
     pub decimation: Option<usize>,
     /// Samples dropped at the start of each run after differentiation; where neither end has a
@@ -283,6 +285,7 @@ pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>)
     let mut settings = Identification {
         filter_order: 4,
         filter_cutoff: None,
+        difference_order: None,
         decimation: None,
         skip_start: None,
         skip_end: None,
@@ -317,6 +320,18 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
     settings.filter_cutoff = table
         .get("filter_cutoff")
         .and_then(|i| i.positive(Dimension::FREQUENCY, scope));
+    if let Some(item) = table.get("difference_order") {
+        settings.difference_order = item.size(1);
+        if settings
+            .difference_order
+            .is_some_and(|order| !matches!(order, 2 | 4))
+        {
+            let error = item
+                .error("`difference_order` must be 2 or 4")
+                .help("4 has the smaller error; 2 is what published work takes");
+            table.context.report(error);
+        }
+    }
     settings.decimation = size("decimation", 1);
     settings.skip_start = size("skip_start", 0);
     settings.skip_end = size("skip_end", 0);

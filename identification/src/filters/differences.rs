@@ -2,22 +2,38 @@
 
 use std::ops::Range;
 
-/// Central differences per sample of rows of `n` values, one-sided at both ends of the run: those of
-/// the samples `range`, row by row. `values` hold the rows from sample `start` on; number `last` is
-/// the run's last one. A central difference has no phase, so velocities and accelerations stay aligned
-/// with torques.
+/// Central differences per sample of rows of `n` values: those of the samples `range`, row by row.
+///
+/// They reach over `reach` samples on either side, 1 or 2, and their error is of the order 2 or 4 in the
+/// step:
+///
+/// ```text
+/// reach 1: q' = (q_1 - q_-1)/2,
+/// reach 2: q' = 2/3 (q_1 - q_-1) - 1/12 (q_2 - q_-2).
+/// ```
+///
+/// Next to the ends of the run they reach less far, and at the ends themselves they are one-sided. `values`
+/// hold the rows from sample `start` on; number `last` is the run's last one. A central difference has no
+/// phase, so velocities and accelerations stay aligned with torques.
 pub(crate) fn central_differences(
     values: &[f64],
     start: usize,
     range: Range<usize>,
     (n, last): (usize, usize),
+    reach: usize,
 ) -> impl Iterator<Item = f64> {
+    let row = move |sample: usize| &values[(sample - start) * n..(sample - start + 1) * n];
     range.flat_map(move |sample| {
         let (before, after) = (sample.saturating_sub(1), (sample + 1).min(last));
         let step = (after - before).max(1) as f64;
-        let row = move |sample: usize| &values[(sample - start) * n..(sample - start + 1) * n];
-        let pair = row(after).iter().zip(row(before));
-        pair.map(move |(after, before)| (after - before) / step)
+        let far = (reach > 1 && sample > 1 && sample + 2 <= last)
+            .then(|| (row(sample + 2), row(sample - 2)));
+        (0..n).map(move |i| {
+            let near = (row(after)[i] - row(before)[i]) / step;
+            far.map_or(near, |(after, before)| {
+                (4.0 * near - (after[i] - before[i]) / 4.0) / 3.0
+            })
+        })
     })
 }
 
@@ -28,13 +44,33 @@ mod tests {
     #[test]
     fn a_parabola_is_exact_inside() {
         let signal: Vec<f64> = (0..6).map(|k| f64::from(k * k)).collect();
-        let whole: Vec<f64> = central_differences(&signal, 0, 0..6, (1, 5)).collect();
-        assert_eq!(whole, [1.0, 2.0, 4.0, 6.0, 8.0, 9.0]);
-        let part: Vec<f64> = central_differences(&signal[2..], 2, 3..5, (1, 5)).collect();
+        for reach in [1, 2] {
+            let whole: Vec<f64> = central_differences(&signal, 0, 0..6, (1, 5), reach).collect();
+            assert_eq!(whole, [1.0, 2.0, 4.0, 6.0, 8.0, 9.0]);
+        }
+        let part: Vec<f64> = central_differences(&signal[2..], 2, 3..5, (1, 5), 1).collect();
         assert_eq!(part, [6.0, 8.0]);
         assert_eq!(
-            central_differences(&[3.0], 0, 0..1, (1, 0)).next(),
+            central_differences(&[3.0], 0, 0..1, (1, 0), 2).next(),
             Some(0.0)
         );
+    }
+
+    /// A sine's derivative is too small by (ωT)²/6 and (ωT)⁴/30.
+    #[test]
+    fn errors_are_of_second_and_fourth_order() {
+        let step = 0.1_f64;
+        let signal: Vec<f64> = (0..9)
+            .flat_map(|k| [(step * f64::from(k)).sin(), 1.0])
+            .collect();
+        for (reach, error) in [(1, step.powi(2) / 6.0), (2, step.powi(4) / 30.0)] {
+            let found: Vec<f64> = central_differences(&signal, 0, 4..5, (2, 8), reach).collect();
+            let relative = 1.0 - found[0] / (step * (4.0 * step).cos());
+            assert!(
+                (relative / error - 1.0).abs() < 0.01,
+                "{reach}: {relative:e}"
+            );
+            assert_eq!(found[1], 0.0);
+        }
     }
 }

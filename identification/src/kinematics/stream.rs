@@ -44,6 +44,8 @@ pub(super) struct Stream<'a> {
     torques: Vec<f64>,
     /// The next sample to give out.
     next: usize,
+    /// Samples on either side that a difference reaches over.
+    reach: usize,
 }
 
 impl<'a> Stream<'a> {
@@ -69,6 +71,7 @@ impl<'a> Stream<'a> {
             velocities: Vec::new(),
             torques: Vec::new(),
             next: 0,
+            reach: settings.difference_order / 2,
         })
     }
 
@@ -86,11 +89,11 @@ impl<'a> Stream<'a> {
     pub(super) fn next(&mut self) -> Result<Option<Derivatives>, Error> {
         loop {
             let known = self.start + self.positions.len() / self.width;
-            // An acceleration needs two samples on either side; at the end there are none.
+            // An acceleration is a difference of differences; at the end there is nothing to reach over.
             let possible = if known == self.samples {
                 known
             } else {
-                known.saturating_sub(2)
+                known.saturating_sub(2 * self.reach)
             };
             if possible > self.next {
                 let end = possible.min(self.next + BLOCK_SAMPLES);
@@ -114,15 +117,17 @@ impl<'a> Stream<'a> {
     /// Gives out the samples up to `end`.
     fn take(&mut self, end: usize) -> Derivatives {
         let (first, n, last) = (self.next, self.width, self.samples - 1);
-        let (before, behind) = (first.saturating_sub(1), (end + 1).min(self.samples));
-        // One sample more on either side, for the accelerations.
+        // Some samples more on either side, for the accelerations.
+        let before = first.saturating_sub(self.reach);
+        let behind = (end + self.reach).min(self.samples);
         let around: Vec<f64> = if self.velocity_filter.is_some() {
             self.velocities[(before - self.start) * n..(behind - self.start) * n].to_vec()
         } else {
-            let steps = central_differences(&self.positions, self.start, before..behind, (n, last));
+            let (run, own) = ((n, last), before..behind);
+            let steps = central_differences(&self.positions, self.start, own, run, self.reach);
             steps.map(|step| step * self.frequency).collect()
         };
-        let accelerations = central_differences(&around, before, first..end, (n, last));
+        let accelerations = central_differences(&around, before, first..end, (n, last), self.reach);
         let accelerations = accelerations.map(|step| step * self.frequency).collect();
         let inside = |values: &[f64], start: usize| -> Vec<f64> {
             values[(first - start) * n..(end - start) * n].to_vec()
@@ -136,7 +141,7 @@ impl<'a> Stream<'a> {
             torques: self.torques.drain(..(end - first) * n).collect(),
         };
         self.next = end;
-        let obsolete = end.saturating_sub(2).max(self.start);
+        let obsolete = end.saturating_sub(2 * self.reach).max(self.start);
         self.positions.drain(..(obsolete - self.start) * n);
         if self.velocity_filter.is_some() {
             self.velocities.drain(..(obsolete - self.start) * n);

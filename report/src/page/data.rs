@@ -93,6 +93,10 @@ fn settings(settings: &Settings) -> String {
             ),
         ),
         (
+            "Differentiation",
+            format!("central differences of order {}", settings.difference_order),
+        ),
+        (
             "Decimation",
             format!("one equation in {} samples", settings.decimation),
         ),

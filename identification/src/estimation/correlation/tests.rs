@@ -68,6 +68,7 @@ pub(crate) fn settings() -> Settings {
         decimation: 1,
         skip_start: 0,
         skip_end: 0,
+        difference_order: 4,
         velocity_dead_band: 0.0,
         standstill_velocity: Vec::new(),
         filter_torques: false,

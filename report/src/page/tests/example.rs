@@ -196,6 +196,7 @@ pub(super) fn settings() -> Settings {
     Settings {
         filter_order: 4,
         filter_cutoff_hz: 100.0,
+        difference_order: 4,
         decimation: 50,
         skip_start: 0,
         velocity_dead_band: 0.0,
