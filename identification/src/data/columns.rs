@@ -5,7 +5,7 @@
 
 use super::{
     expression::Expression,
-    problems::{missing_columns, shown},
+    problems::{legible, missing_columns, shown},
     table::Table,
 };
 use crate::error::{Error, Problem};
@@ -22,11 +22,16 @@ pub(super) struct Found {
     pub(super) places: Vec<usize>,
 }
 
+/// The tables of a run, and the file of each, counted from 1: a file may have several.
+pub(super) type Tables<'a> = (&'a [Table], &'a [usize]);
+
 /// Columns that have been asked for so far.
 pub(super) struct Columns<'a> {
     /// The run as the caller named it.
     run: &'a str,
     tables: &'a [Table],
+    /// The file of each table, counted from 1.
+    numbers: &'a [usize],
     /// Those that were found, each with the name by which it was asked for first.
     found: Vec<(Place, String)>,
     missing: Vec<String>,
@@ -35,10 +40,11 @@ pub(super) struct Columns<'a> {
 
 impl<'a> Columns<'a> {
     /// No column has been asked for.
-    pub(super) const fn new(run: &'a str, tables: &'a [Table]) -> Self {
+    pub(super) const fn new(run: &'a str, (tables, numbers): Tables<'a>) -> Self {
         Self {
             run,
             tables,
+            numbers,
             found: Vec::new(),
             missing: Vec::new(),
             problems: Vec::new(),
@@ -114,12 +120,19 @@ impl<'a> Columns<'a> {
             places.extend(table.find(name)?.map(|place| (file, place)));
         }
         if let [first, second, ..] = places[..] {
-            let (file, other) = (first.0 + 1, second.0 + 1);
-            let message = format!("several of the files have a column `{}`", shown(name));
+            let is_one_file = self.numbers[first.0] == self.numbers[second.0];
+            let [file, other] = [first, second].map(|(table, _)| {
+                let full = self.tables[table].full_name(self.numbers[table], name);
+                format!("`{}`", legible(&full))
+            });
+            let (what, way) = if is_one_file {
+                ("topics of the file", "")
+            } else {
+                ("files", ", or by its number through all files")
+            };
+            let message = format!("several of the {what} have a column `{}`", shown(name));
             let problem = Problem::new(message).file(self.run).column(name);
-            return Err(problem.help(format!(
-                "call it `file{file}.{name}` or `file{other}.{name}`, or by its number through all files"
-            )));
+            return Err(problem.help(format!("call it {file} or {other}{way}")));
         }
         let place = match places.first() {
             Some(place) => Some(*place),
@@ -151,11 +164,26 @@ impl<'a> Columns<'a> {
         let Some((number, own)) = file else {
             return Ok(None);
         };
-        let file = number.parse().ok().and_then(|k: usize| k.checked_sub(1));
-        let Some((file, table)) = file.and_then(|file| Some((file, self.tables.get(file)?))) else {
-            return Ok(None);
-        };
-        Ok(table.find(own)?.map(|place| (file, place)))
+        let number = number.parse().ok();
+        for (table, of) in self.numbers.iter().enumerate() {
+            if Some(*of) == number
+                && let Some(place) = self.tables[table].find(own)?
+            {
+                return Ok(Some((table, place)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The tables of which columns were found, in the order in which they were asked for.
+    pub(super) fn tables(&self) -> Vec<usize> {
+        let mut tables = Vec::new();
+        for ((table, _), _) in &self.found {
+            if !tables.contains(table) {
+                tables.push(*table);
+            }
+        }
+        tables
     }
 
     /// The column at a place.

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use super::{
     periods::{self, Periods},
+    rows,
     samples::Samples,
-    source::{self, Files},
+    source::Files,
 };
 use crate::error::{Error, Problem};
 
@@ -282,7 +283,7 @@ impl Log {
     pub fn reader(&self) -> Result<Reader<'_>, Error> {
         let rows = match &self.source {
             Source::Memory(all) => Rows::Memory(all.each_ref().map(|own| &**own)),
-            Source::Files(files) => Rows::Files(Box::new(files.open()?)),
+            Source::Files(files) => Rows::Files(Box::new(rows::Rows::new(files)?)),
             Source::Others(log, periods) => {
                 Rows::Others(Box::new(log.reader()?), periods::Others::new(periods))
             }
@@ -328,7 +329,7 @@ pub struct Reader<'a> {
 #[derive(Debug)]
 enum Rows<'a> {
     Memory([&'a [f64]; 3]),
-    Files(Box<source::Rows<'a>>),
+    Files(Box<rows::Rows<'a>>),
     Others(Box<Reader<'a>>, periods::Others<'a>),
 }
 
