@@ -92,7 +92,7 @@ impl Files {
                 _ => continue,
             };
             let own = 1.0 / step.unwrap_or(f64::NAN);
-            let message = format!("{name} is to be resampled at {rate:.6} Hz, which is {what} its {own:.6} Hz");
+            let message = format!("{name} is to be resampled at {} Hz, which is {what} its {} Hz", round(rate), round(own));
             let problem = Problem::new(message).file(self.name.as_str()).column("resample");
             problems.push(problem.help("take a rate near that of the samples, `resample` in [data]"));
             break;
@@ -137,18 +137,19 @@ impl Files {
             labels.collect::<Vec<_>>().join(", ")
         };
         let passed = |rate: f64, is_lower: bool| match is_lower {
-            true => format!(", after a low-pass that keeps what lies below {:.6} Hz", 0.4 * rate),
+            true => format!(", after a low-pass that keeps what lies below {} Hz", round(0.4 * rate)),
             false => String::new(),
         };
         if let Some((rate, step)) = self.resample {
             let mut steps = self.clocks.iter().map(|(_, _, step)| *step).chain([step]);
             let low_pass = passed(rate, steps.any(|step| resampling::is_lower(step, rate)));
             let (what, from) = match &self.clocks[..] {
-                [] => (String::from("the run"), format!("from about {:.6} Hz", 1.0 / step)),
+                [] => (String::from("the run"), format!("from about {} Hz", round(1.0 / step))),
                 clocks => (labels(clocks), String::from("onto common times")),
             };
             return Some(format!(
-                "{what} was resampled at {rate} Hz {from}, by polynomials of degree 5{low_pass}"
+                "{what} was resampled at {} Hz {from}, by polynomials of degree 5{low_pass}",
+                round(rate)
             ));
         }
         let (&(first, _, step), others) = self.clocks.split_first()?;
@@ -168,6 +169,11 @@ impl Files {
             passed(rate, is_lower)
         ))
     }
+}
+
+/// A rate with as many digits as matter.
+fn round(rate: f64) -> f64 {
+    (rate * 1e6).round() / 1e6
 }
 
 /// The tables of a run without those parts of files, as topics are, that have none of its signals; the others

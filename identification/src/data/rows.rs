@@ -232,7 +232,8 @@ impl<'a> Rows<'a> {
 
     /// Whether nothing more can be read.
     pub(super) const fn has_ended(&self) -> bool {
-        self.joined.has_ended
+        // What is resampled is read ahead.
+        self.joined.has_ended && self.resampled.is_none()
     }
 
     /// Appends the next sample; `false` at the end.

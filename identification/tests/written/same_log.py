@@ -71,8 +71,18 @@ def arrays(folder):
         run.create_dataset("q", data=position, chunks=(64, 2), compression="gzip", shuffle=True)
         run.create_dataset("dq", data=velocity, chunks=(50, 1), fletcher32=True)
         run.create_dataset("tau", data=effort.astype(">f8"))
-        file["label"] = "a text"
         file["gain"] = 2.0
+        # What is refused when it is asked for, and may stand beside the others.
+        file["label"] = "a text"
+        file["cube"] = numpy.zeros((2, 3, 4))
+        file["table"] = numpy.zeros(COUNT, dtype=[("t", "f8"), ("q", "f8")])
+        file["half"] = numpy.zeros(COUNT, dtype="f2")
+        file["flags"] = time > 1
+        file["short"] = time[:-1]
+        file["hole"] = numpy.where(time == 0.5, numpy.nan, time)
+        file["run/again"] = file["run"]
+        file["lost"] = h5py.SoftLink("/nowhere")
+        file["elsewhere"] = h5py.ExternalLink("other.h5", "/q")
     # As MATLAB's `save(..., '-v7.3')`: 512 bytes of its own before the file, and the sides of matrices in the
     # other order.
     path = folder / "same_v73.mat"
