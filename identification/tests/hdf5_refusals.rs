@@ -22,7 +22,7 @@ fn log(position: &str, torque: &str) -> Result<Log, String> {
 #[test]
 fn what_is_no_vector_of_numbers_is_named() {
     for (name, what) in [
-        ("label", "`label` holds texts, not numbers"),
+        ("label", "`label` holds texts or lists of any length, not numbers"),
         ("cube", "`cube` has more than two dimensions"),
         ("table", "`table` holds structures (a table, or complex numbers), not single numbers"),
         ("half", "`half` holds floating numbers of other sizes than 32 and 64 bits"),
@@ -60,14 +60,19 @@ fn files_with_any_wrong_byte_are_read_or_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.h5");
     let (mut good, mut refused) = (0, 0);
-    let mapping = |prefix: &str| Mapping {
-        time: Time::Column(format!("{prefix}t")),
+    let mapping = |time: &str, prefix: &str| Mapping {
+        time: Time::Column(time.to_owned()),
         ..timed(&format!("{prefix}q(:,2)"), &format!("{prefix}tau(:,1)"))
     };
-    for (name, prefix) in [("same.h5", "run."), ("same_v73.mat", "")] {
+    for (name, time, prefix, counts) in [
+        ("small.h5", "t", "run.", [1000, 10_000]),
+        ("small_old.h5", "t", "run.", [1000, 10_000]),
+        ("same.h5", "run.t", "run.", [0, 2000]),
+        ("same_v73.mat", "t", "", [50, 5000]),
+    ] {
         let bytes = std::fs::read(written(name)).expect("a file");
-        let mapping = mapping(prefix);
-        for k in 0..by_tier([1200, 20_000]) {
+        let mapping = mapping(time, prefix);
+        for k in 0..by_tier(counts) {
             let mut bytes = bytes.clone();
             match k % 4 {
                 0 => bytes.truncate(random.below(bytes.len())),

@@ -44,9 +44,9 @@ uint32 nanosec
 """
 
 
-def samples():
+def samples(count=COUNT):
     """Numbers that are the same in every language: quotients of small whole numbers."""
-    k = numpy.arange(COUNT)
+    k = numpy.arange(count)
     time = k / 100
     position = numpy.column_stack([k * k / 7, (k % 13) / 3])
     velocity = numpy.column_stack([k / 9, (k % 5) / 11])
@@ -101,6 +101,22 @@ def arrays(folder):
         file.write(text.ljust(116) + bytes(8) + b"\x00\x02IM")
 
 
+def small(folder):
+    """Files of a few samples, in which bytes are changed."""
+    time, position, _, effort = samples(12)
+    with h5py.File(folder / "small.h5", "w", libver="latest") as file:
+        file["t"] = time
+        file.create_dataset("run/q", data=position, chunks=(5, 2), maxshape=(None, 2), compression="gzip")
+        file["run/tau"] = effort
+    with h5py.File(folder / "small_old.h5", "w", libver="earliest") as file:
+        file["t"] = time
+        file.create_dataset("run/q", data=position, chunks=(5, 1), compression="gzip", fletcher32=True)
+        file["run/tau"] = effort
+    mcap_file(folder / "small_lz4.mcap", CompressionType.LZ4, 512, several=False, count=12)
+    mcap_file(folder / "small_zstd.mcap", CompressionType.ZSTD, 512, several=True, count=12)
+    mcap_file(folder / "small_plain.mcap", CompressionType.NONE, 512, several=False, count=12)
+
+
 def stamp(nanos):
     return {"sec": nanos // 1_000_000_000, "nanosec": nanos % 1_000_000_000}
 
@@ -115,14 +131,14 @@ def state(nanos, names, position, velocity, effort):
     }
 
 
-def mcap_file(path, compression, chunk_size, several):
+def mcap_file(path, compression, chunk_size, several, count=COUNT):
     """One topic with everything, or positions and efforts on topics of their own and others beside them."""
     _, position, velocity, effort = samples()
     with open(path, "wb") as output:
         writer = mcap_ros2.writer.Writer(output, compression=compression, chunk_size=chunk_size)
         joints = writer.register_msgdef("sensor_msgs/msg/JointState", JOINT_STATE)
         text = writer.register_msgdef("std_msgs/msg/String", "string data")
-        for k in range(COUNT):
+        for k in range(count):
             nanos = START + STEP * k
             # Recorded some time later, by the clock of another computer.
             times = {"log_time": nanos + 3_000_000, "publish_time": nanos}
@@ -165,6 +181,7 @@ def main():
     mcap_file(folder / "same_zstd.mcap", CompressionType.ZSTD, 4096, several=True)
     mcap_file(folder / "same_plain.mcap", CompressionType.NONE, 4096, several=True)
     bag(folder / "same_rosbags.mcap")
+    small(folder)
 
 
 main()

@@ -21,7 +21,9 @@ pub(super) fn is_number(kind: &Datatype) -> std::result::Result<(), &'static str
         Datatype::FixedPoint { .. } => Err("holds whole numbers of more than 64 bits, which are not read"),
         Datatype::FloatingPoint { .. } => Err("holds floating numbers of other sizes than 32 and 64 bits, which are not read"),
         Datatype::Enum { base, .. } => is_number(base),
-        Datatype::String { .. } => Err("holds texts, not numbers"),
+        Datatype::String { .. } | Datatype::VarLen { .. } => {
+            Err("holds texts or lists of any length, not numbers")
+        }
         Datatype::Compound { .. } => Err("holds structures (a table, or complex numbers), not single numbers"),
         Datatype::Reference { .. } => Err("holds references to others (a cell array?), not numbers"),
         _ => Err("holds no single numbers"),

@@ -150,7 +150,8 @@ impl StoredRows for Rows<'_> {
 
 /// A time in seconds from an origin.
 fn seconds(whole: i64, nanos: u32, origin: i64) -> f64 {
-    (whole - origin) as f64 + f64::from(nanos) * 1e-9
+    // Rounded once.
+    (i128::from(whole - origin) * 1_000_000_000 + i128::from(nanos)) as f64 / 1e9
 }
 
 /// What is said of a message with other joints than the first one.

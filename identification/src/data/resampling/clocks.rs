@@ -1,22 +1,22 @@
 //! The clocks of files: their usual steps, whether they agree, and whether their times overlap.
 
-use super::super::{problems::shown, table::Rows};
+use super::{
+    super::{problems::shown, table::Rows},
+    LONGEST_STEP,
+};
 use crate::error::Problem;
 
 /// Steps of a clock from which the usual one is told.
 const FIRST_STEPS: usize = 256;
 
-/// Median steps between two samples, at most, if none is missing in between.
-const LONGEST_WHOLE: f64 = 1.75;
-
-/// The usual step of a clock, s, from its first times: the mean of those steps in which no sample is missing.
+/// The usual step of a clock, s, from its first times: the mean of all but gaps.
 pub(in crate::data) fn usual_step(times: impl Iterator<Item = f64>) -> f64 {
     let times: Vec<f64> = times.take(FIRST_STEPS + 1).collect();
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     let median = steps.get(steps.len() / 2).copied().unwrap_or(f64::NAN);
-    let whole: Vec<f64> = steps.into_iter().filter(|step| *step <= LONGEST_WHOLE * median).collect();
-    whole.iter().sum::<f64>() / whole.len() as f64
+    let steps: Vec<f64> = steps.into_iter().filter(|step| *step <= LONGEST_STEP * median).collect();
+    steps.iter().sum::<f64>() / steps.len() as f64
 }
 
 /// The times of a file, up to its end or to what is wrong with it, which is told where the file is gone through.
