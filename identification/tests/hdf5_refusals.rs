@@ -12,7 +12,9 @@ use overact_identification::{Log, Mapping, Time, data::read};
 use overact_tier::by_tier;
 
 fn written(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/written").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/written")
+        .join(name)
 }
 
 fn log(position: &str, torque: &str) -> Result<Log, String> {
@@ -22,15 +24,30 @@ fn log(position: &str, torque: &str) -> Result<Log, String> {
 #[test]
 fn what_is_no_vector_of_numbers_is_named() {
     for (name, what) in [
-        ("label", "`label` holds texts or lists of any length, not numbers"),
+        (
+            "label",
+            "`label` holds texts or lists of any length, not numbers",
+        ),
         ("cube", "`cube` has more than two dimensions"),
-        ("table", "`table` holds structures (a table, or complex numbers), not single numbers"),
-        ("half", "`half` holds floating numbers of other sizes than 32 and 64 bits"),
+        (
+            "table",
+            "`table` holds structures (a table, or complex numbers), not single numbers",
+        ),
+        (
+            "half",
+            "`half` holds floating numbers of other sizes than 32 and 64 bits",
+        ),
         ("hole", "`hole`: sample 50 is not a finite number"),
-        ("short", "`run/tau(:,2)` has 200 samples, but `short` has 199"),
-        ("run/q", "there is no dataset `run/q`; the file has"),
-        ("run/q", "of a matrix name the columns one by one, `run.q(:,1)` is the first"),
-        ("run/q(:,3)", "there is no dataset `run/q(:,3)`"),
+        (
+            "short",
+            "`run/tau(:,2)` has 200 samples, but `short` has 199",
+        ),
+        ("run.q", "there is no dataset `run.q`; the file has"),
+        (
+            "run.q",
+            "of a matrix name the columns one by one, `run.q(:,1)` is the first",
+        ),
+        ("run.q(:,3)", "there is no dataset `run.q(:,3)`"),
         ("lost", "there is no dataset `lost`"),
         ("elsewhere", "there is no dataset `elsewhere`"),
     ] {
@@ -40,8 +57,16 @@ fn what_is_no_vector_of_numbers_is_named() {
     // True and false count as numbers.
     let flags = log("flags", "run.tau(:,1)").unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(flags.load().expect("numbers").0[100..103], [0.0, 1.0, 1.0]);
-    let told = read(&written("same_v73.mat"), &timed("q(:,1)", "tau(:,7)"), false).expect_err("no column");
-    assert!(told.to_string().contains("there is no dataset `tau(:,7)`"), "{told}");
+    let told = read(
+        &written("same_v73.mat"),
+        &timed("q(:,1)", "tau(:,7)"),
+        false,
+    )
+    .expect_err("no column");
+    assert!(
+        told.to_string().contains("there is no dataset `tau(:,7)`"),
+        "{told}"
+    );
 }
 
 /// Numbers that are the same each time.
@@ -49,7 +74,10 @@ struct Random(u64);
 
 impl Random {
     fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as usize % count
     }
 }

@@ -73,7 +73,12 @@ fn a_faster_file_with_an_uneven_clock_is_interpolated() {
     is_line(&log);
     let note = log.note().expect("a note");
     // The torques have twenty times the rate.
-    assert!(note.contains(", after a low-pass that keeps what lies below 40 Hz, since the clocks differ"), "{note}");
+    assert!(
+        note.contains(
+            ", after a low-pass that keeps what lies below 40 Hz, since the clocks differ"
+        ),
+        "{note}"
+    );
 }
 
 #[test]

@@ -45,12 +45,19 @@ fn size() -> u64 {
 
 /// Writes Parquet until it has so many megabytes, and tells how many samples it has.
 fn write_parquet(path: &Path) -> usize {
-    let names = (0..JOINTS).map(|joint| format!("required double q{joint}; required double tau{joint};"));
-    let schema = format!("message log {{ required double t; {} }}", names.collect::<String>());
+    let names =
+        (0..JOINTS).map(|joint| format!("required double q{joint}; required double tau{joint};"));
+    let schema = format!(
+        "message log {{ required double t; {} }}",
+        names.collect::<String>()
+    );
     let schema = Arc::new(parse_message_type(&schema).expect("a schema"));
-    let properties = WriterProperties::builder().set_dictionary_enabled(false).build();
+    let properties = WriterProperties::builder()
+        .set_dictionary_enabled(false)
+        .build();
     let output = File::create(path).expect("a file");
-    let mut writer = SerializedFileWriter::new(output, schema, Arc::new(properties)).expect("a writer");
+    let mut writer =
+        SerializedFileWriter::new(output, schema, Arc::new(properties)).expect("a writer");
     let mut count = 0;
     while (writer.bytes_written() as u64) < size() << 20 {
         let mut group = writer.next_row_group().expect("a group");
@@ -61,7 +68,10 @@ fn write_parquet(path: &Path) -> usize {
                 _ => sample(k)[(place - 1) % 2][(place - 1) / 2],
             };
             let values: Vec<f64> = (count..count + BLOCK).map(value).collect();
-            column.typed::<DoubleType>().write_batch(&values, None, None).expect("written");
+            column
+                .typed::<DoubleType>()
+                .write_batch(&values, None, None)
+                .expect("written");
             column.close().expect("closed");
             place += 1;
         }
@@ -96,7 +106,11 @@ fn write_mcap(path: &Path) -> usize {
         for k in count..count + BLOCK / 10 {
             let [positions, efforts] = sample(k);
             let nanos = k as u64 * 1_000_000;
-            records.extend(message(1, nanos, &state(nanos, &names, [&positions, &[], &efforts])));
+            records.extend(message(
+                1,
+                nanos,
+                &state(nanos, &names, [&positions, &[], &efforts]),
+            ));
         }
         count += BLOCK / 10;
         let mut packing = lz4_flex::frame::FrameEncoder::new(Vec::new());
@@ -134,10 +148,17 @@ fn measured(path: &Path, mapping: &Mapping, count: usize) {
     let mut reader = log.reader().expect("a reader");
     let mut k = 0;
     while let Some(block) = reader.next().expect("a block") {
-        let rows = block.positions.chunks_exact(JOINTS).zip(block.torques.chunks_exact(JOINTS));
+        let rows = block
+            .positions
+            .chunks_exact(JOINTS)
+            .zip(block.torques.chunks_exact(JOINTS));
         for (positions, torques) in rows {
             if mapping.resample.is_none() {
-                assert_eq!([positions, torques], sample(k).each_ref().map(|own| &own[..]), "{k}");
+                assert_eq!(
+                    [positions, torques],
+                    sample(k).each_ref().map(|own| &own[..]),
+                    "{k}"
+                );
             }
             k += 1;
         }
@@ -174,7 +195,8 @@ fn large_files_stay_on_the_disk() {
         let path = folder.path().join("large.mcap");
         let count = write_mcap(&path);
         let letters = ["a", "b", "c", "d", "e", "f"];
-        let names = |joint: usize| ["position", "effort"].map(|list| format!("{list}.{}", letters[joint]));
+        let names =
+            |joint: usize| ["position", "effort"].map(|list| format!("{list}.{}", letters[joint]));
         measured(&path, &mapping("time", None, names), count);
         measured(&path, &mapping("time", Some(300.0), names), count);
     }

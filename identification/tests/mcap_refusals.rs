@@ -25,7 +25,11 @@ fn mapping(position: &str, torque: &str) -> Mapping {
 }
 
 fn log(bytes: &[u8]) -> Result<Log, String> {
-    run("a.mcap", &[("a.mcap", bytes)], &mapping("position.a", "effort.a"))
+    run(
+        "a.mcap",
+        &[("a.mcap", bytes)],
+        &mapping("position.a", "effort.a"),
+    )
 }
 
 fn refused(bytes: &[u8]) -> String {
@@ -61,23 +65,46 @@ fn files_of_any_make_have_the_same_numbers() {
     let mut bytes = file(&[]);
     bytes.truncate(mcap_file::beginning().len());
     bytes.extend(packed);
-    bytes.extend(end(bytes.len() as u64, &[topic(1, "/joint_states", CDR), topic(2, "/camera", ("sensor_msgs/msg/Image", "cdr"))].concat()));
+    bytes.extend(end(
+        bytes.len() as u64,
+        &[
+            topic(1, "/joint_states", CDR),
+            topic(2, "/camera", ("sensor_msgs/msg/Image", "cdr")),
+        ]
+        .concat(),
+    ));
     assert_eq!(numbers(log(&bytes)), expected);
     // Joints without names are numbered.
     let nameless = messages(|k| state(k * STEP, &[], [&[0.0, k as f64], &[], &[-2.0 * k as f64]]));
-    let numbered = run("a.mcap", &[("a.mcap", &file(&nameless))], &mapping("position.2", "effort.1"));
+    let numbered = run(
+        "a.mcap",
+        &[("a.mcap", &file(&nameless))],
+        &mapping("position.2", "effort.1"),
+    );
     assert_eq!(numbers(numbered), expected);
 }
 
 #[test]
 fn topics_with_clocks_of_their_own_are_joined_by_time() {
-    let mut records = vec![topic(1, "/fast", CDR), topic(2, "/slow", CDR), topic(3, "/none", CDR)];
+    let mut records = vec![
+        topic(1, "/fast", CDR),
+        topic(2, "/slow", CDR),
+        topic(3, "/none", CDR),
+    ];
     for k in 0..400_u64 {
         let seconds = k as f64 / 100.0;
-        records.push(message(1, k * STEP, &state(k * STEP, &["a"], [&[seconds], &[], &[]])));
+        records.push(message(
+            1,
+            k * STEP,
+            &state(k * STEP, &["a"], [&[seconds], &[], &[]]),
+        ));
         if k % 2 == 0 {
             let nanos = k * STEP + 3_000_000;
-            records.push(message(2, nanos, &state(nanos, &["a"], [&[0.0], &[], &[3.0 * seconds + 0.009]])));
+            records.push(message(
+                2,
+                nanos,
+                &state(nanos, &["a"], [&[0.0], &[], &[3.0 * seconds + 0.009]]),
+            ));
         }
     }
     let bytes = file(&records);
@@ -90,18 +117,32 @@ fn topics_with_clocks_of_their_own_are_joined_by_time() {
         "{told}"
     );
     let mapping = mapping("/fast.position.a", "effort.a");
-    let own = run("a.mcap", &[("a.mcap", &bytes)], &mapping).unwrap_or_else(|error| panic!("{error}"));
+    let own =
+        run("a.mcap", &[("a.mcap", &bytes)], &mapping).unwrap_or_else(|error| panic!("{error}"));
     let (positions, torques) = loaded(&own);
     assert_eq!(positions[0], 0.01);
     for (position, torque) in positions.iter().zip(&torques) {
-        assert!((torque - 3.0 * position).abs() < 1e-9, "{torque} at {position}");
+        assert!(
+            (torque - 3.0 * position).abs() < 1e-9,
+            "{torque} at {position}"
+        );
     }
     let note = own.note().expect("a note");
-    assert!(note.contains("/slow of ") && note.contains("interpolated onto the times of /fast of "), "{note}");
+    assert!(
+        note.contains("/slow of ") && note.contains("interpolated onto the times of /fast of "),
+        "{note}"
+    );
     // Beside a text whose times count from the same second.
-    let text = "time,tau\n".to_owned() + &(0..400).map(|k| format!("{},{k}\n", f64::from(k) / 100.0)).collect::<String>();
+    let text = "time,tau\n".to_owned()
+        + &(0..400)
+            .map(|k| format!("{},{k}\n", f64::from(k) / 100.0))
+            .collect::<String>();
     let files: [(&str, &[u8]); 2] = [("a.mcap", &bytes), ("b.csv", text.as_bytes())];
-    let own = run("a.mcap+b.csv", &files, &self::mapping("/fast.position.a", "file2.tau"));
+    let own = run(
+        "a.mcap+b.csv",
+        &files,
+        &self::mapping("/fast.position.a", "file2.tau"),
+    );
     let (positions, torques, _) = numbers(own);
     assert_eq!((positions[7], torques[7]), (0.07, 7.0));
 }
@@ -119,23 +160,42 @@ fn messages_that_do_not_fit_are_located() {
         "{order}"
     );
     let joints = at_7(two(7, &["a", "b"]));
-    assert!(joints.contains("message 7 of `/joint_states` has other joints than the first message: a, b, and not a"), "{joints}");
+    assert!(
+        joints.contains(
+            "message 7 of `/joint_states` has other joints than the first message: a, b, and not a"
+        ),
+        "{joints}"
+    );
     let short = at_7(state(7 * STEP, &["a"], [&[], &[], &[1.0]]));
     assert!(short.contains("message 7 of `/joint_states` has 0 numbers of the kind `position`, too few for `position.a`"), "{short}");
     let hole = at_7(state(7 * STEP, &["a"], [&[1.0], &[], &[f64::NAN]]));
-    assert!(hole.contains("message 7 of `/joint_states` has no finite number in `effort.a`"), "{hole}");
+    assert!(
+        hole.contains("message 7 of `/joint_states` has no finite number in `effort.a`"),
+        "{hole}"
+    );
     let back = at_7(state(3 * STEP, &["a"], [&[1.0], &[], &[1.0]]));
     assert!(
         back.contains("message 7 of `/joint_states` has the time 0.03 s, which is not behind that of the message before, 0.06 s"),
         "{back}"
     );
     let cut = at_7(usual(7)[..40].to_vec());
-    assert!(cut.contains("message 7 of `/joint_states` is cut off, or no JointState"), "{cut}");
+    assert!(
+        cut.contains("message 7 of `/joint_states` is cut off, or no JointState"),
+        "{cut}"
+    );
     let other = at_7([&[0, 7, 0, 0][..], &usual(7)[4..]].concat());
-    assert!(other.contains("is in the representation 0x00 0x07, and not in plain CDR"), "{other}");
+    assert!(
+        other.contains("is in the representation 0x00 0x07, and not in plain CDR"),
+        "{other}"
+    );
     let unstamped = told(&|k| stamped((0, 0), &["a"], [&[k as f64], &[], &[0.0]]));
-    assert!(unstamped.contains("has no stamp: it is zero") && unstamped.contains("log_time"), "{unstamped}");
-    let unstamped = file(&messages(|k| stamped((0, 0), &["a"], [&[k as f64], &[], &[0.0]])));
+    assert!(
+        unstamped.contains("has no stamp: it is zero") && unstamped.contains("log_time"),
+        "{unstamped}"
+    );
+    let unstamped = file(&messages(|k| {
+        stamped((0, 0), &["a"], [&[k as f64], &[], &[0.0]])
+    }));
     let recorded = Mapping {
         time: Time::Column(String::from("log_time")),
         ..mapping("position.a", "effort.a")
@@ -143,7 +203,13 @@ fn messages_that_do_not_fit_are_located() {
     let (_, _, frequency) = numbers(run("a.mcap", &[("a.mcap", &unstamped)], &recorded));
     assert!((frequency - 100.0).abs() < 1e-6);
     // Drives' clocks jitter: refused, and resampled on request.
-    let jitter = |k: u64| state(k * STEP + k % 3 * 1_000_000, &["a"], [&[k as f64], &[], &[0.0]]);
+    let jitter = |k: u64| {
+        state(
+            k * STEP + k % 3 * 1_000_000,
+            &["a"],
+            [&[k as f64], &[], &[0.0]],
+        )
+    };
     let uneven = file(&messages(jitter));
     assert!(refused(&uneven).contains("`resample = \"1 kHz\"` in [data]"));
     let resampled = Mapping {
@@ -152,7 +218,11 @@ fn messages_that_do_not_fit_are_located() {
     };
     let (_, _, frequency) = numbers(run("a.mcap", &[("a.mcap", &uneven)], &resampled));
     assert_eq!(frequency, 100.0);
-    let missing = run("a.mcap", &[("a.mcap", &file(&messages(usual)))], &mapping("position.b", "$1"));
+    let missing = run(
+        "a.mcap",
+        &[("a.mcap", &file(&messages(usual)))],
+        &mapping("position.b", "$1"),
+    );
     let missing = missing.expect_err("missing");
     assert!(
         missing.contains("there are no columns `position.b`, `$1`; the file has `/joint_states.time`, `/joint_states.log_time`, `/joint_states.position.a`"),
@@ -162,7 +232,10 @@ fn messages_that_do_not_fit_are_located() {
 
 #[test]
 fn files_without_states_of_joints_say_what_they_have() {
-    let told = refused(&file(&[topic(1, "/tf", ("tf2_msgs/msg/TFMessage", "cdr")), topic(2, "/js", (JOINT_STATE, "json"))]));
+    let told = refused(&file(&[
+        topic(1, "/tf", ("tf2_msgs/msg/TFMessage", "cdr")),
+        topic(2, "/js", (JOINT_STATE, "json")),
+    ]));
     assert!(
         told.starts_with(
             "a.mcap: the MCAP file has no messages of the type sensor_msgs/msg/JointState in CDR; it has /tf \
@@ -174,7 +247,10 @@ fn files_without_states_of_joints_say_what_they_have() {
     assert!(told.contains("it has no topic"), "{told}");
     // A topic on which no message came.
     let told = refused(&file(&[topic(1, "/joint_states", CDR)]));
-    assert!(told.contains("it has /joint_states (sensor_msgs/msg/JointState, cdr)"), "{told}");
+    assert!(
+        told.contains("it has /joint_states (sensor_msgs/msg/JointState, cdr)"),
+        "{told}"
+    );
 }
 
 #[test]
@@ -183,7 +259,10 @@ fn files_that_are_cut_off_or_broken_are_located() {
     let whole = file(&records);
     for end in [8, 9, 30, 200, 1000, whole.len() - 1] {
         let told = refused(&whole[..end]);
-        assert!(told.contains("it is cut off: its end is missing") && told.contains("mcap recover"), "{told}");
+        assert!(
+            told.contains("it is cut off: its end is missing") && told.contains("mcap recover"),
+            "{told}"
+        );
     }
     let all = records.concat();
     let size = all.len() as u64;
@@ -193,10 +272,25 @@ fn files_that_are_cut_off_or_broken_are_located() {
         let expected = format!("the chunk at byte {place} is broken: {why}");
         assert!(told.contains(&expected), "{told}");
     };
-    broken("", &all, (size, 1), "its checksum is another one: some bytes were changed");
-    broken("", &all, (size + 1000, 0), "it has fewer bytes than it says");
+    broken(
+        "",
+        &all,
+        (size, 1),
+        "its checksum is another one: some bytes were changed",
+    );
+    broken(
+        "",
+        &all,
+        (size + 1000, 0),
+        "it has fewer bytes than it says",
+    );
     broken("", &all, (size - 3, 0), "a record ends behind its end");
-    broken("brotli", &all, (size, 0), "it is packed by `brotli`, which is not read");
+    broken(
+        "brotli",
+        &all,
+        (size, 0),
+        "it is packed by `brotli`, which is not read",
+    );
     broken("zstd", &all, (size, 0), "it can't be unpacked");
     broken("lz4", &all, (size, 0), "it can't be unpacked");
     broken("", &all, (u64::MAX, 0), "it has fewer bytes than it says");
@@ -211,7 +305,10 @@ fn files_that_are_cut_off_or_broken_are_located() {
     }
     let long = message(1, 0, &vec![0; 5_000_000]);
     let told = refused(&file(&[topic(1, "/joint_states", CDR), long]));
-    assert!(told.contains("a record has 5000000 bytes, more than"), "{told}");
+    assert!(
+        told.contains("a record has 5000000 bytes, more than"),
+        "{told}"
+    );
 }
 
 /// Numbers that are the same each time.
@@ -219,7 +316,10 @@ struct Random(u64);
 
 impl Random {
     fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as usize % count
     }
 }
@@ -233,9 +333,9 @@ fn files_with_any_wrong_byte_are_read_or_refused() {
     let mapping = mapping("position.elbow", "effort.elbow");
     let (mut read, mut refused) = (0, 0);
     for (name, counts) in [
-        ("small_lz4.mcap", [1000, 10_000]),
-        ("small_zstd.mcap", [1000, 10_000]),
-        ("small_plain.mcap", [1000, 10_000]),
+        ("small_lz4.mcap", [600, 10_000]),
+        ("small_zstd.mcap", [600, 10_000]),
+        ("small_plain.mcap", [600, 10_000]),
         ("same_rosbags.mcap", [50, 5000]),
     ] {
         let bytes = std::fs::read(folder.join(name)).expect("a file");

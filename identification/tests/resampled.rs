@@ -39,7 +39,10 @@ fn log(rate: f64, rows: impl Iterator<Item = (f64, [f64; 2])>) -> Log {
 /// The largest error of the positions, which should be `expected` of the times, which are the torques.
 fn error(log: &Log, expected: impl Fn(f64) -> f64) -> f64 {
     let (positions, times) = loaded(log);
-    let errors = positions.iter().zip(times).map(|(own, t)| (own - expected(t)).abs());
+    let errors = positions
+        .iter()
+        .zip(times)
+        .map(|(own, t)| (own - expected(t)).abs());
     errors.fold(0.0, f64::max)
 }
 
@@ -47,23 +50,44 @@ fn error(log: &Log, expected: impl Fn(f64) -> f64) -> f64 {
 fn the_error_of_interpolation_is_what_is_stated() {
     for (frequency, part) in [(5.0, 0.3), (10.0, 0.3), (2.0, 0.1), (10.0, 0.0)] {
         let motion = |t: f64| (TAU * frequency * t).sin();
-        let log = log(100.0, jitter(500, 100.0, part).map(|t| (t + 0.003, [motion(t + 0.003), t + 0.003])));
+        let log = log(
+            100.0,
+            jitter(500, 100.0, part).map(|t| (t + 0.003, [motion(t + 0.003), t + 0.003])),
+        );
         assert_eq!(log.sampling_frequency(), 100.0);
         assert!(log.samples() >= 498, "{}", log.samples());
         // Its last digits differ, as those of a polynomial do.
         let (_, times) = loaded(&log);
         let first = times[0];
         for (k, time) in times.iter().enumerate() {
-            assert!((time - first - k as f64 / 100.0).abs() < 1e-9, "{k}: {time}");
+            assert!(
+                (time - first - k as f64 / 100.0).abs() < 1e-9,
+                "{k}: {time}"
+            );
         }
         // Steps are (1 + 2 part) hundredths of a second at most; at the ends the bound is larger.
         let derivative = (TAU * frequency * (1.0 + 2.0 * part) / 100.0).powi(6);
         let own = error(&log, motion);
-        assert!(own < 0.024 * derivative + 1e-12, "{frequency}, {part}: {own}");
-        let inside = Log::new("inside", 100.0, 1, loaded(&log).0[3..490].to_vec(), times[3..490].to_vec(), false);
+        assert!(
+            own < 0.024 * derivative + 1e-12,
+            "{frequency}, {part}: {own}"
+        );
+        let inside = Log::new(
+            "inside",
+            100.0,
+            1,
+            loaded(&log).0[3..490].to_vec(),
+            times[3..490].to_vec(),
+            false,
+        );
         let inside = error(&inside.expect("a log"), motion);
-        assert!(inside < 0.0049 * derivative + 1e-12, "{frequency}, {part}: {inside}");
-        println!("{frequency} Hz at 100 Hz, {part} of a step: {own:.2e} at most, {inside:.2e} inside");
+        assert!(
+            inside < 0.0049 * derivative + 1e-12,
+            "{frequency}, {part}: {inside}"
+        );
+        println!(
+            "{frequency} Hz at 100 Hz, {part} of a step: {own:.2e} at most, {inside:.2e} inside"
+        );
     }
 }
 
@@ -73,9 +97,15 @@ fn samples_at_uniform_times_stay_what_they_are() {
     let log = log(64.0, rows);
     let (positions, torques) = loaded(&log);
     assert_eq!(torques, (0..300).map(f64::from).collect::<Vec<_>>());
-    assert_eq!(positions, (0..300_u32).map(|k| f64::from(k % 7)).collect::<Vec<_>>());
+    assert_eq!(
+        positions,
+        (0..300_u32).map(|k| f64::from(k % 7)).collect::<Vec<_>>()
+    );
     let note = log.note().expect("a note");
-    assert!(note.ends_with("was resampled at 64 Hz from about 64 Hz, by polynomials of degree 5"), "{note}");
+    assert!(
+        note.ends_with("was resampled at 64 Hz from about 64 Hz, by polynomials of degree 5"),
+        "{note}"
+    );
 }
 
 #[test]
@@ -92,11 +122,13 @@ fn nothing_is_folded_when_the_rate_is_lowered() {
     assert!((373..=375).contains(&own.samples()), "{}", own.samples());
     let note = own.note().expect("a note");
     assert!(
-        note.contains("was resampled at 100 Hz from about") && note.ends_with("after a low-pass that keeps what lies below 40 Hz"),
+        note.contains("was resampled at 100 Hz from about")
+            && note.ends_with("after a low-pass that keeps what lies below 40 Hz"),
         "{note}"
     );
     // Noise that changes from sample to sample nearly vanishes.
-    let rows = jitter(4000, 1000.0, 0.0).map(|t| (t, [((1000.0 * t).round() % 2.0) * 2.0 - 1.0, t]));
+    let rows =
+        jitter(4000, 1000.0, 0.0).map(|t| (t, [((1000.0 * t).round() % 2.0) * 2.0 - 1.0, t]));
     let worst = error(&log(100.0, rows), |_| 0.0);
     assert!(worst < 1e-3, "{worst}");
 }
@@ -116,7 +148,9 @@ fn samples_at_nearly_the_same_time_do_not_make_noise_grow() {
 fn times_may_be_expressions_and_stand_in_several_files() {
     let motion = |t: f64| (TAU * 2.0 * t).sin();
     let times: Vec<f64> = jitter(1000, 200.0, 0.2).map(|t| t + 1.0).collect();
-    let rows = times.iter().map(|t| format!("{},{},{t}\n", 1000.0 * t, motion(*t)));
+    let rows = times
+        .iter()
+        .map(|t| format!("{},{},{t}\n", 1000.0 * t, motion(*t)));
     let file = format!("ms,q,tau\n{}", rows.collect::<String>());
     let mapping = Mapping {
         time: Time::Column(String::from("ms/1000")),
@@ -130,14 +164,20 @@ fn times_may_be_expressions_and_stand_in_several_files() {
     let positions = format!("t,q\n{}", positions.collect::<String>());
     let torques = jitter(2000, 500.0, 0.2).map(|t| format!("{0},{0}\n", t + 1.5));
     let torques = format!("t,tau\n{}", torques.collect::<String>());
-    let files = [("a.csv", positions.as_bytes()), ("b.csv", torques.as_bytes())];
+    let files = [
+        ("a.csv", positions.as_bytes()),
+        ("b.csv", torques.as_bytes()),
+    ];
     let own = run("a.csv+b.csv", &files, &at(100.0)).unwrap_or_else(|error| panic!("{error}"));
     let (_, all) = loaded(&own);
     assert!(all[0] > 1.62 && all[0] < 1.65, "{}", all[0]);
     assert!(all[all.len() - 1] > 5.33, "{}", all[all.len() - 1]);
     assert!(error(&own, motion) < 1e-4);
     let note = own.note().expect("a note");
-    assert!(note.contains("b.csv was resampled at 100 Hz onto common times"), "{note}");
+    assert!(
+        note.contains("b.csv was resampled at 100 Hz onto common times"),
+        "{note}"
+    );
     // Times on which nobody agrees.
     let late = torques.replace("\n", "\n1");
     let files = [("a.csv", positions.as_bytes()), ("b.csv", late.as_bytes())];
@@ -148,28 +188,62 @@ fn times_may_be_expressions_and_stand_in_several_files() {
 #[test]
 fn what_can_not_be_resampled_is_refused() {
     let uneven = || jitter(1000, 100.0, 0.3).map(|t| (t, [t, t]));
-    let told = run("a.csv", &[("a.csv", text(uneven()).as_bytes())], &timed("q", "tau"));
+    let told = run(
+        "a.csv",
+        &[("a.csv", text(uneven()).as_bytes())],
+        &timed("q", "tau"),
+    );
     let told = told.expect_err("not uniform");
-    assert!(told.contains("the time is not uniform") && told.contains("`resample = \"1 kHz\"` in [data]"), "{told}");
+    assert!(
+        told.contains("the time is not uniform")
+            && told.contains("`resample = \"1 kHz\"` in [data]"),
+        "{told}"
+    );
     let told = |rate: f64| resampled(rate, uneven()).expect_err("a rate");
-    assert!(told(2000.0).contains("which is more than ten times its"), "{}", told(2000.0));
-    assert!(told(0.01).contains("which is less than a thousandth of its"), "{}", told(0.01));
-    assert!(told(f64::NAN).contains("is to be resampled at NaN Hz"), "{}", told(f64::NAN));
-    assert!(told(-1.0).contains("is to be resampled at -1 Hz"), "{}", told(-1.0));
+    assert!(
+        told(2000.0).contains("which is more than ten times its"),
+        "{}",
+        told(2000.0)
+    );
+    assert!(
+        told(0.01).contains("which is less than a thousandth of its"),
+        "{}",
+        told(0.01)
+    );
+    assert!(
+        told(f64::NAN).contains("is to be resampled at NaN Hz"),
+        "{}",
+        told(f64::NAN)
+    );
+    assert!(
+        told(-1.0).contains("is to be resampled at -1 Hz"),
+        "{}",
+        told(-1.0)
+    );
     let gap = resampled(100.0, uneven().filter(|(t, _)| *t < 5.0 || *t > 5.1)).expect_err("a gap");
-    assert!(gap.contains("the time steps from 4.99") && gap.contains("cut the run there"), "{gap}");
-    let back = resampled(100.0, uneven().map(|(t, own)| (if t > 5.0 { t - 1.0 } else { t }, own)));
+    assert!(
+        gap.contains("the time steps from 4.99") && gap.contains("cut the run there"),
+        "{gap}"
+    );
+    let back = resampled(
+        100.0,
+        uneven().map(|(t, own)| (if t > 5.0 { t - 1.0 } else { t }, own)),
+    );
     let back = back.expect_err("back");
     assert!(back.contains("the time steps from 4.99"), "{back}");
     let stands = resampled(100.0, uneven().map(|(_, own)| (1.0, own))).expect_err("stands");
-    assert!(stands.contains("the time steps from 1 s to 1 s"), "{stands}");
+    assert!(
+        stands.contains("the time steps from 1 s to 1 s"),
+        "{stands}"
+    );
     let short = resampled(10.0, uneven().take(40)).expect_err("short");
     assert!(short.contains("the run is empty"), "{short}");
     let mapping = Mapping {
         time: Time::Frequency(100.0),
         ..at(10.0)
     };
-    let told = run("a.csv", &[("a.csv", text(uneven()).as_bytes())], &mapping).expect_err("no time");
+    let told =
+        run("a.csv", &[("a.csv", text(uneven()).as_bytes())], &mapping).expect_err("no time");
     assert!(told.contains("uniform and can't be resampled"), "{told}");
     let broken = text(uneven()).replace("\n0.5", "\nx0.5");
     let told = run("a.csv", &[("a.csv", broken.as_bytes())], &at(100.0)).expect_err("a cell");

@@ -29,9 +29,11 @@ fn mapping(time: &str, [positions, velocities, torques]: [[&str; 2]; 3]) -> Mapp
 }
 
 fn matrices(prefix: &str) -> Mapping {
-    let names = ["q", "dq", "tau"]
-        .map(|name| [1, 2].map(|column| format!("{prefix}{name}(:,{column})")));
-    let names = names.each_ref().map(|two| two.each_ref().map(String::as_str));
+    let names =
+        ["q", "dq", "tau"].map(|name| [1, 2].map(|column| format!("{prefix}{name}(:,{column})")));
+    let names = names
+        .each_ref()
+        .map(|two| two.each_ref().map(String::as_str));
     mapping(&format!("{prefix}t"), names)
 }
 
@@ -50,7 +52,9 @@ fn files() -> Vec<(&'static str, Mapping)> {
         files.push(("same.h5", matrices("/run/")));
         files.push(("same_v73.mat", matrices("")));
         let mut inside = matrices("");
-        inside.positions = ["data.q(:,1)", "gain/2*data.q(:,2)"].map(String::from).to_vec();
+        inside.positions = ["data.q(:,1)", "gain/2*data.q(:,2)"]
+            .map(String::from)
+            .to_vec();
         inside.torque_gain[0] = Gain::Variable(String::from("gain"));
         inside.torques[0] = String::from("tau(:,1)/2");
         files.push(("same_v73.mat", inside));
@@ -66,9 +70,19 @@ fn files() -> Vec<(&'static str, Mapping)> {
         };
         let called = |time: &str, topics| {
             let names = joints(topics);
-            mapping(time, names.each_ref().map(|two| two.each_ref().map(String::as_str)))
+            mapping(
+                time,
+                names
+                    .each_ref()
+                    .map(|two| two.each_ref().map(String::as_str)),
+            )
         };
-        for name in ["same_lz4.mcap", "same_rosbags.mcap", "same_zstd.mcap", "same_plain.mcap"] {
+        for name in [
+            "same_lz4.mcap",
+            "same_rosbags.mcap",
+            "same_zstd.mcap",
+            "same_plain.mcap",
+        ] {
             files.push((name, called("time", [""; 3])));
             files.push((name, called("log_time", [""; 3])));
         }
@@ -79,7 +93,9 @@ fn files() -> Vec<(&'static str, Mapping)> {
 }
 
 fn is_the_log(log: &Log, name: &str) {
-    let mut reader = log.reader().unwrap_or_else(|error| panic!("{name}: {error}"));
+    let mut reader = log
+        .reader()
+        .unwrap_or_else(|error| panic!("{name}: {error}"));
     let block = reader.next().expect("a block").expect("samples");
     assert_eq!((log.samples(), log.note()), (200, None), "{name}");
     assert!((log.sampling_frequency() - 100.0).abs() < 1e-6, "{name}");
@@ -135,13 +151,20 @@ fn every_format_written_anew_gives_the_same_numbers() {
 #[cfg(not(feature = "mcap"))]
 #[test]
 fn a_file_of_a_feature_is_named_with_it() {
-    for (name, feature) in [("same_lz4.mcap", "mcap"), ("same.h5", "hdf5"), ("same_v73.mat", "hdf5")] {
+    for (name, feature) in [
+        ("same_lz4.mcap", "mcap"),
+        ("same.h5", "hdf5"),
+        ("same_v73.mat", "hdf5"),
+    ] {
         if feature == "hdf5" && cfg!(feature = "hdf5") {
             continue;
         }
         let told = read(&kept().join(name), &matrices(""), false).expect_err(name);
         let told = told.to_string();
-        assert!(told.contains("which this build of overact does not read"), "{told}");
+        assert!(
+            told.contains("which this build of overact does not read"),
+            "{told}"
+        );
         assert!(told.contains(&format!("--features {feature}")), "{told}");
     }
 }

@@ -125,7 +125,9 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
         return Ok(Format::Mcap);
     }
     let mut optional = OPTIONAL.iter();
-    if let Some((_, what, feature, help)) = optional.find(|(magic, ..)| beginning.starts_with(magic)) {
+    if let Some((_, what, feature, help)) =
+        optional.find(|(magic, ..)| beginning.starts_with(magic))
+    {
         let message = format!("{what}, which this build of overact does not read");
         return Err(Problem::new(message).help(format!(
             "build it with the feature `{feature}`: `cargo run --release --features {feature} -- …`; or {help}"
@@ -150,8 +152,9 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
         return Ok(Format::Text);
     }
     let message = "the file is neither text nor of a format that is known";
-    Err(Problem::new(message)
-        .help("logs are text (CSV), Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP"))
+    Err(Problem::new(message).help(
+        "logs are text (CSV), Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
+    ))
 }
 
 #[cfg(test)]

@@ -147,7 +147,9 @@ impl Mapping {
             return Some(problem(format!("the run is to be resampled at {rate} Hz")));
         }
         matches!(self.time, Time::Frequency(_)).then(|| {
-            let message = String::from("a run without a column of the time is uniform and can't be resampled");
+            let message = String::from(
+                "a run without a column of the time is uniform and can't be resampled",
+            );
             problem(message).help("leave out `resample`; `decimation` keeps fewer samples")
         })
     }

@@ -82,19 +82,31 @@ impl Files {
             (None, Some((_, _, step))) => 1.0 / step,
             (None, None) => return problems,
         };
-        let followers = self.clocks.iter().map(|(table, _, step)| (self.tables[*table].label(), Some(*step)));
+        let followers = self
+            .clocks
+            .iter()
+            .map(|(table, _, step)| (self.tables[*table].label(), Some(*step)));
         for (name, step) in followers.chain([run]) {
             let step = step.filter(|step| *step > 0.0);
             let ratio = step.map_or(1.0, |step| rate * step);
             let what = match ratio {
-                _ if ratio > resampling::MOST_HIGHER && self.resample.is_some() => "more than ten times",
+                _ if ratio > resampling::MOST_HIGHER && self.resample.is_some() => {
+                    "more than ten times"
+                }
                 _ if ratio < 1.0 / resampling::MOST_LOWER => "less than a thousandth of",
                 _ => continue,
             };
             let own = 1.0 / step.unwrap_or(f64::NAN);
-            let message = format!("{name} is to be resampled at {} Hz, which is {what} its {} Hz", round(rate), round(own));
-            let problem = Problem::new(message).file(self.name.as_str()).column("resample");
-            problems.push(problem.help("take a rate near that of the samples, `resample` in [data]"));
+            let message = format!(
+                "{name} is to be resampled at {} Hz, which is {what} its {} Hz",
+                round(rate),
+                round(own)
+            );
+            let problem = Problem::new(message)
+                .file(self.name.as_str())
+                .column("resample");
+            problems
+                .push(problem.help("take a rate near that of the samples, `resample` in [data]"));
             break;
         }
         if self.resample.is_some() && !self.clocks.is_empty() {
@@ -102,9 +114,14 @@ impl Files {
                 let number = self.tables.iter().position(|own| std::ptr::eq(own, table));
                 let has_clock = self.clocks.iter().any(|(own, ..)| Some(*own) == number);
                 if !has_clock && !columns.is_empty() {
-                    let message = format!("{} has no times, while those of the other files differ", shown(&table.label()));
+                    let message = format!(
+                        "{} has no times, while those of the other files differ",
+                        shown(&table.label())
+                    );
                     let problem = Problem::new(message).file(table.file());
-                    problems.push(problem.help("give every file a column of the time, of the same name"));
+                    problems.push(
+                        problem.help("give every file a column of the time, of the same name"),
+                    );
                 }
             }
         }
@@ -137,14 +154,20 @@ impl Files {
             labels.collect::<Vec<_>>().join(", ")
         };
         let passed = |rate: f64, is_lower: bool| match is_lower {
-            true => format!(", after a low-pass that keeps what lies below {} Hz", round(0.4 * rate)),
+            true => format!(
+                ", after a low-pass that keeps what lies below {} Hz",
+                round(0.4 * rate)
+            ),
             false => String::new(),
         };
         if let Some((rate, step)) = self.resample {
             let mut steps = self.clocks.iter().map(|(_, _, step)| *step).chain([step]);
             let low_pass = passed(rate, steps.any(|step| resampling::is_lower(step, rate)));
             let (what, from) = match &self.clocks[..] {
-                [] => (String::from("the run"), format!("from about {} Hz", round(1.0 / step))),
+                [] => (
+                    String::from("the run"),
+                    format!("from about {} Hz", round(1.0 / step)),
+                ),
                 clocks => (labels(clocks), String::from("onto common times")),
             };
             return Some(format!(
@@ -161,7 +184,9 @@ impl Files {
             ),
         };
         let rate = 1.0 / step;
-        let is_lower = others.iter().any(|(_, _, own)| resampling::is_lower(*own, rate));
+        let is_lower = others
+            .iter()
+            .any(|(_, _, own)| resampling::is_lower(*own, rate));
         Some(format!(
             "{} was interpolated onto the times of {}{}, since the clocks differ{left}",
             labels(others),
@@ -193,4 +218,3 @@ fn used(
     let tables = order.iter().map(|table| tables[*table].clone()).collect();
     Ok((tables, numbers))
 }
-

@@ -131,7 +131,8 @@ impl<'a> Joined<'a> {
                     continue;
                 }
             }
-            let clock = clock.filter(|(file, ..)| *file == number && ended.is_none() && given.is_none());
+            let clock =
+                clock.filter(|(file, ..)| *file == number && ended.is_none() && given.is_none());
             if let Some(&(_, place, _)) = clock {
                 time = own.get(place).copied();
             }
@@ -313,7 +314,10 @@ impl<'a> Rows<'a> {
         }
         let text = self.files.signals.not_finite(&self.values);
         let text = text.unwrap_or_default();
-        let message = format!("sample {}: `{text}` is not a finite number", self.samples - 1);
+        let message = format!(
+            "sample {}: `{text}` is not a finite number",
+            self.samples - 1
+        );
         let problem = Problem::new(message).file(self.files.name()).column(text);
         Err(match self.line() {
             Some(line) => problem.line(line),

@@ -76,7 +76,11 @@ impl Signals {
     ///
     /// # Errors
     /// All columns that are not there.
-    pub(super) fn used(run: &str, tables: Tables<'_>, mapping: &Mapping) -> Result<Vec<usize>, Error> {
+    pub(super) fn used(
+        run: &str,
+        tables: Tables<'_>,
+        mapping: &Mapping,
+    ) -> Result<Vec<usize>, Error> {
         let mut columns = Columns::new(run, tables);
         let signals = [&mapping.positions, &mapping.torques, &mapping.velocities];
         for text in signals.into_iter().flatten() {

@@ -34,10 +34,18 @@ impl Files {
         let Some(table) = table else {
             let (rate, step) = self.resample.filter(|_| self.clocks.is_empty())?;
             let clock = self.signals.first_time()?.clone();
-            return Some(Resampled::new(self.name.clone(), clock, self.width(), (step, rate)));
+            return Some(Resampled::new(
+                self.name.clone(),
+                clock,
+                self.width(),
+                (step, rate),
+            ));
         };
         // The first file is read at its own times, unless the run is resampled.
-        let mut clocks = self.clocks.iter().skip(usize::from(self.resample.is_none()));
+        let mut clocks = self
+            .clocks
+            .iter()
+            .skip(usize::from(self.resample.is_none()));
         let (_, place, step) = clocks.find(|(own, ..)| *own == table)?;
         let rate = match (self.resample, self.clocks.first()) {
             (Some((rate, _)), _) => rate,
@@ -45,7 +53,12 @@ impl Files {
         };
         let width = self.signals.columns().nth(table)?.len();
         let file = self.tables[table].file().to_owned();
-        Some(Resampled::new(file, Expression::Column(*place), width, (*step, rate)))
+        Some(Resampled::new(
+            file,
+            Expression::Column(*place),
+            width,
+            (*step, rate),
+        ))
     }
 
     /// The run as the caller named it.

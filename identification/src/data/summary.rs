@@ -1,8 +1,8 @@
 //! A run is gone through once before it is used, to check and count everything.
 
 use super::{
-    clock::Clock, mapping::Time, problems::LARGEST_NUMBER_OF_PROBLEMS, rows::Rows, samples::Samples,
-    source::Files, table::Table,
+    clock::Clock, mapping::Time, problems::LARGEST_NUMBER_OF_PROBLEMS, rows::Rows,
+    samples::Samples, source::Files, table::Table,
 };
 use crate::error::Error;
 

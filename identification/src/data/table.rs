@@ -2,6 +2,10 @@
 
 use std::{path::Path, sync::Arc};
 
+#[cfg(feature = "hdf5")]
+use super::hdf5_file;
+#[cfg(feature = "mcap")]
+use super::mcap_file;
 use super::{
     arrays::{self, Arrays},
     format::{self, Format},
@@ -11,10 +15,6 @@ use super::{
     stored::{Stored, StoredRows},
     text::{self, Text},
 };
-#[cfg(feature = "hdf5")]
-use super::hdf5_file;
-#[cfg(feature = "mcap")]
-use super::mcap_file;
 use crate::error::{Error, Problem};
 
 /// A file that has been opened, or one of its parts.
@@ -34,7 +34,8 @@ impl PartialEq for Table {
             (Self::Text(own), Self::Text(other)) => own == other,
             (Self::Arrays(own), Self::Arrays(other)) => own == other,
             (Self::Stored(own), Self::Stored(other)) => {
-                let key = |stored: &Arc<dyn Stored>| (stored.label(), stored.what(), stored.origin());
+                let key =
+                    |stored: &Arc<dyn Stored>| (stored.label(), stored.what(), stored.origin());
                 key(own) == key(other)
             }
             _ => false,

@@ -26,16 +26,32 @@ pub(crate) fn record(kind: u8, content: &[u8]) -> Vec<u8> {
 
 /// A type and a topic with it, both of one number.
 pub(crate) fn topic(id: u16, name: &str, (kind, encoding): (&str, &str)) -> Vec<u8> {
-    let schema = [&id.to_le_bytes()[..], &text(kind), &text("ros2msg"), &text("")].concat();
+    let schema = [
+        &id.to_le_bytes()[..],
+        &text(kind),
+        &text("ros2msg"),
+        &text(""),
+    ]
+    .concat();
     let empty = 0_u32.to_le_bytes();
-    let channel = [&id.to_le_bytes()[..], &id.to_le_bytes(), &text(name), &text(encoding), &empty].concat();
+    let channel = [
+        &id.to_le_bytes()[..],
+        &id.to_le_bytes(),
+        &text(name),
+        &text(encoding),
+        &empty,
+    ]
+    .concat();
     [record(3, &schema), record(4, &channel)].concat()
 }
 
 /// A message on a topic, recorded so many nanoseconds after the start.
 pub(crate) fn message(id: u16, nanos: u64, content: &[u8]) -> Vec<u8> {
     let time = (START * 1_000_000_000 + nanos).to_le_bytes();
-    record(5, &[&id.to_le_bytes()[..], &[0; 4], &time, &time, content].concat())
+    record(
+        5,
+        &[&id.to_le_bytes()[..], &[0; 4], &time, &time, content].concat(),
+    )
 }
 
 /// States of joints, stamped so many nanoseconds after the start.
@@ -67,7 +83,8 @@ pub(crate) fn stamped(stamp: (u32, u32), names: &[&str], lists: [&[f64]; 3]) -> 
         if !list.is_empty() {
             align(&mut bytes, 8);
         }
-        list.iter().for_each(|value| bytes.extend(value.to_le_bytes()));
+        list.iter()
+            .for_each(|value| bytes.extend(value.to_le_bytes()));
     }
     [&[0, 1, 0, 0][..], &bytes].concat()
 }
@@ -77,7 +94,15 @@ pub(crate) fn chunk(packing: &str, packed: &[u8], (size, sum): (u64, u32)) -> Ve
     let length = (packed.len() as u64).to_le_bytes();
     record(
         6,
-        &[&[0; 16][..], &size.to_le_bytes(), &sum.to_le_bytes(), &text(packing), &length, packed].concat(),
+        &[
+            &[0; 16][..],
+            &size.to_le_bytes(),
+            &sum.to_le_bytes(),
+            &text(packing),
+            &length,
+            packed,
+        ]
+        .concat(),
     )
 }
 
@@ -89,7 +114,11 @@ pub(crate) fn beginning() -> Vec<u8> {
 /// What a file of so many bytes ends with: a summary with these records, or none.
 pub(crate) fn end(before: u64, summary: &[u8]) -> Vec<u8> {
     let data_end = record(15, &[0; 4]);
-    let place = if summary.is_empty() { 0 } else { before + data_end.len() as u64 };
+    let place = if summary.is_empty() {
+        0
+    } else {
+        before + data_end.len() as u64
+    };
     let footer = record(2, &[&place.to_le_bytes()[..], &[0; 12]].concat());
     [&data_end, summary, &footer, MAGIC].concat()
 }

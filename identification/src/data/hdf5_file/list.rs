@@ -34,12 +34,16 @@ pub(super) fn datasets(file: &Hdf5File) -> Result<Vec<(String, Dataset)>> {
         }
         seen.push(group.address());
         if seen.len() > MOST_GROUPS {
-            return Err(Error::InvalidData(format!("it has more than {MOST_GROUPS} groups")));
+            return Err(Error::InvalidData(format!(
+                "it has more than {MOST_GROUPS} groups"
+            )));
         }
         let (inner, datasets) = group.members()?;
         for dataset in datasets {
             if found.len() >= MOST_DATASETS {
-                return Err(Error::InvalidData(format!("it has more than {MOST_DATASETS} datasets")));
+                return Err(Error::InvalidData(format!(
+                    "it has more than {MOST_DATASETS} datasets"
+                )));
             }
             found.push((format!("{path}{}", dataset.name()), dataset));
         }

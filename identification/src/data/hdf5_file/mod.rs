@@ -6,17 +6,18 @@
 mod list;
 mod number;
 mod rows;
+mod series;
 
 use std::path::Path;
 
-use hdf5_reader::{Dataset, FileStorage, Hdf5File, OpenOptions};
+use hdf5_reader::{FileStorage, Hdf5File, OpenOptions};
 
 use self::{
-    number::is_number,
     rows::{Rows, Wanted},
+    series::{Series, broken},
 };
 use super::{
-    problems::{Existing, legible, shown, unreadable},
+    problems::{Existing, shown, unreadable},
     stored::{Stored, StoredRows},
 };
 use crate::error::{Error, Problem};
@@ -42,89 +43,15 @@ pub(super) struct Hdf5 {
     bytes: u64,
 }
 
-/// A dataset: a vector, or a matrix whose columns or rows are vectors.
-struct Series {
-    /// Its path with points between the names, as fields of a structure are called.
-    name: String,
-    dataset: Dataset,
-    /// What it holds in place of numbers, in words behind its name.
-    unfit: Option<&'static str>,
-    /// The side along which samples follow one another, and their number.
-    side: usize,
-    samples: u64,
-    /// Whether MATLAB or NumPy shows samples one below the other.
-    is_down: bool,
-    /// Number of vectors, and that of the first among all columns.
-    count: usize,
-    first: usize,
-    /// The name of the first of its vectors, if it is a matrix.
-    first_column: Option<String>,
-}
-
-impl std::fmt::Debug for Series {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} {:?}", self.name, self.dataset.shape())
-    }
-}
-
-impl Series {
-    fn new(name: String, dataset: Dataset, is_matlab: bool) -> Self {
-        let shape = dataset.shape();
-        let unfit = is_number(dataset.dtype()).err().or(match shape.len() {
-            0..=2 => None,
-            _ => Some("has more than two dimensions"),
-        });
-        let (side, samples, others, is_down) = match *shape {
-            [] => (0, 1, 1, true),
-            [length] => (0, length, 1, true),
-            [outer, inner] => {
-                let (rows, columns) = if is_matlab { (inner, outer) } else { (outer, inner) };
-                // Samples follow one another along the longer side.
-                let is_down = rows >= columns;
-                let side = usize::from(is_down == is_matlab);
-                (side, rows.max(columns), rows.min(columns), is_down)
-            }
-            _ => (0, 0, 1, true),
-        };
-        let count = usize::try_from(others).unwrap_or(0);
-        let first_column = (count > 1).then(|| if is_down { format!("{name}(:,1)") } else { format!("{name}(1,:)") });
-        Self {
-            name,
-            dataset,
-            unfit,
-            side,
-            samples,
-            is_down,
-            count,
-            first: 0,
-            first_column,
-        }
-    }
-
-    /// The number of the vector that is meant by what stands behind the dataset's name.
-    fn part(&self, part: &str) -> Option<usize> {
-        let number = |number: &str| {
-            let number = number.parse::<usize>().ok()?.checked_sub(1)?;
-            (number < self.count).then_some(number)
-        };
-        let down = part.strip_prefix("(:,").and_then(|rest| rest.strip_suffix(')'));
-        let across = part.strip_suffix(",:)").and_then(|rest| rest.strip_prefix('('));
-        match (part, down, across) {
-            ("", ..) => (self.count == 1).then_some(0),
-            (_, Some(column), _) if self.is_down || self.count == 1 => number(column),
-            (_, _, Some(row)) if !self.is_down || self.count == 1 => number(row),
-            _ => None,
-        }
-    }
-}
-
 impl Hdf5 {
     /// Opens a file and lists its datasets.
     ///
     /// # Errors
     /// A file that can't be read, or that is cut off or broken.
     pub(super) fn open(file: String, path: &Path) -> Result<Self, Error> {
-        let bytes = std::fs::metadata(path).map_err(|error| unreadable(&file, &error))?.len();
+        let bytes = std::fs::metadata(path)
+            .map_err(|error| unreadable(&file, &error))?
+            .len();
         let input = std::fs::File::open(path).map_err(|error| unreadable(&file, &error))?;
         let broken = |error: hdf5_reader::error::Error| broken(&file, &error.to_string());
         let options = OpenOptions {
@@ -149,7 +76,10 @@ impl Hdf5 {
             columns = columns.saturating_add(own.count);
         }
         let mut variables = Vec::new();
-        for own in series.iter().filter(|own| own.samples == 1 && own.count == 1 && own.unfit.is_none()) {
+        for own in series
+            .iter()
+            .filter(|own| own.samples == 1 && own.count == 1 && own.unfit.is_none())
+        {
             let value = rows::single(&own.dataset).map_err(broken)?;
             variables.extend(value.map(|value| (own.name.clone(), [value])));
         }
@@ -164,7 +94,10 @@ impl Hdf5 {
 
     /// The dataset of a column, and the column's number in it.
     fn series(&self, place: usize) -> Option<(usize, usize)> {
-        let series = self.series.iter().position(|own| place >= own.first && place - own.first < own.count)?;
+        let series = self
+            .series
+            .iter()
+            .position(|own| place >= own.first && place - own.first < own.count)?;
         Some((series, place - self.series[series].first))
     }
 }
@@ -195,7 +128,10 @@ impl Stored for Hdf5 {
             return Ok(None);
         };
         if named.next().is_some() {
-            let message = format!("the file has several datasets that are called `{}` with points between names", shown(&path));
+            let message = format!(
+                "the file has several datasets that are called `{}` with points between names",
+                shown(&path)
+            );
             return Err(Problem::new(message).file(self.file.as_str()).column(name));
         }
         Ok(first.part(part).map(|part| first.first + part))
@@ -207,7 +143,9 @@ impl Stored for Hdf5 {
             return Ok(());
         };
         let message = format!("`{}` {what}", shown(&series.name));
-        let problem = Problem::new(message).file(self.file.as_str()).column(series.name.as_str());
+        let problem = Problem::new(message)
+            .file(self.file.as_str())
+            .column(series.name.as_str());
         Err(problem.help("store vectors of numbers, or a matrix with a column for each actuator"))
     }
 
@@ -245,25 +183,25 @@ impl Stored for Hdf5 {
         let mut problems = Vec::new();
         if let Some((first, others)) = wanted.split_first() {
             let count = self.series[first.series].samples;
-            for own in others.iter().filter(|own| self.series[own.series].samples != count) {
+            for own in others
+                .iter()
+                .filter(|own| self.series[own.series].samples != count)
+            {
                 let message = format!(
                     "`{}` has {} samples, but `{}` has {count}",
                     shown(own.name),
                     self.series[own.series].samples,
                     shown(first.name)
                 );
-                problems.push(Problem::new(message).file(self.file.as_str()).column(own.name));
+                problems.push(
+                    Problem::new(message)
+                        .file(self.file.as_str())
+                        .column(own.name),
+                );
             }
         }
         Error::check(problems)?;
-        Ok(Box::new(Rows::new(self, wanted)))
+        let file = (self.file.as_str(), self.bytes);
+        Ok(Box::new(Rows::new(file, &self.series, wanted)))
     }
-}
-
-/// What is said of a file that can't be opened.
-fn broken(file: &str, why: &str) -> Problem {
-    let message = format!("the HDF5 file can't be read: {}", legible(why));
-    Problem::new(message)
-        .file(file)
-        .help("if it was copied or its writer was stopped, copy or write it again; else export CSV")
 }

@@ -18,14 +18,22 @@ pub(super) fn is_number(kind: &Datatype) -> std::result::Result<(), &'static str
     match kind {
         Datatype::FixedPoint { size: 1..=8, .. } => Ok(()),
         Datatype::FloatingPoint { size: 4 | 8, .. } => Ok(()),
-        Datatype::FixedPoint { .. } => Err("holds whole numbers of more than 64 bits, which are not read"),
-        Datatype::FloatingPoint { .. } => Err("holds floating numbers of other sizes than 32 and 64 bits, which are not read"),
+        Datatype::FixedPoint { .. } => {
+            Err("holds whole numbers of more than 64 bits, which are not read")
+        }
+        Datatype::FloatingPoint { .. } => {
+            Err("holds floating numbers of other sizes than 32 and 64 bits, which are not read")
+        }
         Datatype::Enum { base, .. } => is_number(base),
         Datatype::String { .. } | Datatype::VarLen { .. } => {
             Err("holds texts or lists of any length, not numbers")
         }
-        Datatype::Compound { .. } => Err("holds structures (a table, or complex numbers), not single numbers"),
-        Datatype::Reference { .. } => Err("holds references to others (a cell array?), not numbers"),
+        Datatype::Compound { .. } => {
+            Err("holds structures (a table, or complex numbers), not single numbers")
+        }
+        Datatype::Reference { .. } => {
+            Err("holds references to others (a cell array?), not numbers")
+        }
         _ => Err("holds no single numbers"),
     }
 }
@@ -82,12 +90,20 @@ fn floating(bytes: &[u8], order: ByteOrder) -> Option<f64> {
     match bytes.len() {
         4 => {
             let bytes = bytes.try_into().ok()?;
-            let value = if is_highest_first { f32::from_be_bytes(bytes) } else { f32::from_le_bytes(bytes) };
+            let value = if is_highest_first {
+                f32::from_be_bytes(bytes)
+            } else {
+                f32::from_le_bytes(bytes)
+            };
             Some(f64::from(value))
         }
         8 => {
             let bytes = bytes.try_into().ok()?;
-            Some(if is_highest_first { f64::from_be_bytes(bytes) } else { f64::from_le_bytes(bytes) })
+            Some(if is_highest_first {
+                f64::from_be_bytes(bytes)
+            } else {
+                f64::from_le_bytes(bytes)
+            })
         }
         _ => None,
     }
@@ -106,16 +122,23 @@ mod tests {
             signed,
             byte_order,
         };
-        let value = |bytes: &[u8], kind: &Datatype| Number::from_bytes(bytes, kind).expect("a number").0;
+        let value =
+            |bytes: &[u8], kind: &Datatype| Number::from_bytes(bytes, kind).expect("a number").0;
         use ByteOrder::{BigEndian, LittleEndian};
         assert_eq!(value(&[0xfe, 0xff], &whole(2, true, LittleEndian)), -2.0);
         assert_eq!(value(&[0xff, 0xfe], &whole(2, true, BigEndian)), -2.0);
         assert_eq!(value(&[0xff, 0xfe], &whole(2, false, BigEndian)), 65534.0);
         assert_eq!(value(&[0xff; 8], &whole(8, true, BigEndian)), -1.0);
-        assert_eq!(value(&[0xff; 8], &whole(8, false, BigEndian)), 2.0_f64.powi(64));
+        assert_eq!(
+            value(&[0xff; 8], &whole(8, false, BigEndian)),
+            2.0_f64.powi(64)
+        );
         let floating = |size, byte_order| Datatype::FloatingPoint { size, byte_order };
         assert_eq!(value(&0.5_f32.to_be_bytes(), &floating(4, BigEndian)), 0.5);
-        assert_eq!(value(&0.1_f64.to_le_bytes(), &floating(8, LittleEndian)), 0.1);
+        assert_eq!(
+            value(&0.1_f64.to_le_bytes(), &floating(8, LittleEndian)),
+            0.1
+        );
         assert!(Number::from_bytes(&[1, 2], &floating(8, LittleEndian)).is_err());
     }
 }

@@ -2,7 +2,10 @@
 
 use hdf5_reader::{Dataset, SliceInfo, SliceInfoElem, error::Result};
 
-use super::{Hdf5, Series, broken, number::Number};
+use super::{
+    number::Number,
+    series::{Series, broken},
+};
 use crate::{
     data::{problems::shown, stored::StoredRows},
     error::{Error, Problem},
@@ -32,7 +35,10 @@ pub(super) fn single(dataset: &Dataset) -> Result<Option<f64>> {
 /// The rest of a file.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
-    file: &'a Hdf5,
+    /// The file as the caller named it, and its size.
+    file: &'a str,
+    size: u64,
+    series: &'a [Series],
     wanted: Vec<Wanted<'a>>,
     blocks: Vec<Block>,
     /// For each column its block.
@@ -57,7 +63,11 @@ struct Block {
 
 impl<'a> Rows<'a> {
     /// Goes to the first row.
-    pub(super) fn new(file: &'a Hdf5, wanted: Vec<Wanted<'a>>) -> Self {
+    pub(super) fn new(
+        (file, size): (&'a str, u64),
+        series: &'a [Series],
+        wanted: Vec<Wanted<'a>>,
+    ) -> Self {
         let mut blocks: Vec<Block> = Vec::new();
         let mut of = Vec::new();
         for own in &wanted {
@@ -80,6 +90,8 @@ impl<'a> Rows<'a> {
         }
         Self {
             file,
+            size,
+            series,
             wanted,
             blocks,
             of,
@@ -91,12 +103,16 @@ impl<'a> Rows<'a> {
     /// Reads the block of a dataset that begins with the next sample.
     fn fill(&mut self, number: usize) -> std::result::Result<(), Problem> {
         let block = &mut self.blocks[number];
-        let series = &self.file.series[block.series];
+        let series = &self.series[block.series];
         block.start = self.samples;
         let read = block.read(series);
         read.map_err(|error| {
-            let what = format!("`{}` from sample {} on: {error}", shown(&series.name), self.samples);
-            broken(&self.file.file, &what).column(series.name.as_str())
+            let what = format!(
+                "`{}` from sample {} on: {error}",
+                shown(&series.name),
+                self.samples
+            );
+            broken(self.file, &what).column(series.name.as_str())
         })
     }
 }
@@ -107,7 +123,10 @@ impl Block {
         let width = (self.to - self.from) as u64;
         let most = (LARGEST_BLOCK / width).max(1);
         // Blocks of the file are unpacked whole; those that are large are read whole, so that this is done once.
-        let own = series.dataset.chunks().and_then(|sides| sides.get(series.side).copied());
+        let own = series
+            .dataset
+            .chunks()
+            .and_then(|sides| sides.get(series.side).copied());
         let length = u64::from(own.unwrap_or(0)).max(1);
         let count = (BATCH.next_multiple_of(length)).min(most.max(1));
         self.end = series.samples.min(self.start.saturating_add(count));
@@ -127,7 +146,9 @@ impl Block {
             (_, 0) => vec![along, across],
             _ => vec![across, along],
         };
-        let values = series.dataset.read_slice::<Number>(&SliceInfo { selections })?;
+        let values = series
+            .dataset
+            .read_slice::<Number>(&SliceInfo { selections })?;
         self.values = values.into_iter().collect();
         let count = (self.end - self.start).saturating_mul(width);
         if self.values.len() as u64 == count {
@@ -152,7 +173,10 @@ impl Block {
 
 impl StoredRows for Rows<'_> {
     fn next(&mut self, values: &mut [f64]) -> std::result::Result<bool, Error> {
-        let count = self.wanted.first().map(|own| self.file.series[own.series].samples);
+        let count = self
+            .wanted
+            .first()
+            .map(|own| self.series[own.series].samples);
         if self.is_broken || count.is_none_or(|count| self.samples >= count) {
             return Ok(false);
         }
@@ -165,11 +189,15 @@ impl StoredRows for Rows<'_> {
         }
         let mut problems = Vec::new();
         for ((wanted, block), value) in self.wanted.iter().zip(&self.of).zip(values) {
-            let series = &self.file.series[wanted.series];
+            let series = &self.series[wanted.series];
             *value = self.blocks[*block].get(series, self.samples, wanted.part);
             if !value.is_finite() {
-                let message = format!("`{}`: sample {} is not a finite number", shown(wanted.name), self.samples);
-                problems.push(Problem::new(message).file(self.file.file.as_str()).column(wanted.name));
+                let message = format!(
+                    "`{}`: sample {} is not a finite number",
+                    shown(wanted.name),
+                    self.samples
+                );
+                problems.push(Problem::new(message).file(self.file).column(wanted.name));
             }
         }
         self.samples += 1;
@@ -183,7 +211,10 @@ impl StoredRows for Rows<'_> {
 
     // In the mean over the samples.
     fn bytes(&self) -> u64 {
-        let count = self.wanted.first().map_or(1, |own| self.file.series[own.series].samples.max(1));
-        (self.samples as f64 / count as f64 * self.file.bytes as f64) as u64
+        let count = self
+            .wanted
+            .first()
+            .map_or(1, |own| self.series[own.series].samples.max(1));
+        (self.samples as f64 / count as f64 * self.size as f64) as u64
     }
 }

@@ -75,7 +75,8 @@ impl Chunk {
             "lz4" => Unpacking::Lz4(Box::new(Lz4::new(input))),
             "zstd" => {
                 let unpacking = StreamingDecoder::new(input);
-                let unpacking = unpacking.map_err(|error| format!("it can't be unpacked: {error}"))?;
+                let unpacking =
+                    unpacking.map_err(|error| format!("it can't be unpacked: {error}"))?;
                 Unpacking::Zstandard(Box::new(unpacking))
             }
             other => return Err(format!("it is packed by `{other}`, which is not read")),
@@ -139,9 +140,9 @@ impl Chunk {
     /// Another sum than the chunk says.
     pub(super) fn check(&self) -> Result<(), String> {
         match self.said.sum {
-            Some(sum) if sum != self.sum.clone().finalize() => {
-                Err(String::from("its checksum is another one: some bytes were changed"))
-            }
+            Some(sum) if sum != self.sum.clone().finalize() => Err(String::from(
+                "its checksum is another one: some bytes were changed",
+            )),
             _ => Ok(()),
         }
     }

@@ -64,7 +64,10 @@ impl<'a> JointState<'a> {
             order,
         };
         let cut_off = || String::from("is cut off, or no JointState");
-        let stamp = (fields.word().ok_or_else(cut_off)?.cast_signed(), fields.word().ok_or_else(cut_off)?);
+        let stamp = (
+            fields.word().ok_or_else(cut_off)?.cast_signed(),
+            fields.word().ok_or_else(cut_off)?,
+        );
         fields.text()?;
         let count = fields.word().ok_or_else(cut_off)? as usize;
         // Each name takes four bytes at least.
@@ -168,6 +171,9 @@ mod tests {
         let mut other = bytes;
         other[1] = 7;
         let told = JointState::read(&other).expect_err("another representation");
-        assert_eq!(told, "is in the representation 0x00 0x07, and not in plain CDR");
+        assert_eq!(
+            told,
+            "is in the representation 0x00 0x07, and not in plain CDR"
+        );
     }
 }

@@ -10,18 +10,15 @@ mod joint_state;
 mod records;
 mod rows;
 mod section;
+mod topic;
 mod topics;
 
-use std::{
-    fs::File,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{fs::File, path::Path, sync::Arc};
 
 use self::{
-    joint_state::JointState,
     rows::{Rows, Wanted},
-    topics::{Found, Topics},
+    topic::{Topic, broken},
+    topics::Topics,
 };
 use super::{
     problems::{Existing, legible, only, shown, unreadable},
@@ -29,49 +26,8 @@ use super::{
 };
 use crate::error::{Error, Problem};
 
-/// What a list of a message is called in the name of a column.
-const LISTS: [&str; 3] = ["position", "velocity", "effort"];
-
-/// Times of recorder and drivers that are further apart, s, are those of different clocks.
-const SAME_CLOCK: i64 = 86_400;
-
 /// Topics that are listed in a message, at most.
 const MOST_TOPICS: usize = 12;
-
-/// A topic of a file.
-#[derive(Debug)]
-pub(super) struct Topic {
-    /// The file as the caller named it.
-    file: String,
-    path: PathBuf,
-    topic: String,
-    channels: Vec<u16>,
-    joints: Vec<String>,
-    columns: Vec<Column>,
-    /// What stamps, and what times of the recorder, are counted from, s since 1970.
-    origin: i64,
-    recorded_from: i64,
-    /// Number of topics of the file that can be read.
-    parts: u64,
-}
-
-/// A column of a topic.
-#[derive(Debug)]
-struct Column {
-    name: String,
-    /// The name behind that of the topic.
-    full: String,
-    source: Source,
-}
-
-/// Where a number of a message stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Source {
-    Stamp,
-    Recorded,
-    /// A list, and a joint's place in it.
-    Joint(usize, usize),
-}
 
 /// Opens the topics of a file.
 ///
@@ -79,8 +35,12 @@ enum Source {
 /// A file that can't be read or is broken, or that has no topic with states of joints.
 pub(super) fn open(file: &str, path: &Path) -> Result<Vec<Topic>, Error> {
     let input = File::open(path).map_err(|error| unreadable(file, &error))?;
-    let length = input.metadata().map_err(|error| unreadable(file, &error))?.len();
-    let (topics, found) = Topics::find(&Arc::new(input), length).map_err(|why| broken(file, &why))?;
+    let length = input
+        .metadata()
+        .map_err(|error| unreadable(file, &error))?
+        .len();
+    let (topics, found) =
+        Topics::find(&Arc::new(input), length).map_err(|why| broken(file, &why))?;
     let (mut opened, mut problems) = (Vec::new(), Vec::new());
     for found in found {
         match Topic::new(file, path, found) {
@@ -98,48 +58,6 @@ pub(super) fn open(file: &str, path: &Path) -> Result<Vec<Topic>, Error> {
         (topic.origin, topic.recorded_from, topic.parts) = (origin, recorded_from, parts);
     }
     Ok(opened)
-}
-
-impl Topic {
-    /// A topic with the joints of its first message; none where no message came.
-    fn new(file: &str, path: &Path, found: Found) -> Result<Option<Self>, Problem> {
-        let Some((recorded, content)) = found.first else {
-            return Ok(None);
-        };
-        let state = JointState::read(&content).map_err(|why| {
-            let message = format!("the first message of `{}` {}", shown(&found.topic), legible(&why));
-            Problem::new(message).file(file)
-        })?;
-        let joints: Vec<String> = match &state.names[..] {
-            // Joints without names are called by their numbers.
-            [] => (1..=state.lists[0].len()).map(|k| k.to_string()).collect(),
-            names => names.iter().copied().map(String::from).collect(),
-        };
-        let times = [("time", Source::Stamp), ("log_time", Source::Recorded)];
-        let mut names: Vec<_> = times.map(|(name, source)| (name.to_owned(), source)).into();
-        for (list, (what, numbers)) in LISTS.iter().zip(&state.lists).enumerate() {
-            let joints = joints.iter().take(numbers.len()).enumerate();
-            names.extend(joints.map(|(joint, name)| (format!("{what}.{name}"), Source::Joint(list, joint))));
-        }
-        let column = |(name, source)| Column {
-            full: format!("{}.{name}", found.topic),
-            name,
-            source,
-        };
-        let (seconds, stamped) = ((recorded / 1_000_000_000).cast_signed(), i64::from(state.stamp.0));
-        let is_same = (seconds - stamped).abs() < SAME_CLOCK;
-        Ok(Some(Self {
-            file: file.to_owned(),
-            path: path.to_owned(),
-            columns: names.into_iter().map(column).collect(),
-            topic: found.topic,
-            channels: found.channels,
-            origin: stamped,
-            recorded_from: if is_same { stamped } else { seconds },
-            joints: if state.names.is_empty() { Vec::new() } else { joints },
-            parts: 1,
-        }))
-    }
 }
 
 impl Stored for Topic {
@@ -173,7 +91,11 @@ impl Stored for Topic {
         if full.is_some() {
             return Ok(full);
         }
-        only(&self.file, name, self.columns.iter().map(|own| own.name.as_str()))
+        only(
+            &self.file,
+            name,
+            self.columns.iter().map(|own| own.name.as_str()),
+        )
     }
 
     fn origin(&self) -> Option<i64> {
@@ -197,7 +119,10 @@ impl Stored for Topic {
 
     fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn StoredRows + 'a>, Error> {
         let input = File::open(&self.path).map_err(|error| unreadable(&self.file, &error))?;
-        let length = input.metadata().map_err(|error| unreadable(&self.file, &error))?.len();
+        let length = input
+            .metadata()
+            .map_err(|error| unreadable(&self.file, &error))?
+            .len();
         let wanted = wanted.iter().filter_map(|&(place, name)| {
             let source = self.columns.get(place)?.source;
             Some(Wanted { source, name })
@@ -206,19 +131,15 @@ impl Stored for Topic {
     }
 }
 
-/// What is said of a file that can't be read.
-fn broken(file: &str, why: &str) -> Problem {
-    let message = format!("the file starts as MCAP does, but can't be read: {}", legible(why));
-    Problem::new(message).file(file).help(
-        "if its writer was stopped, `mcap recover FILE -o NEW.mcap` saves what there is; if it was copied, copy it again",
-    )
-}
-
 /// What is said of a file without a topic that is read.
 fn without_joints(file: &str, topics: &Topics) -> Problem {
     let told = topics.told();
     let more = told.len().saturating_sub(MOST_TOPICS);
-    let mut listed: Vec<String> = told.iter().take(MOST_TOPICS).map(|own| legible(own)).collect();
+    let mut listed: Vec<String> = told
+        .iter()
+        .take(MOST_TOPICS)
+        .map(|own| legible(own))
+        .collect();
     match (listed.len(), more) {
         (0, _) => listed.push(String::from("no topic")),
         (_, 0) => {}

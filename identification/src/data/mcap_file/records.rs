@@ -16,6 +16,7 @@ use super::{
     fields::Fields,
     section::Section,
 };
+use crate::data::problems::legible;
 
 /// What every file starts and ends with.
 pub(super) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
@@ -101,7 +102,8 @@ impl Records {
             } else {
                 inside(chunk, content, wants)
             };
-            let inside = inside.map_err(|why| format!("the chunk at byte {place} is broken: {why}"));
+            let inside =
+                inside.map_err(|why| format!("the chunk at byte {place} is broken: {why}"));
             if let Some(record) = inside? {
                 return Ok(Some(record));
             }
@@ -109,7 +111,11 @@ impl Records {
     }
 
     /// Reads the next record outside of chunks.
-    fn outside(&mut self, content: &mut Vec<u8>, wants: &dyn Fn(u16) -> bool) -> Result<Outside, String> {
+    fn outside(
+        &mut self,
+        content: &mut Vec<u8>,
+        wants: &dyn Fn(u16) -> bool,
+    ) -> Result<Outside, String> {
         if self.position == self.end {
             return Ok(Outside::End);
         }
@@ -118,12 +124,18 @@ impl Records {
         self.read(&mut header)?;
         let (kind, length) = kind_and_length(header);
         if length > self.end - self.position {
-            return Err(format!("the record at byte {place} ends behind the end of the file"));
+            return Err(format!(
+                "the record at byte {place} ends behind the end of the file"
+            ));
         }
         match kind {
             SCHEMA | CHANNEL => {
                 self.keep(length, content)?;
-                let record = if kind == SCHEMA { Record::Schema } else { Record::Channel };
+                let record = if kind == SCHEMA {
+                    Record::Schema
+                } else {
+                    Record::Channel
+                };
                 return Ok(Outside::Record(record));
             }
             MESSAGE if length >= MESSAGE_HEADER => {
@@ -140,7 +152,9 @@ impl Records {
             MESSAGE => return Err(format!("the message at byte {place} is cut off")),
             CHUNK => {
                 let chunk = self.begin(place, length);
-                self.chunk = Some(chunk.map_err(|why| format!("the chunk at byte {place} is broken: {why}"))?);
+                self.chunk = Some(
+                    chunk.map_err(|why| format!("the chunk at byte {place} is broken: {why}"))?,
+                );
             }
             DATA_END | FOOTER => return Ok(Outside::End),
             _ => self.pass(length)?,
@@ -176,7 +190,11 @@ impl Records {
         let said = Said::of(&beginning).ok_or_else(cut_off)?;
         self.pass(end - start)?;
         let input = Section::buffered(&self.file, start, start + size);
-        Chunk::new(input, &super::legible(&String::from_utf8_lossy(&packing)), (place, said))
+        Chunk::new(
+            input,
+            &legible(&String::from_utf8_lossy(&packing)),
+            (place, said),
+        )
     }
 
     fn read(&mut self, bytes: &mut [u8]) -> Result<(), String> {

@@ -3,9 +3,9 @@
 use std::{fs::File, sync::Arc};
 
 use super::{
-    LISTS, Source, Topic, broken,
     joint_state::JointState,
     records::{MAGIC, Record, Records},
+    topic::{LISTS, Source, Topic, broken},
 };
 use crate::{
     data::{
@@ -38,7 +38,11 @@ pub(super) struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     /// Goes to the first message of a topic whose file has so many bytes.
-    pub(super) fn new(topic: &'a Topic, (file, length): (File, u64), wanted: Vec<Wanted<'a>>) -> Self {
+    pub(super) fn new(
+        topic: &'a Topic,
+        (file, length): (File, u64),
+        wanted: Vec<Wanted<'a>>,
+    ) -> Self {
         Self {
             topic,
             records: Records::new(&Arc::new(file), MAGIC.len() as u64, length),
@@ -68,7 +72,11 @@ impl<'a> Rows<'a> {
     fn take(&mut self, recorded: u64, values: &mut [f64]) -> Result<(), Error> {
         let topic = self.topic;
         let problem = |what: String| {
-            let message = format!("message {} of `{}` {what}", self.samples, shown(&topic.topic));
+            let message = format!(
+                "message {} of `{}` {what}",
+                self.samples,
+                shown(&topic.topic)
+            );
             Problem::new(message).file(topic.file.as_str())
         };
         let state = JointState::read(&self.content).map_err(|why| problem(legible(&why)))?;
@@ -99,7 +107,10 @@ impl<'a> Rows<'a> {
                         }
                         None => {
                             let (count, what) = (numbers.len(), LISTS[list]);
-                            let what = format!("has {count} numbers of the kind `{what}`, too few for `{}`", shown(wanted.name));
+                            let what = format!(
+                                "has {count} numbers of the kind `{what}`, too few for `{}`",
+                                shown(wanted.name)
+                            );
                             problems.push(problem(what).column(wanted.name));
                             f64::NAN
                         }
@@ -114,7 +125,9 @@ impl<'a> Rows<'a> {
             if let Some(before) = last.replace(*value)
                 && *value <= before
             {
-                let what = format!("has the time {value} s, which is not behind that of the message before, {before} s");
+                let what = format!(
+                    "has the time {value} s, which is not behind that of the message before, {before} s"
+                );
                 let help = "its clock stood or was set back, or messages came in another order: cut the log there, or take the other one of `time` and `log_time`";
                 problems.push(problem(what).column(wanted.name).help(help));
             }
@@ -165,8 +178,12 @@ fn other_joints(problem: impl Fn(String) -> Problem, first: &[String], own: &[&s
     } else {
         "has other joints than the first message"
     };
-    let names = |names: &mut dyn Iterator<Item = &str>| names.map(shown).collect::<Vec<_>>().join(", ");
-    let (first, own) = (names(&mut first.iter().map(String::as_str)), names(&mut own.iter().copied()));
+    let names =
+        |names: &mut dyn Iterator<Item = &str>| names.map(shown).collect::<Vec<_>>().join(", ");
+    let (first, own) = (
+        names(&mut first.iter().map(String::as_str)),
+        names(&mut own.iter().copied()),
+    );
     let message = format!("{what}: {}, and not {}", legible(&own), legible(&first));
     problem(message).help("several publishers share this topic, it seems: record each on a topic of its own, or export CSV")
 }

@@ -82,7 +82,9 @@ impl Topics {
                 // Several publishers on one topic.
                 Some(own) => {
                     own.channels.push(channel);
-                    let time = |first: &Option<(u64, Vec<u8>)>| first.as_ref().map_or(u64::MAX, |own| own.0);
+                    let time = |first: &Option<(u64, Vec<u8>)>| {
+                        first.as_ref().map_or(u64::MAX, |own| own.0)
+                    };
                     if time(&first) < time(&own.first) {
                         own.first = first;
                     }
@@ -114,9 +116,11 @@ impl Topics {
     }
 
     fn is_joints(&self, channel: u16) -> bool {
-        self.channels.get(&channel).is_some_and(|(_, schema, encoding)| {
-            encoding == ENCODING && self.schemas.get(schema).is_some_and(|name| name == TYPE)
-        })
+        self.channels
+            .get(&channel)
+            .is_some_and(|(_, schema, encoding)| {
+                encoding == ENCODING && self.schemas.get(schema).is_some_and(|name| name == TYPE)
+            })
     }
 
     /// The channels whose messages are read, with their topics.
@@ -129,7 +133,10 @@ impl Topics {
     pub(super) fn told(&self) -> Vec<String> {
         let channels = self.channels.values();
         let told = channels.map(|(topic, schema, encoding)| {
-            let name = self.schemas.get(schema).map_or("of no type", String::as_str);
+            let name = self
+                .schemas
+                .get(schema)
+                .map_or("of no type", String::as_str);
             format!("{topic} ({name}, {encoding})")
         });
         told.collect()
@@ -145,7 +152,9 @@ fn summary(file: &Arc<File>, length: u64) -> Result<Option<u64>, String> {
     let start = length.checked_sub(END).ok_or_else(cut_off)?;
     let mut end = [0; END as usize];
     let mut input = &**file;
-    let read = input.seek(SeekFrom::Start(start)).and_then(|_| input.read_exact(&mut end));
+    let read = input
+        .seek(SeekFrom::Start(start))
+        .and_then(|_| input.read_exact(&mut end));
     read.map_err(|error| error.to_string())?;
     if !end.ends_with(MAGIC) {
         return Err(cut_off());
@@ -153,11 +162,15 @@ fn summary(file: &Arc<File>, length: u64) -> Result<Option<u64>, String> {
     let (kind, rest) = (end[0], &end[1..]);
     let mut fields = Fields(rest);
     if kind != FOOTER || fields.long() != Some(20) {
-        return Err(String::from("its last record is not the one that ends a file"));
+        return Err(String::from(
+            "its last record is not the one that ends a file",
+        ));
     }
     match fields.long() {
         None | Some(0) => Ok(None),
         Some(place) if place < start => Ok(Some(place)),
-        Some(place) => Err(format!("its summary is said to start at byte {place}, behind its end")),
+        Some(place) => Err(format!(
+            "its summary is said to start at byte {place}, behind its end"
+        )),
     }
 }

@@ -21,8 +21,15 @@ use parquet::{
     file::metadata::{FileMetaData, ParquetMetaData, ParquetMetaDataReader},
 };
 
-use self::{durations::durations, kind::Kind, rows::{Rows, Wanted}};
-use super::{problems::{Existing, legible, only, shown, unreadable}, stored::{Stored, StoredRows}};
+use self::{
+    durations::durations,
+    kind::Kind,
+    rows::{Rows, Wanted},
+};
+use super::{
+    problems::{Existing, legible, only, shown, unreadable},
+    stored::{Stored, StoredRows},
+};
 use crate::error::{Error, Problem};
 
 /// A Parquet file and what its columns are.

@@ -16,7 +16,10 @@ use parquet::{
 
 use super::{kind::Kind, pages::Pages};
 use crate::{
-    data::{problems::{legible, shown}, stored::StoredRows},
+    data::{
+        problems::{legible, shown},
+        stored::StoredRows,
+    },
     error::{Error, Problem},
 };
 

@@ -1,13 +1,13 @@
 //! The clocks of files: their usual steps, whether they agree, and whether their times overlap.
 
-use super::{
-    super::{problems::shown, table::Rows},
-    LONGEST_STEP,
-};
+use super::super::{problems::shown, table::Rows};
 use crate::error::Problem;
 
 /// Steps of a clock from which the usual one is told.
 const FIRST_STEPS: usize = 256;
+
+/// Usual steps over which numbers are interpolated, at most: what is missing in between can't be known.
+pub(super) const LONGEST_STEP: f64 = 3.5;
 
 /// The usual step of a clock, s, from its first times: the mean of all but gaps.
 pub(in crate::data) fn usual_step(times: impl Iterator<Item = f64>) -> f64 {
@@ -15,7 +15,10 @@ pub(in crate::data) fn usual_step(times: impl Iterator<Item = f64>) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     let median = steps.get(steps.len() / 2).copied().unwrap_or(f64::NAN);
-    let steps: Vec<f64> = steps.into_iter().filter(|step| *step <= LONGEST_STEP * median).collect();
+    let steps: Vec<f64> = steps
+        .into_iter()
+        .filter(|step| *step <= LONGEST_STEP * median)
+        .collect();
     steps.iter().sum::<f64>() / steps.len() as f64
 }
 

@@ -24,7 +24,11 @@ impl Kernel {
             let part = x / HALF_LENGTH;
             let window = bessel(BETA * (1.0 - part * part).max(0.0).sqrt()) / bessel(BETA);
             let angle = std::f64::consts::PI * x;
-            if k == 0 { window } else { window * angle.sin() / angle }
+            if k == 0 {
+                window
+            } else {
+                window * angle.sin() / angle
+            }
         };
         // Behind the end it is zero.
         Self((0..=count).map(value).chain([0.0, 0.0]).collect())
@@ -64,16 +68,26 @@ mod tests {
         assert_eq!(taps[0], -HALF_LENGTH);
         let sum: f64 = taps.iter().map(|x| kernel.at(*x)).sum();
         let gain = |frequency: f64| {
-            let parts = taps.iter().map(|x| kernel.at(*x) * (TAU * frequency * x).cos());
+            let parts = taps
+                .iter()
+                .map(|x| kernel.at(*x) * (TAU * frequency * x).cos());
             parts.sum::<f64>() / sum
         };
         for k in 0..=40 {
             let frequency = f64::from(k) / 100.0;
-            assert!((gain(frequency) - 1.0).abs() < 2e-4, "{frequency}: {}", gain(frequency));
+            assert!(
+                (gain(frequency) - 1.0).abs() < 2e-4,
+                "{frequency}: {}",
+                gain(frequency)
+            );
         }
         for k in 60..=500 {
             let frequency = f64::from(k) / 100.0;
-            assert!(gain(frequency).abs() < 2e-4, "{frequency}: {}", gain(frequency));
+            assert!(
+                gain(frequency).abs() < 2e-4,
+                "{frequency}: {}",
+                gain(frequency)
+            );
         }
         assert!((gain(0.5) - 0.5).abs() < 0.01);
     }

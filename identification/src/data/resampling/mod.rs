@@ -12,14 +12,12 @@ use std::collections::VecDeque;
 
 pub(super) use self::clocks::{apart, differ, times, usual_step};
 use self::{
+    clocks::LONGEST_STEP,
     low_pass::{HALF_LENGTH, Kernel},
     polynomial::{NODES, Node, Polynomial},
 };
 use super::expression::Expression;
 use crate::error::{Error, Problem};
-
-/// Usual steps over which numbers are interpolated, at most: what is missing in between can't be known.
-const LONGEST_STEP: f64 = 3.5;
 
 /// Usual steps that lie between two samples, at least: nearer ones are left out, since their difference is noise.
 const SHORTEST_STEP: f64 = 0.5;
@@ -79,7 +77,12 @@ struct LowPass {
 
 impl Resampled {
     /// Rows of `width` numbers whose usual `step`, s, is known, for a new `rate`, Hz.
-    pub(super) fn new(file: String, clock: Expression, width: usize, (step, rate): (f64, f64)) -> Self {
+    pub(super) fn new(
+        file: String,
+        clock: Expression,
+        width: usize,
+        (step, rate): (f64, f64),
+    ) -> Self {
         let ratio = 1.0 / (step * rate);
         // Written so that a step that is not a number has no low-pass; it is refused with its times.
         let low_pass = is_lower(step, rate).then(|| LowPass {
@@ -121,14 +124,21 @@ impl Resampled {
 
     /// The time before a new sample, and behind it, that has to be known, s.
     fn margin(&self) -> f64 {
-        self.low_pass.as_ref().map_or(0.0, |own| HALF_LENGTH / own.rate)
+        self.low_pass
+            .as_ref()
+            .map_or(0.0, |own| HALF_LENGTH / own.rate)
     }
 
     /// Puts the numbers at a time into `values`, if it lies inside. Times are asked for one after the other.
     ///
     /// # Errors
     /// Cells that are no numbers, a clock that stands or leaps.
-    pub(super) fn at(&mut self, source: &mut Source<'_>, time: f64, values: &mut [f64]) -> Result<Place, Error> {
+    pub(super) fn at(
+        &mut self,
+        source: &mut Source<'_>,
+        time: f64,
+        values: &mut [f64],
+    ) -> Result<Place, Error> {
         let Some(mut low_pass) = self.low_pass.take() else {
             return self.between(source, time, values);
         };
@@ -148,7 +158,10 @@ impl Resampled {
         let origin = *low_pass.origin.get_or_insert(time);
         let half = HALF_LENGTH / low_pass.rate;
         let place = |time: f64| (time - origin) / low_pass.step;
-        let (first, last) = (place(time - half).ceil() as i64, place(time + half).floor() as i64);
+        let (first, last) = (
+            place(time - half).ceil() as i64,
+            place(time + half).floor() as i64,
+        );
         while low_pass.first < first && low_pass.values.pop_front().is_some() {
             low_pass.first += 1;
         }
@@ -172,16 +185,26 @@ impl Resampled {
         values.fill(0.0);
         let mut sum = 0.0;
         for (row, k) in low_pass.values.iter().zip(low_pass.first..=last) {
-            let weight = low_pass.kernel.at((origin + k as f64 * low_pass.step - time) * low_pass.rate);
+            let weight = low_pass
+                .kernel
+                .at((origin + k as f64 * low_pass.step - time) * low_pass.rate);
             sum += weight;
-            values.iter_mut().zip(row).for_each(|(value, own)| *value += weight * own);
+            values
+                .iter_mut()
+                .zip(row)
+                .for_each(|(value, own)| *value += weight * own);
         }
         values.iter_mut().for_each(|value| *value /= sum);
         Ok(Place::Inside)
     }
 
     /// The numbers at a time between samples.
-    fn between(&mut self, source: &mut Source<'_>, time: f64, values: &mut [f64]) -> Result<Place, Error> {
+    fn between(
+        &mut self,
+        source: &mut Source<'_>,
+        time: f64,
+        values: &mut [f64],
+    ) -> Result<Place, Error> {
         let is_enough = |nodes: &VecDeque<Node>| {
             let after = nodes.len().checked_sub(NODES / 2);
             nodes.len() >= NODES && after.is_some_and(|after| nodes[after].0 >= time)
@@ -226,7 +249,8 @@ impl Resampled {
             self.has_ended = true;
             let message = format!("the time steps from {before} s to {time} s");
             let problem = Problem::new(message).file(self.file.as_str());
-            let help = "numbers are interpolated between times that grow without gaps: cut the run there";
+            let help =
+                "numbers are interpolated between times that grow without gaps: cut the run there";
             return Err(problem.help(help).into());
         }
         if time - last >= SHORTEST_STEP * self.step {

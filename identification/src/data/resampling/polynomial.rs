@@ -25,7 +25,9 @@ impl Polynomial {
     /// The polynomial that is evaluated at `time`; `step` is the usual one between nodes.
     pub(super) fn new(nodes: &VecDeque<Node>, time: f64, step: f64) -> Self {
         let next = nodes.partition_point(|(own, _)| *own < time);
-        let start = next.saturating_sub(NODES / 2).min(nodes.len().saturating_sub(NODES));
+        let start = next
+            .saturating_sub(NODES / 2)
+            .min(nodes.len().saturating_sub(NODES));
         let count = NODES.min(nodes.len() - start);
         let mut weights = [0.0; NODES];
         let at = |node: usize| nodes[start + node].0;
@@ -55,10 +57,16 @@ impl Polynomial {
     /// Its values.
     pub(super) fn values(&self, nodes: &VecDeque<Node>, values: &mut [f64]) {
         values.fill(0.0);
-        for (weight, (_, row)) in self.weights[..self.count].iter().zip(nodes.range(self.start..)) {
+        for (weight, (_, row)) in self.weights[..self.count]
+            .iter()
+            .zip(nodes.range(self.start..))
+        {
             // A sample that is met takes none of its neighbours' numbers.
             if *weight != 0.0 {
-                values.iter_mut().zip(row).for_each(|(value, own)| *value += weight * own);
+                values
+                    .iter_mut()
+                    .zip(row)
+                    .for_each(|(value, own)| *value += weight * own);
             }
         }
     }
