@@ -61,7 +61,7 @@ fn files_of_any_make_have_the_same_numbers() {
     let all = [other.concat(), records.concat()].concat();
     let sum = crc32fast::hash(&all);
     let packed = chunk("", &all, (all.len() as u64, sum));
-    assert_eq!(numbers(log(&file(&[packed.clone()]))), expected);
+    assert_eq!(numbers(log(&file(std::slice::from_ref(&packed)))), expected);
     let mut bytes = file(&[]);
     bytes.truncate(mcap_file::beginning().len());
     bytes.extend(packed);

@@ -119,21 +119,7 @@ impl<'a> Columns<'a> {
         for (file, table) in self.tables.iter().enumerate() {
             places.extend(table.find(name)?.map(|place| (file, place)));
         }
-        if let [first, second, ..] = places[..] {
-            let is_one_file = self.numbers[first.0] == self.numbers[second.0];
-            let [file, other] = [first, second].map(|(table, _)| {
-                let full = self.tables[table].full_name(self.numbers[table], name);
-                format!("`{}`", legible(&full))
-            });
-            let (what, way) = if is_one_file {
-                ("topics of the file", "")
-            } else {
-                ("files", ", or by its number through all files")
-            };
-            let message = format!("several of the {what} have a column `{}`", shown(name));
-            let problem = Problem::new(message).file(self.run).column(name);
-            return Err(problem.help(format!("call it {file} or {other}{way}")));
-        }
+        self.is_one(name, &places)?;
         let place = match places.first() {
             Some(place) => Some(*place),
             None => self.numbered(name)?,
@@ -165,14 +151,34 @@ impl<'a> Columns<'a> {
             return Ok(None);
         };
         let number = number.parse().ok();
+        let mut places: Vec<Place> = Vec::new();
         for (table, of) in self.numbers.iter().enumerate() {
-            if Some(*of) == number
-                && let Some(place) = self.tables[table].find(own)?
-            {
-                return Ok(Some((table, place)));
+            if Some(*of) == number {
+                places.extend(self.tables[table].find(own)?.map(|place| (table, place)));
             }
         }
-        Ok(None)
+        self.is_one(own, &places)?;
+        Ok(places.first().copied())
+    }
+
+    /// Checks that a name has one place at most.
+    fn is_one(&self, name: &str, places: &[Place]) -> Result<(), Problem> {
+        let [first, second, ..] = *places else {
+            return Ok(());
+        };
+        let numbers = [first, second].map(|(table, _)| self.numbers[table]);
+        let (what, way, names) = if numbers[0] == numbers[1] {
+            let full = |(table, _): Place| self.tables[table].full_name(name);
+            ("topics of the file", "", [first, second].map(full))
+        } else {
+            let full = |number| format!("file{number}.{name}");
+            let way = ", or by its number through all files";
+            ("files", way, numbers.map(full))
+        };
+        let [one, other] = names.map(|full| legible(&full));
+        let message = format!("several of the {what} have a column `{}`", shown(name));
+        let problem = Problem::new(message).file(self.run).column(name);
+        Err(problem.help(format!("call it `{one}` or `{other}`{way}")))
     }
 
     /// The tables of which columns were found, in the order in which they were asked for.

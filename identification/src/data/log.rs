@@ -38,7 +38,7 @@ enum Source {
     /// Positions, torques and velocities, samples x n each; no velocities where they were not measured.
     Memory([Arc<[f64]>; 3]),
     /// Files that have been looked through before.
-    Files(Files),
+    Files(Box<Files>),
     /// At each sample the mean position of the other periods of a run.
     Others(Box<Log>, Arc<Periods>),
 }
@@ -178,7 +178,7 @@ impl Log {
             torque_factors: vec![1.0; files.actuators()],
             actuators: files.actuators(),
             samples,
-            source: Source::Files(files),
+            source: Source::Files(Box::new(files)),
             payload,
             instruments: None,
             note: None,

@@ -47,17 +47,17 @@ impl<'a> Joined<'a> {
     /// # Errors
     /// A file that can't be read any more.
     pub(super) fn new(files: &'a Files) -> Result<Self, Error> {
-        let tables = files.tables.iter().zip(files.signals.columns());
-        let part = |(number, (table, own)): (usize, (&'a table::Table, Vec<(usize, &'a str)>))| {
-            Ok(Part {
+        let mut parts = Vec::new();
+        for (table, own) in files.tables.iter().zip(files.signals.columns()) {
+            parts.push(Part {
                 rows: table.rows(&own)?,
                 columns: own.len(),
-                resampled: files.resampled(Some(number)),
-            })
-        };
+                resampled: files.resampled(Some(parts.len())),
+            });
+        }
         Ok(Self {
             files,
-            parts: tables.enumerate().map(part).collect::<Result<_, Error>>()?,
+            parts,
             count: 0,
             range: None,
             has_ended: false,

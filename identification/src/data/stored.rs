@@ -15,9 +15,9 @@ pub(super) trait Stored: Debug + Send + Sync {
         self.file().to_owned()
     }
 
-    /// The name of a column that no other part of the run has; `number` is that of the file, from 1 on.
-    fn full_name(&self, number: usize, column: &str) -> String {
-        format!("file{number}.{column}")
+    /// The name of a column that no other part of the file has.
+    fn full_name(&self, column: &str) -> String {
+        column.to_owned()
     }
 
     /// What a file of this format is called.

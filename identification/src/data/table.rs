@@ -84,11 +84,11 @@ impl Table {
         }
     }
 
-    /// The name of a column that no other table of the run has; `number` is that of the file, from 1 on.
-    pub(super) fn full_name(&self, number: usize, column: &str) -> String {
+    /// The name of a column that no other part of the file has.
+    pub(super) fn full_name(&self, column: &str) -> String {
         match self {
-            Self::Stored(stored) => stored.full_name(number, column),
-            _ => format!("file{number}.{column}"),
+            Self::Stored(stored) => stored.full_name(column),
+            _ => column.to_owned(),
         }
     }
 

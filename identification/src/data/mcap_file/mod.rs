@@ -69,7 +69,7 @@ impl Stored for Topic {
         format!("{} of {}", shown(&self.topic), self.file)
     }
 
-    fn full_name(&self, _number: usize, column: &str) -> String {
+    fn full_name(&self, column: &str) -> String {
         format!("{}.{column}", self.topic)
     }
 
