@@ -19,6 +19,7 @@ fn log(file: &str) -> Option<Log> {
         position_scale: vec![1.0],
         position_offset: Vec::new(),
         torque_gain: vec![Gain::Variable(String::from("gtau"))],
+        resample: None,
         transmission: Vec::new(),
     };
     Some(read(&path, &mapping, false).unwrap_or_else(|error| panic!("{error}")))

@@ -46,6 +46,7 @@ fn a_large_file_stays_on_the_disk() {
         position_scale: vec![1.0],
         position_offset: Vec::new(),
         torque_gain: vec![Gain::Value(1.0)],
+        resample: None,
         transmission: Vec::new(),
     };
     let log = read(&path, &mapping, false).unwrap_or_else(|error| panic!("{error}"));

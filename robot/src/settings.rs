@@ -39,6 +39,7 @@ impl Robot {
             position_scale: data.position_scale.clone(),
             position_offset: data.position_offset.clone(),
             torque_gain: data.torque_gain.iter().map(gain).collect(),
+            resample: data.resample,
             transmission: data.transmission.clone(),
         }
     }

@@ -27,6 +27,8 @@ pub struct Data {
     pub position_offset: Vec<f64>,
     /// Factors from columns to N m or N, one for each actuator.
     pub torque_gain: Vec<Factor>,
+    /// The rate of uniform times at which the log is resampled, Hz; none if its time is uniform.
+    pub resample: Option<f64>,
     /// Of a log of motors the matrix T with θ = T q, a row for each motor, q being the actuated joints; empty
     /// where the log has the joints' own positions and torques.
     pub transmission: Vec<Vec<f64>>,
@@ -168,6 +170,7 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         })
     };
     let time = clock(&table, robot);
+    let resample = resample(&table, robot);
     let (positions, torques) = (columns("positions"), columns("torques"));
     let velocities = table.get("velocities").map_or(Some(Vec::new()), listed);
     let (position_scale, torque_gain) = (factors("position_scale"), factors("torque_gain"));
@@ -188,6 +191,7 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         position_scale: position_scale?,
         position_offset: position_offset?,
         torque_gain: torque_gain?,
+        resample: resample?,
         transmission: transmission?,
         span: table.span.clone(),
     })
@@ -208,6 +212,19 @@ fn clock(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Clock> {
     }
     let frequency = sampling.positive(Dimension::FREQUENCY, robot.scope)?;
     Some(Clock::Frequency(frequency))
+}
+
+/// The rate of uniform times at which a log is resampled, if it is.
+fn resample(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Option<f64>> {
+    let Some(item) = table.get("resample") else {
+        return Some(None);
+    };
+    if table.get("sampling").is_some() {
+        let error = item.error("`resample` is for logs with a column of the time");
+        let help = "leave out `resample`: without such a column samples are uniform, and `decimation` keeps fewer";
+        table.context.report(error.help(help));
+    }
+    Some(Some(item.positive(Dimension::FREQUENCY, robot.scope)?))
 }
 
 /// Factors that are numbers: of positions no log says how they are scaled.

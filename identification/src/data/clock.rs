@@ -99,7 +99,11 @@ impl Clock {
             shown(step),
             shown(expected),
         ))
-        .help("resample the run at a constant frequency, or cut it where samples are missing");
+        .help(if step > 0.0 {
+            "let `resample = \"1 kHz\"` in [data] interpolate at uniform times, or cut the run where samples are missing"
+        } else {
+            "the time stands or runs backwards: cut the run there, or take another column of the time"
+        });
         self.bad = Some(match line {
             Some(line) => problem.line(line),
             None => problem,

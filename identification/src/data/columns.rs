@@ -5,7 +5,7 @@
 
 use super::{
     expression::Expression,
-    problems::{missing_columns, shown},
+    problems::{legible, missing_columns, shown},
     table::Table,
 };
 use crate::error::{Error, Problem};
@@ -22,11 +22,16 @@ pub(super) struct Found {
     pub(super) places: Vec<usize>,
 }
 
+/// The tables of a run, and the file of each, counted from 1: a file may have several.
+pub(super) type Tables<'a> = (&'a [Table], &'a [usize]);
+
 /// Columns that have been asked for so far.
 pub(super) struct Columns<'a> {
     /// The run as the caller named it.
     run: &'a str,
     tables: &'a [Table],
+    /// The file of each table, counted from 1.
+    numbers: &'a [usize],
     /// Those that were found, each with the name by which it was asked for first.
     found: Vec<(Place, String)>,
     missing: Vec<String>,
@@ -35,10 +40,11 @@ pub(super) struct Columns<'a> {
 
 impl<'a> Columns<'a> {
     /// No column has been asked for.
-    pub(super) const fn new(run: &'a str, tables: &'a [Table]) -> Self {
+    pub(super) const fn new(run: &'a str, (tables, numbers): Tables<'a>) -> Self {
         Self {
             run,
             tables,
+            numbers,
             found: Vec::new(),
             missing: Vec::new(),
             problems: Vec::new(),
@@ -113,14 +119,7 @@ impl<'a> Columns<'a> {
         for (file, table) in self.tables.iter().enumerate() {
             places.extend(table.find(name)?.map(|place| (file, place)));
         }
-        if let [first, second, ..] = places[..] {
-            let (file, other) = (first.0 + 1, second.0 + 1);
-            let message = format!("several of the files have a column `{}`", shown(name));
-            let problem = Problem::new(message).file(self.run).column(name);
-            return Err(problem.help(format!(
-                "call it `file{file}.{name}` or `file{other}.{name}`, or by its number through all files"
-            )));
-        }
+        self.is_one(name, &places)?;
         let place = match places.first() {
             Some(place) => Some(*place),
             None => self.numbered(name)?,
@@ -151,11 +150,46 @@ impl<'a> Columns<'a> {
         let Some((number, own)) = file else {
             return Ok(None);
         };
-        let file = number.parse().ok().and_then(|k: usize| k.checked_sub(1));
-        let Some((file, table)) = file.and_then(|file| Some((file, self.tables.get(file)?))) else {
-            return Ok(None);
+        let number = number.parse().ok();
+        let mut places: Vec<Place> = Vec::new();
+        for (table, of) in self.numbers.iter().enumerate() {
+            if Some(*of) == number {
+                places.extend(self.tables[table].find(own)?.map(|place| (table, place)));
+            }
+        }
+        self.is_one(own, &places)?;
+        Ok(places.first().copied())
+    }
+
+    /// Checks that a name has one place at most.
+    fn is_one(&self, name: &str, places: &[Place]) -> Result<(), Problem> {
+        let [first, second, ..] = *places else {
+            return Ok(());
         };
-        Ok(table.find(own)?.map(|place| (file, place)))
+        let numbers = [first, second].map(|(table, _)| self.numbers[table]);
+        let (what, way, names) = if numbers[0] == numbers[1] {
+            let full = |(table, _): Place| self.tables[table].full_name(name);
+            ("topics of the file", "", [first, second].map(full))
+        } else {
+            let full = |number| format!("file{number}.{name}");
+            let way = ", or by its number through all files";
+            ("files", way, numbers.map(full))
+        };
+        let [one, other] = names.map(|full| legible(&full));
+        let message = format!("several of the {what} have a column `{}`", shown(name));
+        let problem = Problem::new(message).file(self.run).column(name);
+        Err(problem.help(format!("call it `{one}` or `{other}`{way}")))
+    }
+
+    /// The tables of which columns were found, in the order in which they were asked for.
+    pub(super) fn tables(&self) -> Vec<usize> {
+        let mut tables = Vec::new();
+        for ((table, _), _) in &self.found {
+            if !tables.contains(table) {
+                tables.push(*table);
+            }
+        }
+        tables
     }
 
     /// The column at a place.

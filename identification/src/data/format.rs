@@ -21,25 +21,36 @@ pub(super) enum Format {
     Parquet,
     /// A zip archive, perhaps NumPy's `.npz`.
     Archive,
+    /// HDF5, and with it MATLAB's version 7.3.
+    #[cfg(feature = "hdf5")]
+    Hdf5,
+    /// MCAP.
+    #[cfg(feature = "mcap")]
+    Mcap,
 }
 
-/// A beginning, what it is the beginning of, and the way out.
-const REFUSED: [(&[u8], &str, &str); 12] = [
+/// What is read by features: beginnings, what they are the beginnings of, the feature, and the way out without it.
+const OPTIONAL: [(&[u8], &str, &str, &str); 3] = [
     (
         b"MATLAB 7.3",
         "the file is of MATLAB's version 7.3, which is HDF5",
-        "save it in MATLAB with `save(..., '-v7')`, or export CSV",
+        "hdf5",
+        "save it in MATLAB with `save(..., '-v7')`",
     ),
+    (HDF5, "the file is HDF5", "hdf5", "export CSV"),
     (
-        b"\x89HDF\r\n\x1a\n",
-        "the file is HDF5, which is not read",
-        "export CSV; a `.mat` file of version 7.3 can be saved with `save(..., '-v7')`",
-    ),
-    (
-        b"\x89MCAP0\r\n",
-        "the file is MCAP, which is not read",
+        MCAP,
+        "the file is MCAP",
+        "mcap",
         "export the messages of the joints as CSV",
     ),
+];
+
+const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
+const MCAP: &[u8] = b"\x89MCAP0\r\n";
+
+/// A beginning, what it is the beginning of, and the way out.
+const REFUSED: [(&[u8], &str, &str); 9] = [
     (
         b"#ROSBAG",
         "the file is a ROS bag, which is not read",
@@ -105,6 +116,23 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
     if let Some((_, what, help)) = refused.find(|(magic, ..)| beginning.starts_with(magic)) {
         return Err(Problem::new(*what).help(*help));
     }
+    #[cfg(feature = "hdf5")]
+    if beginning.starts_with(b"MATLAB 7.3") || beginning.starts_with(HDF5) {
+        return Ok(Format::Hdf5);
+    }
+    #[cfg(feature = "mcap")]
+    if beginning.starts_with(MCAP) {
+        return Ok(Format::Mcap);
+    }
+    let mut optional = OPTIONAL.iter();
+    if let Some((_, what, feature, help)) =
+        optional.find(|(magic, ..)| beginning.starts_with(magic))
+    {
+        let message = format!("{what}, which this build of overact does not read");
+        return Err(Problem::new(message).help(format!(
+            "build it with the feature `{feature}`: `cargo run --release --features {feature} -- …`; or {help}"
+        )));
+    }
     // The header of a `.mat` file ends with its version and the order of its bytes.
     let is_mat = matches!(beginning.get(124..128), Some(b"\x00\x01IM" | b"\x01\x00MI"));
     if is_mat || beginning.starts_with(b"MATLAB 5.0") {
@@ -124,8 +152,9 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
         return Ok(Format::Text);
     }
     let message = "the file is neither text nor of a format that is known";
-    Err(Problem::new(message)
-        .help("logs are text (CSV), Parquet, MATLAB's `.mat` up to version 7 or NumPy's `.npy` and `.npz`"))
+    Err(Problem::new(message).help(
+        "logs are text (CSV), Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
+    ))
 }
 
 #[cfg(test)]

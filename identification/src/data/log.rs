@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use super::{
     periods::{self, Periods},
+    rows,
     samples::Samples,
-    source::{self, Files},
+    source::Files,
 };
 use crate::error::{Error, Problem};
 
@@ -37,7 +38,7 @@ enum Source {
     /// Positions, torques and velocities, samples x n each; no velocities where they were not measured.
     Memory([Arc<[f64]>; 3]),
     /// Files that have been looked through before.
-    Files(Files),
+    Files(Box<Files>),
     /// At each sample the mean position of the other periods of a run.
     Others(Box<Log>, Arc<Periods>),
 }
@@ -177,7 +178,7 @@ impl Log {
             torque_factors: vec![1.0; files.actuators()],
             actuators: files.actuators(),
             samples,
-            source: Source::Files(files),
+            source: Source::Files(Box::new(files)),
             payload,
             instruments: None,
             note: None,
@@ -282,7 +283,7 @@ impl Log {
     pub fn reader(&self) -> Result<Reader<'_>, Error> {
         let rows = match &self.source {
             Source::Memory(all) => Rows::Memory(all.each_ref().map(|own| &**own)),
-            Source::Files(files) => Rows::Files(Box::new(files.open()?)),
+            Source::Files(files) => Rows::Files(Box::new(rows::Rows::new(files)?)),
             Source::Others(log, periods) => {
                 Rows::Others(Box::new(log.reader()?), periods::Others::new(periods))
             }
@@ -328,7 +329,7 @@ pub struct Reader<'a> {
 #[derive(Debug)]
 enum Rows<'a> {
     Memory([&'a [f64]; 3]),
-    Files(Box<source::Rows<'a>>),
+    Files(Box<rows::Rows<'a>>),
     Others(Box<Reader<'a>>, periods::Others<'a>),
 }
 

@@ -49,6 +49,9 @@ pub struct Mapping {
     pub position_offset: Vec<f64>,
     /// Factors to N m or N, one per actuator.
     pub torque_gain: Vec<Gain>,
+    /// The rate of uniform times at which the run is resampled, Hz; absent if its time is uniform.
+    #[serde(default)]
+    pub resample: Option<f64>,
     /// Where the columns are those of motors, the matrix T of their positions θ = T q, a row for each motor;
     /// their torques are τ = Tᵀ τ_θ at the joints. Empty where the columns are those of the actuated joints.
     #[serde(default)]
@@ -73,6 +76,7 @@ impl Mapping {
             position_scale: vec![1.0; info.actuators.len()],
             position_offset: Vec::new(),
             torque_gain: vec![Gain::Value(1.0); info.actuators.len()],
+            resample: None,
             transmission: Vec::new(),
         }
     }
@@ -126,12 +130,28 @@ impl Mapping {
             let message = format!("the sampling frequency is {frequency} Hz");
             problems.push(Problem::new(message).column("sampling"));
         }
+        problems.extend(self.bad_rate());
         if actuators == 0 {
             problems.push(Problem::new("the mapping names no position").column("positions"));
         }
         problems.extend(self.bad_factors());
         problems.extend(Transmission::new(&self.transmission, actuators).err());
         Error::check(problems)
+    }
+
+    /// A rate that is none, or for which there is no time.
+    fn bad_rate(&self) -> Option<Problem> {
+        let rate = self.resample?;
+        let problem = |message: String| Problem::new(message).column("resample");
+        if !(rate.is_finite() && rate > 0.0) {
+            return Some(problem(format!("the run is to be resampled at {rate} Hz")));
+        }
+        matches!(self.time, Time::Frequency(_)).then(|| {
+            let message = String::from(
+                "a run without a column of the time is uniform and can't be resampled",
+            );
+            problem(message).help("leave out `resample`; `decimation` keeps fewer samples")
+        })
     }
 
     /// Factors that lose a signal.

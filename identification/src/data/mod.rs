@@ -14,19 +14,27 @@ mod clock;
 mod columns;
 mod dataset;
 mod expression;
-mod follower;
 mod format;
+#[cfg(feature = "hdf5")]
+mod hdf5_file;
 mod log;
 mod mapping;
 mod mat_file;
+#[cfg(feature = "mcap")]
+mod mcap_file;
 mod numpy;
+mod opening;
 mod parquet_file;
 pub(crate) mod periods;
 mod problems;
+mod resampling;
+mod rows;
 mod samples;
 mod signals;
 mod source;
+mod stored;
 mod structures;
+mod summary;
 mod table;
 mod text;
 mod transmission;

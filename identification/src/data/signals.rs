@@ -2,7 +2,7 @@
 //! torques and velocities.
 
 use super::{
-    columns::{Columns, Found},
+    columns::{Columns, Found, Tables},
     expression::Expression,
     mapping::{Gain, Mapping, Time},
     problems::missing_columns,
@@ -41,8 +41,8 @@ impl Signals {
     ///
     /// # Errors
     /// All columns that are not there, expressions that are none, or gains that are no numbers.
-    pub(super) fn new(run: &str, tables: &[Table], mapping: &Mapping) -> Result<Self, Error> {
-        let gains = gains(run, tables, mapping)?;
+    pub(super) fn new(run: &str, tables: Tables<'_>, mapping: &Mapping) -> Result<Self, Error> {
+        let gains = gains(run, tables.0, mapping)?;
         let mut columns = Columns::new(run, tables);
         let mut times = match &mapping.time {
             Time::Column(name) => columns.all(name),
@@ -72,6 +72,24 @@ impl Signals {
         })
     }
 
+    /// The tables that have signals of the mapping, in the order in which it names them.
+    ///
+    /// # Errors
+    /// All columns that are not there.
+    pub(super) fn used(
+        run: &str,
+        tables: Tables<'_>,
+        mapping: &Mapping,
+    ) -> Result<Vec<usize>, Error> {
+        let mut columns = Columns::new(run, tables);
+        let signals = [&mapping.positions, &mapping.torques, &mapping.velocities];
+        for text in signals.into_iter().flatten() {
+            columns.ask(text);
+        }
+        let used = columns.tables();
+        columns.finish().map(|_| used)
+    }
+
     /// Of each file the columns that are read, with their names.
     pub(super) fn columns(&self) -> impl Iterator<Item = Vec<(usize, &str)>> {
         self.columns.iter().map(|own| named(own))
@@ -94,6 +112,11 @@ impl Signals {
         };
         let clocks: Vec<_> = self.times.iter().filter_map(place).collect();
         if clocks.len() > 1 { clocks } else { Vec::new() }
+    }
+
+    /// The first of the times.
+    pub(super) fn first_time(&self) -> Option<&Expression> {
+        self.times.first()
     }
 
     /// The times of a row in all files that have one, s.
@@ -156,7 +179,7 @@ fn gains(run: &str, tables: &[Table], mapping: &Mapping) -> Result<Vec<f64>, Err
 
 /// What is said of a gain that no file has.
 fn missing_gain(run: &str, tables: &[Table], name: &str) -> Problem {
-    let with_variables = tables.iter().find(|table| table.in_memory());
+    let with_variables = tables.iter().find(|table| table.has_variables());
     match with_variables.map(Table::existing) {
         Some(mut existing) => {
             existing.what = "scalar variable";

@@ -1,51 +1,100 @@
 //! One file as a table of columns, whatever its format.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
+#[cfg(feature = "hdf5")]
+use super::hdf5_file;
+#[cfg(feature = "mcap")]
+use super::mcap_file;
 use super::{
     arrays::{self, Arrays},
     format::{self, Format},
     mat_file, numpy,
-    parquet_file::{self, Parquet},
+    parquet_file::Parquet,
     problems::{Existing, display_name},
+    stored::{Stored, StoredRows},
     text::{self, Text},
 };
 use crate::error::{Error, Problem};
 
-/// A file that has been opened.
-#[derive(Debug, Clone, PartialEq)]
+/// A file that has been opened, or one of its parts.
+#[derive(Debug, Clone)]
 pub(super) enum Table {
     /// Lines of numbers, which are read again and again.
     Text(Text),
-    /// Columns that are read again and again, page by page.
-    Parquet(Parquet),
+    /// Columns that are read again and again, block by block.
+    Stored(Arc<dyn Stored>),
     /// Arrays in memory.
     Arrays(Arrays),
 }
 
+impl PartialEq for Table {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Text(own), Self::Text(other)) => own == other,
+            (Self::Arrays(own), Self::Arrays(other)) => own == other,
+            (Self::Stored(own), Self::Stored(other)) => {
+                let key =
+                    |stored: &Arc<dyn Stored>| (stored.label(), stored.what(), stored.origin());
+                key(own) == key(other)
+            }
+            _ => false,
+        }
+    }
+}
+
 impl Table {
-    /// Opens a file, whatever its format.
+    /// Opens a file, whatever its format: one table, or one for each of its parts.
     ///
     /// # Errors
     /// A file that can't be read, or whose format isn't.
-    pub(super) fn open(path: &Path) -> Result<Self, Error> {
+    pub(super) fn open(path: &Path) -> Result<Vec<Self>, Error> {
         let file = display_name(path);
-        Ok(match format::recognise(&file, path)? {
+        let one = match format::recognise(&file, path)? {
             Format::Text => Self::Text(Text::open(file, path)?),
             Format::Mat => Self::Arrays(mat_file::open(file, path)?),
-            Format::Parquet => Self::Parquet(Parquet::open(file, path)?),
+            Format::Parquet => Self::Stored(Arc::new(Parquet::open(file, path)?)),
             Format::Array => Self::Arrays(numpy::open_array(file, path)?),
             Format::Archive => Self::Arrays(numpy::open_archive(file, path)?),
-        })
+            #[cfg(feature = "hdf5")]
+            Format::Hdf5 => Self::Stored(Arc::new(hdf5_file::Hdf5::open(file, path)?)),
+            #[cfg(feature = "mcap")]
+            Format::Mcap => {
+                let topics = mcap_file::open(&file, path)?.into_iter();
+                return Ok(topics.map(|own| Self::Stored(Arc::new(own))).collect());
+            }
+        };
+        Ok(vec![one])
     }
 
     /// The file as the caller named it.
     pub(super) fn file(&self) -> &str {
         match self {
             Self::Text(text) => text.file(),
-            Self::Parquet(parquet) => parquet.file(),
+            Self::Stored(stored) => stored.file(),
             Self::Arrays(arrays) => arrays.file(),
         }
+    }
+
+    /// What it is called where a file may have several parts.
+    pub(super) fn label(&self) -> String {
+        match self {
+            Self::Stored(stored) => stored.label(),
+            _ => self.file().to_owned(),
+        }
+    }
+
+    /// The name of a column that no other part of the file has.
+    pub(super) fn full_name(&self, column: &str) -> String {
+        match self {
+            Self::Stored(stored) => stored.full_name(column),
+            _ => column.to_owned(),
+        }
+    }
+
+    /// Whether it is one of several parts of its file, which are used only where their columns are.
+    pub(super) fn is_part(&self) -> bool {
+        matches!(self, Self::Stored(stored) if stored.is_part())
     }
 
     /// Whether the numbers are in memory already.
@@ -53,11 +102,11 @@ impl Table {
         matches!(self, Self::Arrays(_))
     }
 
-    /// Number of columns.
+    /// Number of columns that can be called by number.
     pub(super) fn columns(&self) -> usize {
         match self {
             Self::Text(text) => text.columns(),
-            Self::Parquet(parquet) => parquet.columns(),
+            Self::Stored(stored) => stored.columns(),
             Self::Arrays(arrays) => arrays.columns(),
         }
     }
@@ -69,7 +118,7 @@ impl Table {
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
         match self {
             Self::Text(text) => text.find(name),
-            Self::Parquet(parquet) => parquet.find(name),
+            Self::Stored(stored) => stored.find(name),
             Self::Arrays(arrays) => Ok(arrays.find(name)),
         }
     }
@@ -82,31 +131,42 @@ impl Table {
         match self {
             // Cells of a text are looked at one by one; other arrays than those of numbers are left out.
             Self::Text(_) | Self::Arrays(_) => Ok(()),
-            Self::Parquet(parquet) => parquet.check(place),
+            Self::Stored(stored) => stored.check(place),
         }
     }
 
     /// What the instants of a file are counted from, s since 1970, where it has instants.
-    pub(super) const fn origin(&self) -> Option<i64> {
+    pub(super) fn origin(&self) -> Option<i64> {
         match self {
             Self::Text(_) | Self::Arrays(_) => None,
-            Self::Parquet(parquet) => parquet.origin(),
+            Self::Stored(stored) => stored.origin(),
         }
     }
 
-    /// Says what instants are counted from.
+    /// Says what instants are counted from, as long as the table is nobody else's.
     pub(super) fn set_origin(&mut self, origin: i64) {
-        if let Self::Parquet(parquet) = self {
-            parquet.set_origin(origin);
+        if let Self::Stored(stored) = self
+            && let Some(stored) = Arc::get_mut(stored)
+        {
+            stored.set_origin(origin);
         }
     }
 
     /// What a file of this format is called.
-    pub(super) const fn what(&self) -> &'static str {
+    pub(super) fn what(&self) -> &'static str {
         match self {
             Self::Text(_) => "a text",
-            Self::Parquet(_) => "a Parquet file",
+            Self::Stored(stored) => stored.what(),
             Self::Arrays(_) => "a file of arrays",
+        }
+    }
+
+    /// Whether variables that are single numbers can stand in the file.
+    pub(super) fn has_variables(&self) -> bool {
+        match self {
+            Self::Text(_) => false,
+            Self::Stored(stored) => stored.has_variables(),
+            Self::Arrays(_) => true,
         }
     }
 
@@ -114,7 +174,7 @@ impl Table {
     pub(super) fn variable(&self, name: &str) -> Option<&[f64]> {
         match self {
             Self::Text(_) => None,
-            Self::Parquet(_) => None,
+            Self::Stored(stored) => stored.variable(name),
             Self::Arrays(arrays) => arrays.values(name),
         }
     }
@@ -123,7 +183,7 @@ impl Table {
     pub(super) fn existing(&self) -> Existing<'_> {
         match self {
             Self::Text(text) => text.existing(),
-            Self::Parquet(parquet) => parquet.existing(),
+            Self::Stored(stored) => stored.existing(),
             Self::Arrays(arrays) => arrays.existing(),
         }
     }
@@ -132,7 +192,7 @@ impl Table {
     pub(super) fn first_column(&self, name: &str) -> Option<&str> {
         match self {
             Self::Text(_) => None,
-            Self::Parquet(_) => None,
+            Self::Stored(stored) => stored.first_column(name),
             Self::Arrays(arrays) => arrays.first_column(name),
         }
     }
@@ -144,7 +204,7 @@ impl Table {
     pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
         Ok(match self {
             Self::Text(text) => Rows::Text(text.rows(wanted)?),
-            Self::Parquet(parquet) => Rows::Parquet(parquet.rows(wanted)?),
+            Self::Stored(stored) => Rows::Stored(stored.rows(wanted)?),
             Self::Arrays(arrays) => Rows::Arrays(arrays.rows(wanted)?),
         })
     }
@@ -154,7 +214,7 @@ impl Table {
 #[derive(Debug)]
 pub(super) enum Rows<'a> {
     Text(text::Rows<'a>),
-    Parquet(parquet_file::Rows<'a>),
+    Stored(Box<dyn StoredRows + 'a>),
     Arrays(arrays::Rows<'a>),
 }
 
@@ -166,7 +226,7 @@ impl Rows<'_> {
     pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         match self {
             Self::Text(rows) => rows.next(values),
-            Self::Parquet(rows) => rows.next(values),
+            Self::Stored(rows) => rows.next(values),
             Self::Arrays(rows) => rows.next(values),
         }
     }
@@ -175,16 +235,15 @@ impl Rows<'_> {
     pub(super) const fn line(&self) -> Option<usize> {
         match self {
             Self::Text(rows) => Some(rows.line()),
-            Self::Arrays(_) => None,
-            Self::Parquet(_) => None,
+            Self::Stored(_) | Self::Arrays(_) => None,
         }
     }
 
     /// Whether nothing more can be read.
-    pub(super) const fn is_broken(&self) -> bool {
+    pub(super) fn is_broken(&self) -> bool {
         match self {
             Self::Text(rows) => rows.is_broken(),
-            Self::Parquet(rows) => rows.is_broken(),
+            Self::Stored(rows) => rows.is_broken(),
             Self::Arrays(_) => false,
         }
     }
@@ -193,7 +252,7 @@ impl Rows<'_> {
     pub(super) fn bytes(&self) -> u64 {
         match self {
             Self::Text(rows) => rows.bytes(),
-            Self::Parquet(rows) => rows.bytes(),
+            Self::Stored(rows) => rows.bytes(),
             Self::Arrays(_) => 0,
         }
     }

@@ -140,6 +140,37 @@ fn logs_have_a_column_of_the_time_or_a_frequency() {
 }
 
 #[test]
+fn logs_with_a_column_of_the_time_may_be_resampled() {
+    let columns = "positions = [\"$1\"]\ntorques = [\"$2\"]\n";
+    let table = |text: &str| format!("[data]\n{columns}{text}");
+    let rate = |text: &str| good(&single(&table(text), "")).data.unwrap().resample;
+    assert_eq!(rate("time = \"t\""), None);
+    assert_eq!(rate("time = \"t\"\nresample = \"1 kHz\""), Some(1000.0));
+    assert_eq!(
+        errors(&table("sampling = 10\nresample = 5")),
+        [
+            "6:12 `resample` is for logs with a column of the time; leave out `resample`: without such a column samples are uniform, and `decimation` keeps fewer"
+        ]
+    );
+    let refused =
+        |text: &str| errors(&table(&format!("time = \"t\"\nresample = {text}"))).remove(0);
+    assert_eq!(
+        refused("\"5 s\""),
+        "6:12 `resample`: expected a frequency (Hz), found a time (5 s)"
+    );
+    assert!(
+        refused("0").starts_with("6:12 `resample`: "),
+        "{}",
+        refused("0")
+    );
+    assert!(
+        refused("true").starts_with("6:12 `resample`: "),
+        "{}",
+        refused("true")
+    );
+}
+
+#[test]
 fn joints_stand_still_below_velocities_of_their_kind() {
     let limits = |text: &str| {
         let tables = format!("[identification]\nstandstill_velocity = {text}");

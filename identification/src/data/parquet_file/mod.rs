@@ -21,11 +21,16 @@ use parquet::{
     file::metadata::{FileMetaData, ParquetMetaData, ParquetMetaDataReader},
 };
 
-use self::{durations::durations, kind::Kind, rows::Wanted};
-use super::problems::{Existing, legible, only, shown, unreadable};
+use self::{
+    durations::durations,
+    kind::Kind,
+    rows::{Rows, Wanted},
+};
+use super::{
+    problems::{Existing, legible, only, shown, unreadable},
+    stored::{Stored, StoredRows},
+};
 use crate::error::{Error, Problem};
-
-pub(super) use rows::Rows;
 
 /// A Parquet file and what its columns are.
 #[derive(Debug, Clone)]
@@ -37,12 +42,6 @@ pub(super) struct Parquet {
     columns: Vec<Column>,
     /// What instants are counted from, s since 1970; none where there are no instants.
     origin: Option<i64>,
-}
-
-impl PartialEq for Parquet {
-    fn eq(&self, other: &Self) -> bool {
-        (&self.path, &self.columns, self.origin) == (&other.path, &other.columns, other.origin)
-    }
 }
 
 /// A column at the top of the schema.
@@ -87,41 +86,35 @@ impl Parquet {
             .and_then(|mut rows| rows.next(&mut first));
         (found == Ok(true)).then_some(first[0].floor() as i64)
     }
+}
 
-    /// What instants are counted from, s since 1970.
-    pub(super) const fn origin(&self) -> Option<i64> {
+impl Stored for Parquet {
+    fn origin(&self) -> Option<i64> {
         self.origin
     }
 
-    /// Says what instants are counted from, so that those of several files go together.
-    pub(super) fn set_origin(&mut self, origin: i64) {
+    fn set_origin(&mut self, origin: i64) {
         self.origin = self.origin.map(|_| origin);
     }
 
-    /// The file as the caller named it.
-    pub(super) fn file(&self) -> &str {
+    fn what(&self) -> &'static str {
+        "a Parquet file"
+    }
+
+    fn file(&self) -> &str {
         &self.file
     }
 
-    /// Number of columns.
-    pub(super) const fn columns(&self) -> usize {
+    fn columns(&self) -> usize {
         self.columns.len()
     }
 
-    /// The place of a column that is called by its name.
-    ///
-    /// # Errors
-    /// Several columns of this name.
-    pub(super) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
+    fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
         let names = self.columns.iter().map(|own| own.name.as_str());
         only(&self.file, name, names)
     }
 
-    /// Whether a column has numbers.
-    ///
-    /// # Errors
-    /// What it has in their place.
-    pub(super) fn check(&self, place: usize) -> Result<(), Problem> {
+    fn check(&self, place: usize) -> Result<(), Problem> {
         let Some(Column { name, kind, .. }) = self.columns.get(place) else {
             return Ok(());
         };
@@ -134,8 +127,7 @@ impl Parquet {
         Err(problem.help(help))
     }
 
-    /// What columns there are.
-    pub(super) fn existing(&self) -> Existing<'_> {
+    fn existing(&self) -> Existing<'_> {
         Existing {
             names: self.columns.iter().map(|own| own.name.as_str()).collect(),
             columns: self.columns(),
@@ -143,11 +135,7 @@ impl Parquet {
         }
     }
 
-    /// Goes through some columns, whose names are for messages, from the first row on.
-    ///
-    /// # Errors
-    /// A file that can't be read any more, or that was written anew.
-    pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
+    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn StoredRows + 'a>, Error> {
         let input = File::open(&self.path).map_err(|error| unreadable(&self.file, &error))?;
         let wanted = wanted.iter().filter_map(|&(place, name)| {
             let Column { leaf, kind, .. } = self.columns.get(place)?;
@@ -159,7 +147,8 @@ impl Parquet {
             })
         });
         let origin = self.origin.unwrap_or(0);
-        Ok(Rows::new(&self.file, input, &self.metadata, wanted, origin))
+        let rows = Rows::new(&self.file, input, &self.metadata, wanted, origin);
+        Ok(Box::new(rows))
     }
 }
 

@@ -16,7 +16,10 @@ use parquet::{
 
 use super::{kind::Kind, pages::Pages};
 use crate::{
-    data::problems::{legible, shown},
+    data::{
+        problems::{legible, shown},
+        stored::StoredRows,
+    },
     error::{Error, Problem},
 };
 
@@ -33,7 +36,7 @@ pub(super) struct Wanted<'a> {
 
 /// The rest of a file.
 #[derive(Debug)]
-pub(in crate::data) struct Rows<'a> {
+pub(super) struct Rows<'a> {
     /// The file as the caller named it.
     file: &'a str,
     input: Arc<File>,
@@ -83,54 +86,6 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Whether nothing more can be read.
-    pub(in crate::data) const fn is_broken(&self) -> bool {
-        self.is_broken
-    }
-
-    /// Bytes of the file that have been read, in the mean over its rows: columns stand one behind the other.
-    pub(in crate::data) fn bytes(&self) -> u64 {
-        let rows = self.metadata.file_metadata().num_rows().max(1) as f64;
-        let part = (self.samples as f64 / rows).min(1.0);
-        (part * self.input.len() as f64) as u64
-    }
-
-    /// Puts the numbers of the next row into `values`; `false` at the end.
-    ///
-    /// # Errors
-    /// Every cell of the row that is no finite number, or a file that can't be read on.
-    pub(in crate::data) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
-        if self.columns.is_empty() {
-            return Ok(false);
-        }
-        if self.next == self.filled {
-            let filled = self.fill();
-            self.is_broken |= filled.is_err();
-            if !filled? {
-                return Ok(false);
-            }
-        }
-        let mut problems = Vec::new();
-        for (column, value) in self.columns.iter().zip(values) {
-            let found = column.values[self.next];
-            *value = found.unwrap_or(f64::NAN);
-            if value.is_finite() {
-                continue;
-            }
-            let what = match found {
-                Some(_) => "is not a finite number",
-                None => "has no value (null)",
-            };
-            let name = column.wanted.name;
-            let message = format!("`{}`: sample {} {what}", shown(name), self.samples);
-            problems.push(Problem::new(message).file(self.file).column(name));
-        }
-        self.next += 1;
-        self.samples += 1;
-        Error::check(problems)?;
-        Ok(true)
-    }
-
     /// Reads the next rows of all columns; `false` at the end.
     fn fill(&mut self) -> Result<bool, Problem> {
         while self.left == 0 {
@@ -178,6 +133,51 @@ impl<'a> Rows<'a> {
         } else {
             help
         })
+    }
+}
+
+impl StoredRows for Rows<'_> {
+    fn is_broken(&self) -> bool {
+        self.is_broken
+    }
+
+    // In the mean over the rows: columns stand one behind the other.
+    fn bytes(&self) -> u64 {
+        let rows = self.metadata.file_metadata().num_rows().max(1) as f64;
+        let part = (self.samples as f64 / rows).min(1.0);
+        (part * self.input.len() as f64) as u64
+    }
+
+    fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
+        if self.columns.is_empty() {
+            return Ok(false);
+        }
+        if self.next == self.filled {
+            let filled = self.fill();
+            self.is_broken |= filled.is_err();
+            if !filled? {
+                return Ok(false);
+            }
+        }
+        let mut problems = Vec::new();
+        for (column, value) in self.columns.iter().zip(values) {
+            let found = column.values[self.next];
+            *value = found.unwrap_or(f64::NAN);
+            if value.is_finite() {
+                continue;
+            }
+            let what = match found {
+                Some(_) => "is not a finite number",
+                None => "has no value (null)",
+            };
+            let name = column.wanted.name;
+            let message = format!("`{}`: sample {} {what}", shown(name), self.samples);
+            problems.push(Problem::new(message).file(self.file).column(name));
+        }
+        self.next += 1;
+        self.samples += 1;
+        Error::check(problems)?;
+        Ok(true)
     }
 }
 

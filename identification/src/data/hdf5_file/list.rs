@@ -1,0 +1,59 @@
+//! The datasets of a file, those in groups as well.
+
+use std::{fs::File, io::Read, path::Path};
+
+use hdf5_reader::{
+    Dataset, Hdf5File,
+    error::{Error, Result},
+};
+
+/// Groups within groups, groups, and datasets, at most.
+const DEEPEST: usize = 16;
+const MOST_GROUPS: usize = 1000;
+const MOST_DATASETS: usize = 20_000;
+
+/// Whether MATLAB wrote a file: it says so before the HDF5 begins.
+pub(super) fn is_matlab(path: &Path) -> bool {
+    let mut beginning = [0; 6];
+    let read = File::open(path).and_then(|mut input| input.read_exact(&mut beginning));
+    read.is_ok() && beginning == *b"MATLAB"
+}
+
+/// All datasets, each with its path, in which points stand between names.
+///
+/// # Errors
+/// What is wrong with the file.
+pub(super) fn datasets(file: &Hdf5File) -> Result<Vec<(String, Dataset)>> {
+    let mut found = Vec::new();
+    let mut seen = Vec::new();
+    let mut groups = vec![(file.root_group()?, String::new(), 0)];
+    while let Some((group, path, depth)) = groups.pop() {
+        // A group may be a member of itself.
+        if seen.contains(&group.address()) || depth > DEEPEST {
+            continue;
+        }
+        seen.push(group.address());
+        if seen.len() > MOST_GROUPS {
+            return Err(Error::InvalidData(format!(
+                "it has more than {MOST_GROUPS} groups"
+            )));
+        }
+        let (inner, datasets) = group.members()?;
+        for dataset in datasets {
+            if found.len() >= MOST_DATASETS {
+                return Err(Error::InvalidData(format!(
+                    "it has more than {MOST_DATASETS} datasets"
+                )));
+            }
+            found.push((format!("{path}{}", dataset.name()), dataset));
+        }
+        // What MATLAB keeps for itself: contents of cells, classes.
+        let inner = inner.into_iter().filter(|own| !own.name().starts_with('#'));
+        groups.extend(inner.map(|own| {
+            let path = format!("{path}{}.", own.name());
+            (own, path, depth + 1)
+        }));
+    }
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    Ok(found)
+}

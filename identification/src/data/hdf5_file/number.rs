@@ -1,0 +1,144 @@
+//! Numbers of any kind as they stand in a file: whole ones of any size, floating ones of 32 and 64 bits, true and
+//! false, which is a choice of two whole numbers.
+
+use hdf5_reader::{
+    ByteOrder, Datatype, H5Type, dtype_element_size,
+    error::{Error, Result},
+};
+
+/// A number that was read.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Number(pub(super) f64);
+
+/// Whether elements are numbers.
+///
+/// # Errors
+/// What they are in their place, in words behind a name.
+pub(super) fn is_number(kind: &Datatype) -> std::result::Result<(), &'static str> {
+    match kind {
+        Datatype::FixedPoint { size: 1..=8, .. } => Ok(()),
+        Datatype::FloatingPoint { size: 4 | 8, .. } => Ok(()),
+        Datatype::FixedPoint { .. } => {
+            Err("holds whole numbers of more than 64 bits, which are not read")
+        }
+        Datatype::FloatingPoint { .. } => {
+            Err("holds floating numbers of other sizes than 32 and 64 bits, which are not read")
+        }
+        Datatype::Enum { base, .. } => is_number(base),
+        Datatype::String { .. } | Datatype::VarLen { .. } => {
+            Err("holds texts or lists of any length, not numbers")
+        }
+        Datatype::Compound { .. } => {
+            Err("holds structures (a table, or complex numbers), not single numbers")
+        }
+        Datatype::Reference { .. } => {
+            Err("holds references to others (a cell array?), not numbers")
+        }
+        _ => Err("holds no single numbers"),
+    }
+}
+
+impl H5Type for Number {
+    fn hdf5_type() -> Datatype {
+        f64::hdf5_type()
+    }
+
+    fn from_bytes(bytes: &[u8], kind: &Datatype) -> Result<Self> {
+        let bad = || Error::InvalidData(String::from("an element is no number"));
+        let found = match kind {
+            Datatype::FixedPoint {
+                size,
+                signed,
+                byte_order,
+            } => bytes
+                .get(..usize::from(*size))
+                .and_then(|bytes| whole(bytes, *signed, *byte_order)),
+            Datatype::FloatingPoint { byte_order, .. } => floating(bytes, *byte_order),
+            Datatype::Enum { base, .. } => return Self::from_bytes(bytes, base),
+            _ => None,
+        };
+        found.map(Self).ok_or_else(bad)
+    }
+
+    fn element_size(kind: &Datatype) -> usize {
+        dtype_element_size(kind).unwrap_or(0)
+    }
+}
+
+/// A whole number of up to eight bytes.
+fn whole(bytes: &[u8], signed: bool, order: ByteOrder) -> Option<f64> {
+    let mut eight = [0; 8];
+    let count = bytes.len();
+    let own = eight.get_mut(..count)?;
+    own.copy_from_slice(bytes);
+    if order == ByteOrder::BigEndian {
+        own.reverse();
+    }
+    let value = u64::from_le_bytes(eight);
+    // The sign stands in the highest bit of the bytes that there are.
+    let unused = 64 - 8 * u32::try_from(count).ok()?;
+    Some(if signed && count > 0 {
+        (value.cast_signed() << unused >> unused) as f64
+    } else {
+        value as f64
+    })
+}
+
+/// A floating number of four or eight bytes.
+fn floating(bytes: &[u8], order: ByteOrder) -> Option<f64> {
+    let is_highest_first = order == ByteOrder::BigEndian;
+    match bytes.len() {
+        4 => {
+            let bytes = bytes.try_into().ok()?;
+            let value = if is_highest_first {
+                f32::from_be_bytes(bytes)
+            } else {
+                f32::from_le_bytes(bytes)
+            };
+            Some(f64::from(value))
+        }
+        8 => {
+            let bytes = bytes.try_into().ok()?;
+            Some(if is_highest_first {
+                f64::from_be_bytes(bytes)
+            } else {
+                f64::from_le_bytes(bytes)
+            })
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hdf5_reader::{ByteOrder, Datatype, H5Type};
+
+    use super::Number;
+
+    #[test]
+    fn numbers_of_any_size_and_order() {
+        let whole = |size, signed, byte_order| Datatype::FixedPoint {
+            size,
+            signed,
+            byte_order,
+        };
+        let value =
+            |bytes: &[u8], kind: &Datatype| Number::from_bytes(bytes, kind).expect("a number").0;
+        use ByteOrder::{BigEndian, LittleEndian};
+        assert_eq!(value(&[0xfe, 0xff], &whole(2, true, LittleEndian)), -2.0);
+        assert_eq!(value(&[0xff, 0xfe], &whole(2, true, BigEndian)), -2.0);
+        assert_eq!(value(&[0xff, 0xfe], &whole(2, false, BigEndian)), 65534.0);
+        assert_eq!(value(&[0xff; 8], &whole(8, true, BigEndian)), -1.0);
+        assert_eq!(
+            value(&[0xff; 8], &whole(8, false, BigEndian)),
+            2.0_f64.powi(64)
+        );
+        let floating = |size, byte_order| Datatype::FloatingPoint { size, byte_order };
+        assert_eq!(value(&0.5_f32.to_be_bytes(), &floating(4, BigEndian)), 0.5);
+        assert_eq!(
+            value(&0.1_f64.to_le_bytes(), &floating(8, LittleEndian)),
+            0.1
+        );
+        assert!(Number::from_bytes(&[1, 2], &floating(8, LittleEndian)).is_err());
+    }
+}

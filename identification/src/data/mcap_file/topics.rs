@@ -1,0 +1,176 @@
+//! What topics a file has, and the first message of each that can be read.
+
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    io::{Read, Seek, SeekFrom},
+    sync::Arc,
+};
+
+use super::{
+    fields::Fields,
+    records::{FOOTER, MAGIC, Record, Records},
+};
+
+/// The type of the messages that are read, and how they are written.
+const TYPE: &str = "sensor_msgs/msg/JointState";
+const ENCODING: &str = "cdr";
+
+/// Bytes of the last record and of what stands behind it.
+const END: u64 = 29 + 8;
+
+/// A topic as the channels of a file tell of it.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub(super) topic: String,
+    pub(super) channels: Vec<u16>,
+    /// When the first message was recorded, ns, and its content; none where no message came.
+    pub(super) first: Option<(u64, Vec<u8>)>,
+}
+
+/// The topics of a file.
+#[derive(Debug, Default)]
+pub(super) struct Topics {
+    schemas: BTreeMap<u16, String>,
+    /// Of each channel its topic, the number of its schema and how its messages are written.
+    channels: BTreeMap<u16, (String, u16, String)>,
+}
+
+impl Topics {
+    /// Finds the topics whose messages are read.
+    ///
+    /// # Errors
+    /// What is wrong with the file, in words that say where.
+    pub(super) fn find(file: &Arc<File>, length: u64) -> Result<(Self, Vec<Found>), String> {
+        let mut topics = Self::default();
+        let summary = summary(file, length)?;
+        let mut content = Vec::new();
+        if let Some(start) = summary {
+            let mut records = Records::new(file, start, length - END);
+            while let Some(record) = records.next(&mut content, &|_| false)? {
+                topics.note(&record, &content);
+            }
+        }
+        // Without a summary nobody knows what comes later in the file.
+        let is_complete = !topics.channels.is_empty();
+        let mut firsts: BTreeMap<u16, (u64, Vec<u8>)> = BTreeMap::new();
+        let mut records = Records::new(file, MAGIC.len() as u64, length - END);
+        loop {
+            if is_complete && topics.joints().all(|(id, _)| firsts.contains_key(&id)) {
+                break;
+            }
+            let wants = |channel| topics.is_joints(channel) && !firsts.contains_key(&channel);
+            let Some(record) = records.next(&mut content, &wants)? else {
+                break;
+            };
+            match record {
+                Record::Message(channel, time) if wants(channel) => {
+                    firsts.insert(channel, (time, std::mem::take(&mut content)));
+                }
+                _ => topics.note(&record, &content),
+            }
+        }
+        let mut found: Vec<Found> = Vec::new();
+        for (channel, topic) in topics.joints() {
+            let first = firsts.remove(&channel);
+            match found.iter_mut().find(|own| own.topic == topic) {
+                None => found.push(Found {
+                    topic: topic.to_owned(),
+                    channels: vec![channel],
+                    first,
+                }),
+                // Several publishers on one topic.
+                Some(own) => {
+                    own.channels.push(channel);
+                    let time = |first: &Option<(u64, Vec<u8>)>| {
+                        first.as_ref().map_or(u64::MAX, |own| own.0)
+                    };
+                    if time(&first) < time(&own.first) {
+                        own.first = first;
+                    }
+                }
+            }
+        }
+        Ok((topics, found))
+    }
+
+    /// Takes in a schema or a channel.
+    fn note(&mut self, record: &Record, content: &[u8]) {
+        let mut fields = Fields(content);
+        match record {
+            Record::Schema => {
+                if let (Some(id), Some(name)) = (fields.short(), fields.text()) {
+                    self.schemas.insert(id, name);
+                }
+            }
+            Record::Channel => {
+                let (id, schema) = (fields.short(), fields.short());
+                if let (Some(id), Some(schema), Some(topic), Some(encoding)) =
+                    (id, schema, fields.text(), fields.text())
+                {
+                    self.channels.insert(id, (topic, schema, encoding));
+                }
+            }
+            Record::Message(..) => {}
+        }
+    }
+
+    fn is_joints(&self, channel: u16) -> bool {
+        self.channels
+            .get(&channel)
+            .is_some_and(|(_, schema, encoding)| {
+                encoding == ENCODING && self.schemas.get(schema).is_some_and(|name| name == TYPE)
+            })
+    }
+
+    /// The channels whose messages are read, with their topics.
+    fn joints(&self) -> impl Iterator<Item = (u16, &str)> {
+        let channels = self.channels.iter().filter(|(id, _)| self.is_joints(**id));
+        channels.map(|(id, (topic, ..))| (*id, topic.as_str()))
+    }
+
+    /// What topics there are, each with the type of its messages and how they are written.
+    pub(super) fn told(&self) -> Vec<String> {
+        let channels = self.channels.values();
+        let told = channels.map(|(topic, schema, encoding)| {
+            let name = self
+                .schemas
+                .get(schema)
+                .map_or("of no type", String::as_str);
+            format!("{topic} ({name}, {encoding})")
+        });
+        told.collect()
+    }
+}
+
+/// Where the summary of a file starts, if it has one.
+///
+/// # Errors
+/// A file that does not end as it should.
+fn summary(file: &Arc<File>, length: u64) -> Result<Option<u64>, String> {
+    let cut_off = || String::from("it is cut off: its end is missing");
+    let start = length.checked_sub(END).ok_or_else(cut_off)?;
+    let mut end = [0; END as usize];
+    let mut input = &**file;
+    let read = input
+        .seek(SeekFrom::Start(start))
+        .and_then(|_| input.read_exact(&mut end));
+    read.map_err(|error| error.to_string())?;
+    if !end.ends_with(MAGIC) {
+        return Err(cut_off());
+    }
+    let (kind, rest) = (end[0], &end[1..]);
+    let mut fields = Fields(rest);
+    if kind != FOOTER || fields.long() != Some(20) {
+        return Err(String::from(
+            "its last record is not the one that ends a file",
+        ));
+    }
+    match fields.long() {
+        None | Some(0) => Ok(None),
+        Some(place) if place < start => Ok(Some(place)),
+        Some(place) => Err(format!(
+            "its summary is said to start at byte {place}, behind its end"
+        )),
+    }
+}

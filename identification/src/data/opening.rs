@@ -1,0 +1,220 @@
+//! Opens the files of a run: finds their columns, compares their clocks, and says what is done where these differ
+//! or the run is resampled.
+
+use std::path::Path;
+
+use super::{
+    mapping::Mapping,
+    problems::{display_name, shown},
+    resampling,
+    rows::Joined,
+    signals::Signals,
+    source::Files,
+    table::Table,
+    transmission::Transmission,
+};
+use crate::error::{Error, Problem};
+
+impl Files {
+    /// Opens the files of the run `path` and finds their columns.
+    ///
+    /// # Errors
+    /// A mapping that is not right, files that can't be read, missing columns.
+    pub(super) fn new(path: &Path, files: &[&Path], mapping: &Mapping) -> Result<Self, Error> {
+        mapping.check()?;
+        let (mut tables, mut numbers, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+        for (file, number) in files.iter().zip(1..) {
+            match Table::open(file) {
+                Ok(parts) => {
+                    numbers.resize(numbers.len() + parts.len(), number);
+                    tables.extend(parts);
+                }
+                Err(error) => problems.extend(error.problems),
+            }
+        }
+        Error::check(problems)?;
+        let name = display_name(path);
+        if tables.iter().any(Table::is_part) {
+            (tables, numbers) = used(&name, (tables, numbers), mapping)?;
+        }
+        if let Some(origin) = tables.iter().find_map(Table::origin) {
+            tables.iter_mut().for_each(|table| table.set_origin(origin));
+        }
+        let mut files = Self {
+            signals: Signals::new(&name, (&tables, &numbers), mapping)?,
+            name,
+            tables,
+            actuators: mapping.positions.len(),
+            has_velocities: !mapping.velocities.is_empty(),
+            clocks: Vec::new(),
+            transmission: Transmission::new(&mapping.transmission, mapping.positions.len())?,
+            resample: None,
+        };
+        files.clocks = files.differing_clocks()?;
+        if let Some(rate) = mapping.resample {
+            files.resample = Some((rate, files.usual_step()?));
+        }
+        Error::check(files.unfit_rates())?;
+        Ok(files)
+    }
+
+    /// The usual step of the run's samples as they are, s: of the first file where clocks differ.
+    fn usual_step(&self) -> Result<f64, Error> {
+        if let Some((_, _, step)) = self.clocks.first() {
+            return Ok(*step);
+        }
+        let mut joined = Joined::new(self)?;
+        let mut row = vec![0.0; self.width()];
+        let times = std::iter::from_fn(|| {
+            // What is wrong with a row is told where the run is gone through.
+            joined.next(&mut row).ok().filter(|goes_on| *goes_on)?;
+            self.signals.times(&row).next()
+        });
+        Ok(resampling::usual_step(times))
+    }
+
+    /// Rates that are too far from those of the samples, and files without times where others have their own.
+    fn unfit_rates(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        let run = (self.name.clone(), self.resample.map(|(_, step)| step));
+        let rate = match (self.resample, self.clocks.first()) {
+            (Some((rate, _)), _) => rate,
+            (None, Some((_, _, step))) => 1.0 / step,
+            (None, None) => return problems,
+        };
+        let followers = self
+            .clocks
+            .iter()
+            .map(|(table, _, step)| (self.tables[*table].label(), Some(*step)));
+        for (name, step) in followers.chain([run]) {
+            let step = step.filter(|step| *step > 0.0);
+            let ratio = step.map_or(1.0, |step| rate * step);
+            let what = match ratio {
+                _ if ratio > resampling::MOST_HIGHER && self.resample.is_some() => {
+                    "more than ten times"
+                }
+                _ if ratio < 1.0 / resampling::MOST_LOWER => "less than a thousandth of",
+                _ => continue,
+            };
+            let own = 1.0 / step.unwrap_or(f64::NAN);
+            let message = format!(
+                "{name} is to be resampled at {} Hz, which is {what} its {} Hz",
+                round(rate),
+                round(own)
+            );
+            let problem = Problem::new(message)
+                .file(self.name.as_str())
+                .column("resample");
+            problems
+                .push(problem.help("take a rate near that of the samples, `resample` in [data]"));
+            break;
+        }
+        if self.resample.is_some() && !self.clocks.is_empty() {
+            for (table, columns) in self.tables.iter().zip(self.signals.columns()) {
+                let number = self.tables.iter().position(|own| std::ptr::eq(own, table));
+                let has_clock = self.clocks.iter().any(|(own, ..)| Some(*own) == number);
+                if !has_clock && !columns.is_empty() {
+                    let message = format!(
+                        "{} has no times, while those of the other files differ",
+                        shown(&table.label())
+                    );
+                    let problem = Problem::new(message).file(table.file());
+                    problems.push(
+                        problem.help("give every file a column of the time, of the same name"),
+                    );
+                }
+            }
+        }
+        problems
+    }
+
+    /// The clocks of the files, unless they agree.
+    fn differing_clocks(&self) -> Result<Vec<(usize, usize, f64)>, Error> {
+        let columns: Vec<_> = self.signals.columns().collect();
+        let open = |&(file, place): &(usize, usize)| {
+            let clock = columns[file].get(place..=place).unwrap_or_default();
+            self.tables[file].rows(clock)
+        };
+        let clocks = self.signals.clocks();
+        let all: Result<Vec<_>, Error> = clocks.iter().map(open).collect();
+        if clocks.is_empty() || !resampling::differ(all?) {
+            return Ok(Vec::new());
+        }
+        let with_step = |clock: &(usize, usize)| {
+            let step = resampling::usual_step(resampling::times(open(clock)?));
+            Ok((clock.0, clock.1, step))
+        };
+        clocks.iter().map(with_step).collect()
+    }
+
+    /// What is said of a run that was resampled, and of files that are joined by time.
+    pub(super) fn note(&self, samples: usize, left_out: usize) -> Option<String> {
+        let labels = |clocks: &[(usize, usize, f64)]| {
+            let labels = clocks.iter().map(|(table, ..)| self.tables[*table].label());
+            labels.collect::<Vec<_>>().join(", ")
+        };
+        let passed = |rate: f64, is_lower: bool| match is_lower {
+            true => format!(
+                ", after a low-pass that keeps what lies below {} Hz",
+                round(0.4 * rate)
+            ),
+            false => String::new(),
+        };
+        if let Some((rate, step)) = self.resample {
+            let mut steps = self.clocks.iter().map(|(_, _, step)| *step).chain([step]);
+            let low_pass = passed(rate, steps.any(|step| resampling::is_lower(step, rate)));
+            let (what, from) = match &self.clocks[..] {
+                [] => (
+                    String::from("the run"),
+                    format!("from about {} Hz", round(1.0 / step)),
+                ),
+                clocks => (labels(clocks), String::from("onto common times")),
+            };
+            return Some(format!(
+                "{what} was resampled at {} Hz {from}, by polynomials of degree 5{low_pass}",
+                round(rate)
+            ));
+        }
+        let (&(first, _, step), others) = self.clocks.split_first()?;
+        let left = match left_out {
+            0 => String::new(),
+            _ => format!(
+                "; {left_out} of its {} samples, outside of the others' times, are left out",
+                samples + left_out
+            ),
+        };
+        let rate = 1.0 / step;
+        let is_lower = others
+            .iter()
+            .any(|(_, _, own)| resampling::is_lower(*own, rate));
+        Some(format!(
+            "{} was interpolated onto the times of {}{}, since the clocks differ{left}",
+            labels(others),
+            self.tables[first].label(),
+            passed(rate, is_lower)
+        ))
+    }
+}
+
+/// A rate with as many digits as matter.
+fn round(rate: f64) -> f64 {
+    (rate * 1e6).round() / 1e6
+}
+
+/// The tables of a run without those parts of files, as topics are, that have none of its signals; the others
+/// are put in the order in which the mapping names them, with the number of each one's file.
+fn used(
+    name: &str,
+    (tables, numbers): (Vec<Table>, Vec<usize>),
+    mapping: &Mapping,
+) -> Result<(Vec<Table>, Vec<usize>), Error> {
+    let used = Signals::used(name, (&tables, &numbers), mapping)?;
+    let place = |table: usize| used.iter().position(|own| *own == table);
+    let is_kept = |table: usize| !tables[table].is_part() || place(table).is_some();
+    let mut order: Vec<usize> = (0..tables.len()).filter(|table| is_kept(*table)).collect();
+    // Files keep their order.
+    order.sort_by_key(|table| (numbers[*table], place(*table)));
+    let numbers = order.iter().map(|table| numbers[*table]).collect();
+    let tables = order.iter().map(|table| tables[*table].clone()).collect();
+    Ok((tables, numbers))
+}

@@ -1,0 +1,267 @@
+//! Numbers at other times than those at which they were sampled: of files with clocks of their own at the times of
+//! another one, and of a whole run at uniform times.
+//!
+//! Between samples a polynomial is taken. Where the new rate is lower, a low-pass comes first, on a grid that is
+//! at least twice as fine as the samples.
+
+mod clocks;
+mod low_pass;
+mod polynomial;
+
+use std::collections::VecDeque;
+
+pub(super) use self::clocks::{apart, differ, times, usual_step};
+use self::{
+    clocks::LONGEST_STEP,
+    low_pass::{HALF_LENGTH, Kernel},
+    polynomial::{NODES, Node, Polynomial},
+};
+use super::expression::Expression;
+use crate::error::{Error, Problem};
+
+/// Usual steps that lie between two samples, at least: nearer ones are left out, since their difference is noise.
+const SHORTEST_STEP: f64 = 0.5;
+
+/// The new rate is lower if it is less than this part of that of the samples.
+const LOWER: f64 = 0.95;
+
+/// How many times lower or higher the new rate may be.
+pub(super) const MOST_LOWER: f64 = 1000.0;
+pub(super) const MOST_HIGHER: f64 = 10.0;
+
+/// Gives the next row of numbers; `false` at the end.
+pub(super) type Source<'a> = dyn FnMut(&mut [f64]) -> Result<bool, Error> + 'a;
+
+/// Where a time lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    Before,
+    Inside,
+    Behind,
+}
+
+/// Rows of numbers that are read at other times than their own.
+#[derive(Debug)]
+pub(super) struct Resampled {
+    /// The file, for messages.
+    file: String,
+    /// The time of a row.
+    clock: Expression,
+    /// The usual step between two rows, s.
+    step: f64,
+    /// The last samples.
+    nodes: VecDeque<Node>,
+    /// The time of the last row that was read, which may be too near to a sample to be one.
+    last: Option<f64>,
+    /// The first time, and that of the last sample.
+    range: Option<(f64, f64)>,
+    has_ended: bool,
+    /// The columns of a row.
+    width: usize,
+    low_pass: Option<LowPass>,
+}
+
+/// What is kept for the low-pass.
+#[derive(Debug)]
+struct LowPass {
+    kernel: Kernel,
+    /// The new rate, Hz.
+    rate: f64,
+    /// The step of the grid, s, and its origin, which is the first time that was asked for.
+    step: f64,
+    origin: Option<f64>,
+    /// Numbers on the grid, the first of them so many steps from the origin.
+    values: VecDeque<Vec<f64>>,
+    first: i64,
+}
+
+impl Resampled {
+    /// Rows of `width` numbers whose usual `step`, s, is known, for a new `rate`, Hz.
+    pub(super) fn new(
+        file: String,
+        clock: Expression,
+        width: usize,
+        (step, rate): (f64, f64),
+    ) -> Self {
+        let ratio = 1.0 / (step * rate);
+        // Written so that a step that is not a number has no low-pass; it is refused with its times.
+        let low_pass = is_lower(step, rate).then(|| LowPass {
+            kernel: Kernel::new(),
+            rate,
+            step: 1.0 / (rate * (2.0 * ratio.min(2.0 * MOST_LOWER)).ceil()),
+            origin: None,
+            values: VecDeque::new(),
+            first: 0,
+        });
+        Self {
+            file,
+            clock,
+            step,
+            nodes: VecDeque::new(),
+            last: None,
+            range: None,
+            has_ended: false,
+            width,
+            low_pass,
+        }
+    }
+
+    /// The first time, and that of the last sample that was read.
+    pub(super) const fn range(&self) -> Option<(f64, f64)> {
+        self.range
+    }
+
+    /// The first time at which there are numbers; none of rows without any.
+    ///
+    /// # Errors
+    /// As [`at`](Self::at).
+    pub(super) fn begin(&mut self, source: &mut Source<'_>) -> Result<Option<f64>, Error> {
+        while !self.has_ended && self.range.is_none() {
+            self.advance(source)?;
+        }
+        Ok(self.range.map(|(first, _)| first + self.margin()))
+    }
+
+    /// The time before a new sample, and behind it, that has to be known, s.
+    fn margin(&self) -> f64 {
+        self.low_pass
+            .as_ref()
+            .map_or(0.0, |own| HALF_LENGTH / own.rate)
+    }
+
+    /// Puts the numbers at a time into `values`, if it lies inside. Times are asked for one after the other.
+    ///
+    /// # Errors
+    /// Cells that are no numbers, a clock that stands or leaps.
+    pub(super) fn at(
+        &mut self,
+        source: &mut Source<'_>,
+        time: f64,
+        values: &mut [f64],
+    ) -> Result<Place, Error> {
+        let Some(mut low_pass) = self.low_pass.take() else {
+            return self.between(source, time, values);
+        };
+        let place = self.passed(&mut low_pass, source, time, values);
+        self.low_pass = Some(low_pass);
+        place
+    }
+
+    /// The numbers at a time behind the low-pass.
+    fn passed(
+        &mut self,
+        low_pass: &mut LowPass,
+        source: &mut Source<'_>,
+        time: f64,
+        values: &mut [f64],
+    ) -> Result<Place, Error> {
+        let origin = *low_pass.origin.get_or_insert(time);
+        let half = HALF_LENGTH / low_pass.rate;
+        let place = |time: f64| (time - origin) / low_pass.step;
+        let (first, last) = (
+            place(time - half).ceil() as i64,
+            place(time + half).floor() as i64,
+        );
+        while low_pass.first < first && low_pass.values.pop_front().is_some() {
+            low_pass.first += 1;
+        }
+        if low_pass.values.is_empty() {
+            low_pass.first = first;
+        }
+        let mut next = low_pass.first + low_pass.values.len() as i64;
+        while next <= last {
+            let mut row = vec![0.0; self.width];
+            match self.between(source, origin + next as f64 * low_pass.step, &mut row)? {
+                Place::Inside => low_pass.values.push_back(row),
+                // What comes before the first sample is never asked for again.
+                Place::Before => {
+                    low_pass.values.clear();
+                    return Ok(Place::Before);
+                }
+                Place::Behind => return Ok(Place::Behind),
+            }
+            next += 1;
+        }
+        values.fill(0.0);
+        let mut sum = 0.0;
+        for (row, k) in low_pass.values.iter().zip(low_pass.first..=last) {
+            let weight = low_pass
+                .kernel
+                .at((origin + k as f64 * low_pass.step - time) * low_pass.rate);
+            sum += weight;
+            values
+                .iter_mut()
+                .zip(row)
+                .for_each(|(value, own)| *value += weight * own);
+        }
+        values.iter_mut().for_each(|value| *value /= sum);
+        Ok(Place::Inside)
+    }
+
+    /// The numbers at a time between samples.
+    fn between(
+        &mut self,
+        source: &mut Source<'_>,
+        time: f64,
+        values: &mut [f64],
+    ) -> Result<Place, Error> {
+        let is_enough = |nodes: &VecDeque<Node>| {
+            let after = nodes.len().checked_sub(NODES / 2);
+            nodes.len() >= NODES && after.is_some_and(|after| nodes[after].0 >= time)
+        };
+        while !self.has_ended && !is_enough(&self.nodes) {
+            self.advance(source)?;
+            // Six before a time are enough, should they be the last.
+            while self.nodes.get(NODES).is_some_and(|(own, _)| *own < time) {
+                self.nodes.pop_front();
+            }
+        }
+        match self.range {
+            Some((first, _)) if time < first => return Ok(Place::Before),
+            Some((_, last)) if time <= last => {}
+            _ => return Ok(Place::Behind),
+        }
+        let polynomial = Polynomial::new(&self.nodes, time, self.step);
+        polynomial.values(&self.nodes, values);
+        // Later times need no earlier samples than these.
+        self.nodes.drain(..polynomial.start);
+        Ok(Place::Inside)
+    }
+
+    /// Goes on by one row.
+    fn advance(&mut self, source: &mut Source<'_>) -> Result<(), Error> {
+        let mut row = vec![f64::NAN; self.width];
+        let read = source(&mut row);
+        self.has_ended |= read.is_err();
+        if !read? {
+            self.has_ended = true;
+            return Ok(());
+        }
+        let time = self.clock.evaluate(&row);
+        let before = self.last.replace(time);
+        let (Some((first, last)), Some(before)) = (self.range, before) else {
+            self.range = Some((time, time));
+            self.nodes.push_back((time, row));
+            return Ok(());
+        };
+        // Written so that a step that is not a number counts as bad.
+        if !(time > before && time - last <= LONGEST_STEP * self.step) {
+            self.has_ended = true;
+            let message = format!("the time steps from {before} s to {time} s");
+            let problem = Problem::new(message).file(self.file.as_str());
+            let help =
+                "numbers are interpolated between times that grow without gaps: cut the run there";
+            return Err(problem.help(help).into());
+        }
+        if time - last >= SHORTEST_STEP * self.step {
+            self.range = Some((first, time));
+            self.nodes.push_back((time, row));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a rate is lower than that of samples whose usual step is known, so that a low-pass is needed.
+pub(super) fn is_lower(step: f64, rate: f64) -> bool {
+    rate * step < LOWER
+}

@@ -1,0 +1,364 @@
+//! A run that is gone through: the rows of its files, joined sample by sample or by time, at their own times or
+//! at uniform ones, as positions, torques and velocities.
+
+use super::{
+    resampling::{Place, Resampled, apart},
+    samples::Samples,
+    source::Files,
+    table,
+};
+use crate::error::{Error, Problem};
+
+/// The rest of a file.
+#[derive(Debug)]
+struct Part<'a> {
+    rows: table::Rows<'a>,
+    /// The number of its columns that are read.
+    columns: usize,
+    /// The file at other times than its own.
+    resampled: Option<Resampled>,
+}
+
+/// The rest of the files of a run.
+#[derive(Debug)]
+pub(super) struct Joined<'a> {
+    files: &'a Files,
+    parts: Vec<Part<'a>>,
+    /// Number of rows that have been read.
+    count: usize,
+    /// The first and the last time of the first file, where others are joined by time.
+    range: Option<(f64, f64)>,
+    /// Whether nothing more can be read.
+    has_ended: bool,
+}
+
+/// What came of the next row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    Row,
+    /// A file that is joined by time has no row at this time.
+    Outside,
+    End,
+}
+
+impl<'a> Joined<'a> {
+    /// Goes to the first rows.
+    ///
+    /// # Errors
+    /// A file that can't be read any more.
+    pub(super) fn new(files: &'a Files) -> Result<Self, Error> {
+        let mut parts = Vec::new();
+        for (table, own) in files.tables.iter().zip(files.signals.columns()) {
+            parts.push(Part {
+                rows: table.rows(&own)?,
+                columns: own.len(),
+                resampled: files.resampled(Some(parts.len())),
+            });
+        }
+        Ok(Self {
+            files,
+            parts,
+            count: 0,
+            range: None,
+            has_ended: false,
+        })
+    }
+
+    /// Reads the next row of files that have one clock; `false` at the end.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
+        Ok(self.advance(values, None)? == Step::Row)
+    }
+
+    /// The first of some uniform times at which all files have numbers: the time at which the first file begins, and
+    /// how many steps after that; none where a file is empty.
+    fn begin(&mut self, rate: f64) -> Result<Option<(f64, u64)>, Error> {
+        let (mut start, mut latest) = (None, f64::NEG_INFINITY);
+        for part in &mut self.parts {
+            let rows = &mut part.rows;
+            let Some(resampled) = &mut part.resampled else {
+                continue;
+            };
+            let begin = resampled.begin(&mut |row| rows.next(row))?;
+            let (Some(begin), Some((first, _))) = (begin, resampled.range()) else {
+                return Ok(None);
+            };
+            start = start.or(Some(first));
+            latest = latest.max(begin);
+        }
+        Ok(start.map(|start| (start, steps(start, latest, rate))))
+    }
+
+    /// Reads the next row of all files into `values`, at a time that is given or at that of the first file.
+    ///
+    /// # Errors
+    /// Every cell of the row that is no finite number, a file that can't be read on or that ends before
+    /// the others.
+    fn advance(&mut self, values: &mut [f64], given: Option<f64>) -> Result<Step, Error> {
+        let (mut problems, mut goes_on, mut ended) = (Vec::new(), None, None);
+        let (mut place, mut time) = (Place::Inside, given);
+        let clock = self.files.clocks.first();
+        let mut rest = values;
+        for (number, part) in self.parts.iter_mut().enumerate() {
+            let (own, others) = rest.split_at_mut(part.columns);
+            rest = others;
+            let rows = &mut part.rows;
+            let read = match (&mut part.resampled, time) {
+                (None, _) => rows.next(own),
+                (Some(resampled), Some(time)) => {
+                    let found = resampled.at(&mut |row| rows.next(row), time, own);
+                    found.map(|found| {
+                        if found != Place::Inside {
+                            place = found;
+                        }
+                        true
+                    })
+                }
+                // The file with the times has none.
+                (Some(_), None) => continue,
+            };
+            // A file of which nothing is read has no part in the run.
+            match read {
+                _ if own.is_empty() => {}
+                Ok(true) => goes_on = Some(number),
+                Ok(false) => ended = Some(number),
+                Err(error) => {
+                    goes_on = Some(number);
+                    self.has_ended |= part.rows.is_broken() || part.resampled.is_some();
+                    problems.extend(error.problems);
+                    continue;
+                }
+            }
+            let clock =
+                clock.filter(|(file, ..)| *file == number && ended.is_none() && given.is_none());
+            if let Some(&(_, place, _)) = clock {
+                time = own.get(place).copied();
+            }
+        }
+        if let (Some(time), None) = (time, given) {
+            self.range = Some((self.range.map_or(time, |(first, _)| first), time));
+        }
+        self.has_ended |= ended.is_some() || (given.is_some() && place == Place::Behind);
+        if let (Some(on), Some(ended)) = (goes_on, ended) {
+            problems.push(self.shorter(ended, on));
+        }
+        Error::check(problems)?;
+        if goes_on.is_none() || self.has_ended {
+            return Ok(Step::End);
+        }
+        if place == Place::Inside {
+            self.count += 1;
+            Ok(Step::Row)
+        } else {
+            Ok(Step::Outside)
+        }
+    }
+
+    /// What is said of files that have no time in common.
+    fn apart(&self) -> Option<Problem> {
+        let (first, ..) = self.files.clocks.first()?;
+        let name = |number: usize| self.files.tables[number].file();
+        let own = self.parts[*first].resampled.as_ref();
+        let first = (name(*first), own.map_or(self.range, Resampled::range)?);
+        let parts = self.parts.iter().enumerate();
+        let mut ranges =
+            parts.filter_map(|(file, part)| Some((name(file), part.resampled.as_ref()?.range()?)));
+        let outside =
+            |(_, (begin, end)): &(&str, (f64, f64))| *begin > first.1.1 || *end < first.1.0;
+        ranges.find(outside).map(|file| apart(first, file))
+    }
+
+    /// What is said of a file that ends while another one goes on.
+    fn shorter(&self, ended: usize, on: usize) -> Problem {
+        let file = |number: usize| self.files.tables[number].file();
+        let message = format!(
+            "the file ends after {} samples, while {} goes on",
+            self.count,
+            file(on)
+        );
+        Problem::new(message).file(file(ended)).help(
+            "files are joined sample by sample: cut them to the same samples, or check that they are of one run",
+        )
+    }
+}
+
+/// How many steps at a rate lead from a time to the first one that is not before another time.
+fn steps(start: f64, end: f64, rate: f64) -> u64 {
+    ((end - start) * rate - 1e-9).ceil().max(0.0) as u64
+}
+
+/// Uniform times.
+#[derive(Debug, Clone, Copy)]
+struct Uniform {
+    rate: f64,
+    start: f64,
+    next: u64,
+}
+
+/// The rest of a run.
+#[derive(Debug)]
+pub(super) struct Rows<'a> {
+    files: &'a Files,
+    joined: Joined<'a>,
+    /// The whole run at other times than its own.
+    resampled: Option<Resampled>,
+    /// The times at which it is resampled, once they have begun.
+    times: Option<Uniform>,
+    /// The numbers of a row, in the columns that are read.
+    pub(super) values: Vec<f64>,
+    /// Number of samples that have been read.
+    pub(super) samples: usize,
+    /// Samples of the first file at which another one, which is joined by time, has none.
+    pub(super) left_out: usize,
+}
+
+impl<'a> Rows<'a> {
+    /// Goes to the first sample.
+    ///
+    /// # Errors
+    /// A file that can't be read any more.
+    pub(super) fn new(files: &'a Files) -> Result<Self, Error> {
+        Ok(Self {
+            files,
+            joined: Joined::new(files)?,
+            resampled: files.resampled(None),
+            times: None,
+            values: vec![0.0; files.width()],
+            samples: 0,
+            left_out: 0,
+        })
+    }
+
+    /// Whether nothing more can be read.
+    pub(super) const fn has_ended(&self) -> bool {
+        // What is resampled is read ahead.
+        self.joined.has_ended && self.resampled.is_none()
+    }
+
+    /// Appends the next sample; `false` at the end.
+    ///
+    /// # Errors
+    /// Every cell of the row that is no finite number, a file that can't be read on or that ends before
+    /// the others.
+    pub(super) fn next(&mut self, samples: &mut Samples) -> Result<bool, Error> {
+        loop {
+            let step = match self.files.resample {
+                None => self.joined.advance(&mut self.values, None),
+                Some((rate, _)) => self.uniform(rate),
+            };
+            match step? {
+                Step::End => return Ok(false),
+                Step::Row => break,
+                Step::Outside => self.left_out += 1,
+            }
+        }
+        self.samples += 1;
+        self.take(samples)?;
+        Ok(true)
+    }
+
+    /// Reads the row at the next uniform time.
+    fn uniform(&mut self, rate: f64) -> Result<Step, Error> {
+        let joined = &mut self.joined;
+        let times = match (self.times, &mut self.resampled) {
+            (Some(times), _) => Some(times),
+            (None, None) => {
+                let begin = joined.begin(rate)?;
+                begin.map(|(start, next)| Uniform { rate, start, next })
+            }
+            (None, Some(resampled)) => {
+                let begin = resampled.begin(&mut |row| joined.next(row))?;
+                let first = resampled.range().map(|(first, _)| first);
+                begin.zip(first).map(|(begin, start)| Uniform {
+                    rate,
+                    start,
+                    next: steps(start, begin, rate),
+                })
+            }
+        };
+        let Some(times) = times else {
+            return Ok(Step::End);
+        };
+        self.times = Some(Uniform {
+            next: times.next + 1,
+            ..times
+        });
+        let time = times.start + times.next as f64 / times.rate;
+        let Some(resampled) = &mut self.resampled else {
+            return joined.advance(&mut self.values, Some(time));
+        };
+        let place = resampled.at(&mut |row| joined.next(row), time, &mut self.values);
+        Ok(match place? {
+            Place::Inside => Step::Row,
+            Place::Before => Step::Outside,
+            Place::Behind => Step::End,
+        })
+    }
+
+    /// Appends the numbers of a row to `samples`.
+    fn take(&self, samples: &mut Samples) -> Result<(), Error> {
+        let n = self.files.actuators;
+        let values = self.files.signals.values(&self.values);
+        let mut finite = true;
+        let mut values = values.inspect(|value| finite &= value.is_finite());
+        samples.positions.extend(values.by_ref().take(n));
+        samples.torques.extend(values.by_ref().take(n));
+        samples.velocities.extend(values);
+        if let Some(transmission) = &self.files.transmission {
+            transmission.to_joints(samples);
+        }
+        if finite {
+            return Ok(());
+        }
+        let text = self.files.signals.not_finite(&self.values);
+        let text = text.unwrap_or_default();
+        let message = format!(
+            "sample {}: `{text}` is not a finite number",
+            self.samples - 1
+        );
+        let problem = Problem::new(message).file(self.files.name()).column(text);
+        Err(match self.line() {
+            Some(line) => problem.line(line),
+            None => problem,
+        }
+        .into())
+    }
+
+    /// What is said at the end of files that have no time in common.
+    pub(super) fn apart(&self) -> Option<Problem> {
+        if self.samples > 0 {
+            return None;
+        }
+        self.joined.apart()
+    }
+
+    /// What is said if the last row has, in another file, a time that is off by half a `step` or more.
+    pub(super) fn other_time(&self, step: f64) -> Option<Problem> {
+        let mut times = self.files.signals.times(&self.values);
+        let first = times.next()?;
+        let other = times.find(|time| (time - first).abs() > 0.5 * step.abs())?;
+        let message = format!(
+            "sample {}: the time is {first} s in one file and {other} s in another one",
+            self.samples - 1
+        );
+        let problem = Problem::new(message).file(self.files.name());
+        Some(problem.help(
+            "files are joined sample by sample: cut them to the same samples, or take one of the times, `file1.NAME`",
+        ))
+    }
+
+    /// Line of the last sample, where the run is one file that has lines.
+    pub(super) fn line(&self) -> Option<usize> {
+        match &self.joined.parts[..] {
+            [part] if self.files.resample.is_none() => part.rows.line(),
+            _ => None,
+        }
+    }
+
+    /// Bytes of all files that have been read.
+    pub(super) fn bytes(&self) -> u64 {
+        self.joined.parts.iter().map(|part| part.rows.bytes()).sum()
+    }
+}

@@ -1,0 +1,170 @@
+//! The same log in every format gives the same numbers: as NumPy, SciPy, PyArrow, h5py, mcap and rosbags wrote it
+//! (`written/same_log.py`), kept here, and written anew by them where Python has them.
+
+mod common;
+#[path = "common/drive.rs"]
+mod drive;
+
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use common::EMPS;
+use overact::Model;
+use overact_identification::{Gain, Log, Mapping, Time, data::read};
+
+/// Two joints, with velocities.
+fn mapping(time: &str, [positions, velocities, torques]: [[&str; 2]; 3]) -> Mapping {
+    let names = |names: [&str; 2]| names.map(str::to_owned).to_vec();
+    Mapping {
+        time: Time::Column(time.to_owned()),
+        positions: names(positions),
+        torques: names(torques),
+        velocities: names(velocities),
+        position_scale: vec![1.0; 2],
+        torque_gain: vec![Gain::Value(1.0); 2],
+        ..Mapping::for_robot(&EMPS.info())
+    }
+}
+
+fn matrices(prefix: &str) -> Mapping {
+    let names =
+        ["q", "dq", "tau"].map(|name| [1, 2].map(|column| format!("{prefix}{name}(:,{column})")));
+    let names = names
+        .each_ref()
+        .map(|two| two.each_ref().map(String::as_str));
+    mapping(&format!("{prefix}t"), names)
+}
+
+/// The files of every format that this build reads, each with what its columns are called.
+fn files() -> Vec<(&'static str, Mapping)> {
+    let flat = [["q1", "q2"], ["dq1", "dq2"], ["tau1", "tau2"]];
+    let numbered = [["$2", "$3"], ["$4", "$5"], ["$6", "$7"]];
+    let mut files = vec![
+        ("same.npy", mapping("$1", numbered)),
+        ("same.npz", matrices("")),
+        ("same.mat", matrices("")),
+        ("same.parquet", mapping("t", flat)),
+    ];
+    if cfg!(feature = "hdf5") {
+        files.push(("same.h5", matrices("run.")));
+        files.push(("same.h5", matrices("/run/")));
+        files.push(("same_v73.mat", matrices("")));
+        let mut inside = matrices("");
+        inside.positions = ["data.q(:,1)", "gain/2*data.q(:,2)"]
+            .map(String::from)
+            .to_vec();
+        inside.torque_gain[0] = Gain::Variable(String::from("gain"));
+        inside.torques[0] = String::from("tau(:,1)/2");
+        files.push(("same_v73.mat", inside));
+    }
+    if cfg!(feature = "mcap") {
+        let joints = |topics: [&str; 3]| {
+            let lists = ["position", "velocity", "effort"];
+            let mut names = [const { [const { String::new() }; 2] }; 3];
+            for ((names, topic), list) in names.iter_mut().zip(topics).zip(lists) {
+                *names = ["shoulder", "elbow"].map(|joint| format!("{topic}{list}.{joint}"));
+            }
+            names
+        };
+        let called = |time: &str, topics| {
+            let names = joints(topics);
+            mapping(
+                time,
+                names
+                    .each_ref()
+                    .map(|two| two.each_ref().map(String::as_str)),
+            )
+        };
+        for name in [
+            "same_lz4.mcap",
+            "same_rosbags.mcap",
+            "same_zstd.mcap",
+            "same_plain.mcap",
+        ] {
+            files.push((name, called("time", [""; 3])));
+            files.push((name, called("log_time", [""; 3])));
+        }
+        let topics = ["/joint_states.", "/joint_states.", "/torques."];
+        files.push(("same_zstd.mcap", called("time", topics)));
+    }
+    files
+}
+
+fn is_the_log(log: &Log, name: &str) {
+    let mut reader = log
+        .reader()
+        .unwrap_or_else(|error| panic!("{name}: {error}"));
+    let block = reader.next().expect("a block").expect("samples");
+    assert_eq!((log.samples(), log.note()), (200, None), "{name}");
+    assert!((log.sampling_frequency() - 100.0).abs() < 1e-6, "{name}");
+    for k in 0..200_u32 {
+        let at = |numbers: &[f64]| [numbers[2 * k as usize], numbers[2 * k as usize + 1]];
+        let number = f64::from(k);
+        let position = [number * number / 7.0, f64::from(k % 13) / 3.0];
+        let velocity = [number / 9.0, f64::from(k % 5) / 11.0];
+        let effort = [f64::from(k % 16) / 3.0, -number / 17.0];
+        assert_eq!(at(&block.positions), position, "{name}, sample {k}");
+        assert_eq!(at(&block.velocities), velocity, "{name}, sample {k}");
+        assert_eq!(at(&block.torques), effort, "{name}, sample {k}");
+    }
+}
+
+fn all_are_the_log(folder: &Path) {
+    for (name, mapping) in files() {
+        let log = read(&folder.join(name), &mapping, false);
+        is_the_log(&log.unwrap_or_else(|error| panic!("{error}")), name);
+    }
+}
+
+fn kept() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/written")
+}
+
+#[test]
+fn every_format_gives_the_same_numbers() {
+    all_are_the_log(&kept());
+}
+
+#[test]
+fn every_format_written_anew_gives_the_same_numbers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let python = std::env::var("OVERACT_PYTHON").unwrap_or_else(|_| String::from("python3"));
+    let output = Command::new(python)
+        .arg(kept().join("same_log.py"))
+        .arg(folder.path())
+        .output();
+    let Ok(output) = output else {
+        eprintln!("skipped: there is no Python here");
+        return;
+    };
+    let told = String::from_utf8_lossy(&output.stderr);
+    if told.contains("ModuleNotFoundError") {
+        eprintln!("skipped: {}", told.lines().last().unwrap_or_default());
+        return;
+    }
+    assert!(output.status.success(), "{told}");
+    all_are_the_log(folder.path());
+}
+
+#[cfg(not(feature = "mcap"))]
+#[test]
+fn a_file_of_a_feature_is_named_with_it() {
+    for (name, feature) in [
+        ("same_lz4.mcap", "mcap"),
+        ("same.h5", "hdf5"),
+        ("same_v73.mat", "hdf5"),
+    ] {
+        if feature == "hdf5" && cfg!(feature = "hdf5") {
+            continue;
+        }
+        let told = read(&kept().join(name), &matrices(""), false).expect_err(name);
+        let told = told.to_string();
+        assert!(
+            told.contains("which this build of overact does not read"),
+            "{told}"
+        );
+        assert!(told.contains(&format!("--features {feature}")), "{told}");
+    }
+}
