@@ -77,5 +77,6 @@ fn derived(
         mechanism,
         selection,
         base,
+        forward_kinematics: true,
     })
 }

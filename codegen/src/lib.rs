@@ -16,11 +16,12 @@
 //! | [`derivation`] | mechanism | expressions of the algebra `cas` |
 //! | `selection` | regressor | its form, and its present, independent and combined columns |
 //! | [`lowering`] | expressions | a straight-line program with its operation count |
-//! | [`emission`] | programs | Rust |
+//! | [`emission`], [`c`] | programs | Rust, C |
 //! | [`evaluation`] | programs | numbers, block by block |
 //!
 //! The crate is pure: text in, model or diagnostics out.
 
+pub mod c;
 #[allow(unreachable_pub, reason = "public to the stages that stand above")]
 mod cas;
 mod checked;
@@ -39,6 +40,8 @@ mod model;
 mod parallel;
 mod request;
 mod selection;
+#[allow(unreachable_pub, reason = "public to the languages that stand above")]
+mod writing;
 
 pub use checked::{Checked, check};
 pub use compile::{Compiled, compile, compile_with, model_with};

@@ -50,6 +50,8 @@ pub struct RobotModel {
     pub base: Vec<BaseParameter>,
     /// All functions.
     pub functions: Vec<CompiledFunction>,
+    /// Whether generated code has forward kinematics, `pose_from_actuators`.
+    pub forward_kinematics: bool,
 }
 
 impl RobotModel {

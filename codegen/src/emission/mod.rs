@@ -5,31 +5,22 @@
 //! nothing is unsafe; a singular configuration is an error that names the leg. Paths are absolute, for the
 //! code stands in scopes that are not ours.
 //!
-//! The code is to be read beside the paper: values have `names`, constants of the description theirs
-//! (`dimensions`), the `legend` in the type's documentation says what they mean, and `layout` puts
-//! headings over the sections of a body.
+//! The code is to be read beside the paper: `writing` names its values and explains the names in the type's
+//! documentation, and `layout` puts headings over the sections of a body.
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
 
-mod angles;
 mod boundary;
 mod constants;
-mod dimensions;
 mod expression;
 mod function;
 mod inverse;
-mod labels;
 mod layout;
-mod legend;
 mod model_impl;
-mod names;
-#[cfg(test)]
-mod tests;
-mod text;
 
 use crate::model::RobotModel;
+use crate::writing::{labels::Labels, legend, text};
 use function::Item;
-use labels::Labels;
 use layout::Sections;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
