@@ -25,6 +25,7 @@ pub mod c;
 #[allow(unreachable_pub, reason = "public to the stages that stand above")]
 mod cas;
 mod checked;
+mod choice;
 mod compile;
 pub mod derivation;
 pub mod description;
@@ -44,6 +45,7 @@ mod selection;
 mod writing;
 
 pub use checked::{Checked, check};
+pub use choice::{Choice, Group, UnknownFunction, serves_model};
 pub use compile::{Compiled, compile, compile_with, model_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use effort::Effort;

@@ -52,6 +52,8 @@ pub struct RobotModel {
     pub functions: Vec<CompiledFunction>,
     /// Whether generated code has forward kinematics, `pose_from_actuators`.
     pub forward_kinematics: bool,
+    /// Whether no function was left out that `overact::Model` is asked for.
+    pub is_model: bool,
 }
 
 impl RobotModel {

@@ -5,11 +5,13 @@ mod module;
 use crate::{
     effort,
     failure::{Failure, Problem},
+    functions,
     note::{tell_doubts, tell_note},
     output::{self, json, print, write},
     progress::Progress,
 };
 use module::Module;
+use overact_codegen::{Choice, Request};
 use overact_robot::CompiledFile;
 use std::{
     fs,
@@ -37,6 +39,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "TOML")]
     parameters: Option<PathBuf>,
     #[command(flatten)]
+    functions: functions::Arguments,
+    #[command(flatten)]
     effort: effort::Arguments,
 }
 
@@ -62,10 +66,11 @@ impl Arguments {
 
     /// The options that say what is written, as they stand behind the description.
     fn options(&self) -> String {
-        match self.lang {
-            Language::Rust => String::new(),
-            Language::C => " --lang c".to_owned(),
-        }
+        let language = match self.lang {
+            Language::Rust => "",
+            Language::C => " --lang c",
+        };
+        format!("{language}{}", self.functions.words())
     }
 
     /// What of the arguments does not go together.
@@ -113,7 +118,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             .filter_map(|file| module::rust_file(file, arguments));
         outputs.try_for_each(|output| output::check_distinct(&inputs, &[&output]))?;
     }
-    let robots = load_all(arguments, as_json)?;
+    let choice = arguments.functions.choice()?;
+    let robots = load_all(arguments, choice.as_ref(), as_json)?;
     let modules: Vec<Module> = robots
         .iter()
         .zip(&arguments.files)
@@ -155,13 +161,20 @@ fn write_all(modules: &[Module], inputs: &[&Path], arguments: &Arguments) -> Res
     write(contents.collect())
 }
 
-fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<CompiledFile>, Failure> {
+fn load_all(
+    arguments: &Arguments,
+    choice: Option<&Choice>,
+    as_json: bool,
+) -> Result<Vec<CompiledFile>, Failure> {
     let (mut good, mut bad) = (Vec::new(), Vec::new());
     let count = arguments.files.len();
     let bar = Progress::new("generating", as_json);
     for (at, file) in arguments.files.iter().enumerate() {
         bar.at(at as f64 / count as f64, &file.display().to_string());
-        let request = arguments.effort.request();
+        let request = Request {
+            functions: choice,
+            ..arguments.effort.request()
+        };
         let compiled = match &arguments.parameters {
             Some(parameters) => CompiledFile::with_parameters(file, parameters, &request),
             None => CompiledFile::read(file, &request),
