@@ -12,11 +12,9 @@ fn quick<'a>(more: &[&'a str]) -> Vec<&'a str> {
 /// A bench with a short serial robot that is called `name`.
 fn bench(name: &str) -> Bench {
     Bench::with("serial-2r", |text| {
-        let named = |line: &str| match line.starts_with("name = ") {
-            true => format!("name = \"{name}\"\n"),
-            false => format!("{line}\n"),
-        };
-        text.lines().map(named).collect()
+        let (first, rest) = text.split_once("\nname = ").expect("a name");
+        let (_, rest) = rest.split_once('\n').expect("more lines");
+        format!("{first}\nname = \"{name}\"\n{rest}")
     })
 }
 
@@ -246,7 +244,7 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
     ] {
         assert!(said.contains(words), "no `{words}` in\n{said}");
     }
-    bench.write("parameters.toml", "");
+    bench.write("parameters.toml", "[parameters]\nm_2 = 1.0\n");
     let told = [
         "--functions",
         "idm_red_platform",

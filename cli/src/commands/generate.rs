@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "TOML")]
     pub(super) files: Vec<PathBuf>,
     /// A file for one robot, or a folder for `<description>.rs` of each; of C a folder for `<robot>.h` and
-    /// `<robot>.c` of each
+    /// `<robot>.c` of each; `-` is standard output
     #[arg(short, long, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
     /// The language: Rust, or C99 that needs `math.h` alone
@@ -54,6 +54,12 @@ enum Language {
 }
 
 impl Arguments {
+    /// The file or folder of the output; `-` is standard output.
+    fn output(&self) -> Option<&Path> {
+        let output = self.output.as_deref();
+        output.filter(|output| *output != Path::new("-"))
+    }
+
     /// Whether the output is a folder: it is one already, is written like one, or must hold several
     /// files.
     fn is_folder(&self, output: &Path) -> bool {
@@ -88,7 +94,11 @@ impl Arguments {
             let message = "parameters are those of one description: generate one at a time";
             return Some(message.to_owned());
         }
-        let extension = self.output.as_ref().and_then(|output| output.extension());
+        if self.check && self.output().is_none() {
+            let message = "--check compares with files: give the file or folder, `-o FILE|FOLDER`";
+            return Some(message.to_owned());
+        }
+        let extension = self.output().and_then(Path::extension);
         let is_file =
             extension.is_some_and(|e| ["c", "h"].iter().any(|c| e.eq_ignore_ascii_case(c)));
         if self.lang == Language::C && is_file {
@@ -128,14 +138,14 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     module::distinct(&modules)?;
     if arguments.check {
         module::compare(&modules)?;
-    } else if arguments.output.is_some() {
+    } else if arguments.output().is_some() {
         write_all(&modules, &inputs, arguments)?;
     }
     if as_json {
         let documents: Vec<_> = modules.iter().map(Module::document).collect();
         return print(&json(&serde_json::json!({ "robots": documents }))?);
     }
-    if arguments.output.is_none() {
+    if arguments.output().is_none() {
         return print(&modules.iter().map(Module::text).collect::<String>());
     }
     let what = match arguments.check {
@@ -196,7 +206,7 @@ fn load_all(
 }
 
 fn make_folder(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.output {
+    match arguments.output() {
         Some(output) if arguments.is_folder(output) => {
             fs::create_dir_all(output).map_err(|error| {
                 let problem = Problem::new(format!("the folder can't be made: {error}"));

@@ -170,6 +170,8 @@ fn text(stem: &str, calls: &[Call]) -> Result<String, Failure> {
     };
     text += &table("in_length", calls.iter().map(length).collect());
     text += &table("out_length", calls.iter().map(|call| call.output).collect());
+    let partition = calls.iter().find(|call| call.name == "partition");
+    text += &partition.map_or(String::new(), |call| crate::partition::wrapper(stem, call));
     text += "\nstatic int call(int number)\n{\n    switch (number) {\n";
     for (number, call) in calls.iter().enumerate() {
         let mut at = 0;
@@ -180,10 +182,13 @@ fn text(stem: &str, calls: &[Call]) -> Result<String, Failure> {
         }
         arguments.push("out".to_owned());
         let (name, arguments) = (&call.name, arguments.join(", "));
-        writeln!(
-            text,
-            "    case {number}: return (int){stem}_{name}({arguments});"
-        )?;
+        match call.name == "partition" {
+            true => writeln!(text, "    case {number}: return partition();")?,
+            false => writeln!(
+                text,
+                "    case {number}: return (int){stem}_{name}({arguments});"
+            )?,
+        }
     }
     write!(
         text,

@@ -59,11 +59,10 @@ pub(crate) fn calls(model: &RobotModel) -> Vec<(Call, Vec<String>)> {
     let mut calls: Vec<_> = functions
         .map(|f| call(&f.name, arguments(model, f), f.program.entries.len()))
         .collect();
-    calls.push(call(
-        FORWARD,
-        forward_arguments(model),
-        model.mechanism.pose_len(),
-    ));
+    if model.forward_kinematics {
+        let length = model.mechanism.pose_len();
+        calls.push(call(FORWARD, forward_arguments(model), length));
+    }
     calls
 }
 

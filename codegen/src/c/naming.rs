@@ -224,7 +224,15 @@ const MACROS: &[&str] = &[
 const MACRO_FAMILIES: [&str; 7] = ["FLT_", "FP_", "HUGE", "MATH_", "M_", "DBL_", "SNAN"];
 
 /// What the generated code calls by names of its own.
-const OWN: &[&str] = &["error", "found_joints", "found_pose", "output", "unit_pose"];
+const OWN: &[&str] = &[
+    "error",
+    "found_joints_error",
+    "found_pose_error",
+    "found_joints",
+    "found_pose",
+    "output",
+    "unit_pose",
+];
 
 impl Naming {
     /// The names of a robot that is called `name`.

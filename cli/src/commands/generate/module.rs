@@ -55,7 +55,7 @@ impl Module {
                 let part = |extension: &str, code: String| {
                     let name = format!("{}.{extension}", files.stem);
                     Part {
-                        file: arguments.output.as_ref().map(|folder| folder.join(&name)),
+                        file: arguments.output().map(|folder| folder.join(&name)),
                         name,
                         code,
                     }
@@ -114,10 +114,10 @@ impl Module {
 
 /// The file of a description's Rust module, where there is one.
 pub(super) fn rust_file(description: &Path, arguments: &Arguments) -> Option<PathBuf> {
-    let output = arguments.output.as_ref()?;
+    let output = arguments.output()?;
     Some(match arguments.is_folder(output) {
         true => output.join(format!("{}.rs", module_name(description))),
-        false => output.clone(),
+        false => output.to_owned(),
     })
 }
 
