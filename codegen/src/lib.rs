@@ -41,7 +41,6 @@ mod model;
 mod parallel;
 mod request;
 mod selection;
-#[allow(unreachable_pub, reason = "public to the languages that stand above")]
 mod writing;
 
 pub use checked::{Checked, check};

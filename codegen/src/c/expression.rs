@@ -6,7 +6,8 @@ use super::naming::Naming;
 use super::tables::number;
 use crate::lowering::{Array, Condition};
 use crate::model::RobotModel;
-use crate::writing::body::{Binding, Body, Call, Expression, Operator, Pair, Statement};
+use crate::writing::body::Body;
+use crate::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
 use overact_core::SINGULAR;
 
 /// How far a function's body is indented.

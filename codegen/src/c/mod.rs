@@ -17,7 +17,7 @@
 //! | `tables` | sizes, names and home configuration |
 //! | `function` | documentation, signature and body of a function |
 //! | `expression` | statements and expressions |
-//! | `runtime`, `iteration` | what Rust has from the runtime crate |
+//! | `runtime`, `iteration` | what Rust has from the runtime crate; its C stands in `text/` |
 //! | `lines` | line breaks, comments, strings |
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]

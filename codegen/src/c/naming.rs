@@ -12,227 +12,43 @@ pub struct Naming {
 }
 
 /// Standard headers, and names of devices that are no files on some systems.
-const NO_FILES: &[&str] = &[
-    "assert",
-    "aux",
-    "complex",
-    "con",
-    "ctype",
-    "errno",
-    "fenv",
-    "float",
-    "inttypes",
-    "iso646",
-    "limits",
-    "locale",
-    "math",
-    "nul",
-    "prn",
-    "setjmp",
-    "signal",
-    "stdalign",
-    "stdarg",
-    "stdatomic",
-    "stdbool",
-    "stddef",
-    "stdint",
-    "stdio",
-    "stdlib",
-    "stdnoreturn",
-    "string",
-    "tgmath",
-    "threads",
-    "time",
-    "uchar",
-    "wchar",
-    "wctype",
-];
+const NO_FILES: &str = "\
+    assert aux complex con ctype errno fenv float inttypes iso646 limits locale math nul prn \
+    setjmp signal stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn \
+    string tgmath threads time uchar wchar wctype";
 
 /// What functions of the C library begin with, also those of the future (C99, 7.26).
 const LIBRARY: [&str; 5] = ["is", "mem", "str", "to", "wcs"];
 
 /// Words of C up to C23, and names that a compiler may define.
-const WORDS: &[&str] = &[
-    "alignas",
-    "alignof",
-    "asm",
-    "auto",
-    "bool",
-    "break",
-    "case",
-    "char",
-    "const",
-    "constexpr",
-    "continue",
-    "default",
-    "do",
-    "double",
-    "else",
-    "enum",
-    "errno",
-    "extern",
-    "false",
-    "far",
-    "float",
-    "for",
-    "fortran",
-    "goto",
-    "huge",
-    "i386",
-    "if",
-    "inline",
-    "int",
-    "interrupt",
-    "linux",
-    "long",
-    "main",
-    "near",
-    "nullptr",
-    "register",
-    "restrict",
-    "return",
-    "short",
-    "signed",
-    "sizeof",
-    "static",
-    "static_assert",
-    "struct",
-    "switch",
-    "thread_local",
-    "true",
-    "typedef",
-    "typeof",
-    "typeof_unqual",
-    "union",
-    "unix",
-    "unsigned",
-    "void",
-    "volatile",
-    "while",
-];
+const WORDS: &str = "\
+    alignas alignof asm auto bool break case char const constexpr continue default do double \
+    else enum errno extern false far float for fortran goto huge i386 if inline int interrupt \
+    linux long main near nullptr register restrict return short signed sizeof static \
+    static_assert struct switch thread_local true typedef typeof typeof_unqual union unix \
+    unsigned void volatile while";
 
 /// Functions of `math.h`, those of POSIX included; each also with `f` and `l` at its end.
-const MATH: &[&str] = &[
-    "acos",
-    "acosh",
-    "asin",
-    "asinh",
-    "atan",
-    "atan2",
-    "atanh",
-    "cbrt",
-    "ceil",
-    "copysign",
-    "cos",
-    "cosh",
-    "drem",
-    "erf",
-    "erfc",
-    "exp",
-    "exp10",
-    "exp2",
-    "expm1",
-    "fabs",
-    "fdim",
-    "finite",
-    "floor",
-    "fma",
-    "fmax",
-    "fmin",
-    "fmod",
-    "fpclassify",
-    "frexp",
-    "gamma",
-    "hypot",
-    "ilogb",
-    "isfinite",
-    "isgreater",
-    "isgreaterequal",
-    "isinf",
-    "isless",
-    "islessequal",
-    "islessgreater",
-    "isnan",
-    "isnormal",
-    "isunordered",
-    "j0",
-    "j1",
-    "jn",
-    "ldexp",
-    "lgamma",
-    "llrint",
-    "llround",
-    "log",
-    "log10",
-    "log1p",
-    "log2",
-    "logb",
-    "lrint",
-    "lround",
-    "modf",
-    "nan",
-    "nearbyint",
-    "nextafter",
-    "nexttoward",
-    "pow",
-    "pow10",
-    "remainder",
-    "remquo",
-    "rint",
-    "round",
-    "scalb",
-    "scalbln",
-    "scalbn",
-    "signbit",
-    "signgam",
-    "significand",
-    "sin",
-    "sincos",
-    "sinh",
-    "sqrt",
-    "tan",
-    "tanh",
-    "tgamma",
-    "trunc",
-    "y0",
-    "y1",
-    "yn",
-];
+const MATH: &str = "\
+    acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh drem erf erfc exp exp10 \
+    exp2 expm1 fabs fdim finite floor fma fmax fmin fmod fpclassify frexp gamma hypot ilogb \
+    isfinite isgreater isgreaterequal isinf isless islessequal islessgreater isnan isnormal \
+    isunordered j0 j1 jn ldexp lgamma llrint llround log log10 log1p log2 logb lrint lround \
+    modf nan nearbyint nextafter nexttoward pow pow10 remainder remquo rint round scalb \
+    scalbln scalbn signbit signgam significand sin sincos sinh sqrt tan tanh tgamma trunc y0 \
+    y1 yn";
 
 /// Macros of `math.h`, and of what it may include.
-const MACROS: &[&str] = &[
-    "DOMAIN",
-    "EDOM",
-    "EOF",
-    "ERANGE",
-    "INFINITY",
-    "MAXFLOAT",
-    "NAN",
-    "NULL",
-    "OVERFLOW",
-    "PLOSS",
-    "SING",
-    "TLOSS",
-    "UNDERFLOW",
-    "X_TLOSS",
-    "double_t",
-    "float_t",
-    "math_errhandling",
-];
+const MACROS: &str = "\
+    DOMAIN EDOM EOF ERANGE INFINITY MAXFLOAT NAN NULL OVERFLOW PLOSS SING TLOSS UNDERFLOW \
+    X_TLOSS double_t float_t math_errhandling";
 
 /// What other macros of `math.h` begin with.
 const MACRO_FAMILIES: [&str; 7] = ["FLT_", "FP_", "HUGE", "MATH_", "M_", "DBL_", "SNAN"];
 
 /// What the generated code calls by names of its own.
-const OWN: &[&str] = &[
-    "error",
-    "found_joints_error",
-    "found_pose_error",
-    "found_joints",
-    "found_pose",
-    "output",
-    "unit_pose",
-];
+const OWN: &str = "\
+    error found_joints_error found_pose_error found_joints found_pose output unit_pose";
 
 impl Naming {
     /// The names of a robot that is called `name`.
@@ -243,7 +59,7 @@ impl Naming {
             let rest = snake.strip_prefix(begin);
             rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_lowercase()))
         });
-        let prefix = match is_library || NO_FILES.contains(&snake.as_str()) {
+        let prefix = match is_library || holds(NO_FILES, &snake) {
             true => format!("robot_{snake}"),
             false => snake,
         };
@@ -275,16 +91,21 @@ impl Naming {
     #[must_use]
     pub fn is_reserved(&self, name: &str) -> bool {
         let stem = name.strip_suffix(['f', 'l']).unwrap_or(name);
-        let is_math = MATH.contains(&name) || MATH.contains(&stem);
+        let is_math = holds(MATH, name) || holds(MATH, stem);
         let own = format!("{}_", self.prefix);
         is_math
-            || WORDS.contains(&name)
-            || MACROS.contains(&name)
-            || OWN.contains(&name)
+            || holds(WORDS, name)
+            || holds(MACROS, name)
+            || holds(OWN, name)
             || name.starts_with('_')
             || MACRO_FAMILIES.iter().any(|begin| name.starts_with(begin))
             || name.to_ascii_lowercase().starts_with(&own)
     }
+}
+
+/// Whether a word is in a list.
+fn holds(list: &str, word: &str) -> bool {
+    list.split_ascii_whitespace().any(|one| one == word)
 }
 
 /// `FiveBar` is `five_bar`, `DualV` is `dualv`: a word begins with a capital before a small letter.

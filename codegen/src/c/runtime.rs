@@ -4,85 +4,11 @@
 //!
 //! In the texts `rob_` and `ROB_` stand for the robot's prefix. Each is written where it is called.
 
-const IS_FINITE: &str = "\
-/* Whether all numbers are finite. */
-static int rob_is_finite(const double *values, int count)
-{
-    int finite = 1;
-    for (int i = 0; i < count; i++) {
-        if (!isfinite(values[i])) {
-            finite = 0;
-        }
-    }
-    return finite;
-}
-";
-
-const UNIT_QUATERNION: &str = "\
-/* Copies a pose with its quaternion scaled to length 1; 0 if the quaternion is zero. */
-static int rob_unit_quaternion(const double *pose, double *unit)
-{
-    double *const q = &unit[ROB_POSE - 4];
-    double square = 0.0;
-    int is_rotation = 1;
-    for (int i = 0; i < ROB_POSE; i++) {
-        unit[i] = pose[i];
-    }
-    square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    if (fabs(square - 1.0) > 1e-8) {
-        /* The largest number is scaled to 1 first, so that squares are neither too small nor too large. */
-        double largest = 0.0;
-        for (int i = 0; i < 4; i++) {
-            largest = (fabs(q[i]) > largest) ? fabs(q[i]) : largest;
-        }
-        if (largest > 0.0) {
-            double sum = 0.0;
-            for (int i = 0; i < 4; i++) {
-                q[i] /= largest;
-                sum += q[i] * q[i];
-            }
-            sum = sqrt(sum);
-            for (int i = 0; i < 4; i++) {
-                q[i] /= sum;
-            }
-        } else {
-            is_rotation = 0;
-        }
-    } else {
-        /* Mostly the length is 1 but for rounding; one over its root is (3 - square)/2 then. */
-        const double scale = 1.5 - 0.5 * square;
-        for (int i = 0; i < 4; i++) {
-            q[i] *= scale;
-        }
-    }
-    return is_rotation;
-}
-";
-
-const SIGN: &str = "\
-/* Sign of a velocity as Coulomb friction wants it: -1, 0 or 1. */
-static double rob_sign(double velocity)
-{
-    return (double)((velocity > 0.0) - (velocity < 0.0));
-}
-";
-
-const SIGNED: &str = "\
-/* A value with the sign of a velocity: a product, as a selection would be a branch that is often guessed wrong. */
-static double rob_signed(double value, double velocity)
-{
-    return value * rob_sign(velocity);
-}
-";
-
-const WRAP_ANGLE: &str = "\
-/* The angle nearest to zero that differs from another one by whole turns. */
-static double rob_wrap_angle(double angle)
-{
-    return (fabs(angle) <= 3.141592653589793) ? angle : atan2(sin(angle), cos(angle));
-}
-";
-
+const IS_FINITE: &str = include_str!("text/is_finite.c");
+const UNIT_QUATERNION: &str = include_str!("text/unit_quaternion.c");
+const SIGN: &str = include_str!("text/sign.c");
+const SIGNED: &str = include_str!("text/signed.c");
+const WRAP_ANGLE: &str = include_str!("text/wrap_angle.c");
 /// All, each behind those that it calls, with the name that it is called by.
 const ALL: [(&str, &str); 5] = [
     ("is_finite(", IS_FINITE),

@@ -1,7 +1,8 @@
 //! The body of a function as tokens.
 
 use crate::lowering::{Array, Condition};
-use crate::writing::body::{Binding, Body, Call, Expression, Operator, Pair, Statement};
+use crate::writing::body::Body;
+use crate::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
 use overact_core::ActuatorGroup;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
