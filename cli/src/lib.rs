@@ -9,6 +9,7 @@
 //! - [`drawing`]: a robot as SVG;
 //! - `guarded`: a defect of the program is told as such;
 //! - `effort`: how hard the generator searches;
+//! - `functions`: which functions are generated;
 //! - `names`: names of results in names of files;
 //! - `note`: what a description says that may not be meant;
 //! - `report`: an identification as a page, a document or a flat table;
@@ -18,6 +19,7 @@ mod commands;
 pub mod drawing;
 mod effort;
 pub mod failure;
+mod functions;
 mod guarded;
 mod names;
 mod note;

@@ -1,5 +1,6 @@
 //! The stages of the generator, in order.
 
+use crate::choice::Chosen;
 use crate::derivation::{Underivable, inventory};
 use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
@@ -63,12 +64,18 @@ fn derived(
         selection: &selection,
         search: &Search::with(effort, &mechanism),
     };
-    let mut wanted = inventory(&mechanism, selection.joints);
-    wanted.retain(|&(function, from)| {
-        let is_told = selection.values.is_some() && function.columns().is_some();
-        !is_told && (request.wanted)(&mechanism, function, from)
+    let mut offered = inventory(&mechanism, selection.joints);
+    offered.retain(|(function, _)| selection.values.is_none() || function.columns().is_none());
+    let chosen = match request.functions {
+        Some(choice) => choice
+            .of_robot(&mechanism, selection.joints, &offered)
+            .map_err(Underivable::NotOffered)?,
+        None => Chosen::all(&offered),
+    };
+    offered.retain(|&(function, from)| {
+        chosen.functions.contains(&(function, from)) && (request.wanted)(&mechanism, function, from)
     });
-    let functions = parallel::map(&wanted, |&(function, from)| {
+    let functions = parallel::map(&offered, |&(function, from)| {
         let program = assembler.cheapest(function, from)?;
         Ok(CompiledFunction::new(&mechanism, function, from, program))
     });
@@ -77,5 +84,7 @@ fn derived(
         mechanism,
         selection,
         base,
+        forward_kinematics: chosen.forward,
+        is_model: chosen.is_model,
     })
 }

@@ -16,14 +16,16 @@
 //! | [`derivation`] | mechanism | expressions of the algebra `cas` |
 //! | `selection` | regressor | its form, and its present, independent and combined columns |
 //! | [`lowering`] | expressions | a straight-line program with its operation count |
-//! | [`emission`] | programs | Rust |
+//! | [`emission`], [`c`] | programs | Rust, C |
 //! | [`evaluation`] | programs | numbers, block by block |
 //!
 //! The crate is pure: text in, model or diagnostics out.
 
+pub mod c;
 #[allow(unreachable_pub, reason = "public to the stages that stand above")]
 mod cas;
 mod checked;
+mod choice;
 mod compile;
 pub mod derivation;
 pub mod description;
@@ -39,8 +41,10 @@ mod model;
 mod parallel;
 mod request;
 mod selection;
+mod writing;
 
 pub use checked::{Checked, check};
+pub use choice::{Choice, Group, UnknownFunction, serves_model};
 pub use compile::{Compiled, compile, compile_with, model_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use effort::Effort;

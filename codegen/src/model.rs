@@ -50,6 +50,10 @@ pub struct RobotModel {
     pub base: Vec<BaseParameter>,
     /// All functions.
     pub functions: Vec<CompiledFunction>,
+    /// Whether generated code has forward kinematics, `pose_from_actuators`.
+    pub forward_kinematics: bool,
+    /// Whether no function was left out that `overact::Model` is asked for.
+    pub is_model: bool,
 }
 
 impl RobotModel {

@@ -1,5 +1,6 @@
 //! What a user asks of the generator: which functions, and how much work fewer operations are worth.
 
+use crate::choice::Choice;
 use crate::derivation::MotionInput;
 use crate::effort::Effort;
 use crate::mechanism::Mechanism;
@@ -18,6 +19,9 @@ pub struct Request<'a> {
     pub otherwise: Effort,
     /// Which functions are derived: most of the time goes into one after the other.
     pub wanted: Wanted<'a>,
+    /// Functions that are chosen by name, where not all are wanted; what they call comes along. Generated code is
+    /// an `overact::Model` where all functions are among them that such a model is asked for.
+    pub functions: Option<&'a Choice>,
     /// Values of standard parameters by name (SI units), where they are known: the dynamics have them as
     /// constants, those that are missing as zero. Identification models, which tell them, are left out, and
     /// the code is no `overact::Model`.
@@ -30,6 +34,7 @@ impl Default for Request<'_> {
             effort: None,
             otherwise: Effort::Quick,
             wanted: &|_, _, _| true,
+            functions: None,
             parameters: None,
         }
     }

@@ -383,6 +383,13 @@ impl Function {
         (sizes.extent(entry.rows), columns)
     }
 
+    /// Rows and columns of the output in terms of the robot's sizes; a vector has no columns.
+    #[must_use]
+    pub const fn extents(self) -> (Extent, Option<Extent>) {
+        let entry = self.entry();
+        (entry.rows, entry.columns)
+    }
+
     /// Whether the output is a vector and not a matrix.
     #[must_use]
     pub const fn is_vector(self) -> bool {

@@ -9,7 +9,7 @@ mod newton;
 
 use names::Names;
 use overact::{
-    Columns, Error, Function, Info, Input, Model, SampleError,
+    Error, Function, Info, Input, Model, SampleError,
     block::samples,
     forward::{self, Measured},
     guard,
@@ -114,26 +114,7 @@ impl InterpretedRobot {
     /// model of these functions alone is compiled sooner; it does not offer the others.
     #[must_use]
     pub fn serves(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
-        let plain = match mechanism.platform {
-            Some(_) => MotionInput::Pose,
-            None => MotionInput::Joints,
-        };
-        match function {
-            Function::PoseInClosedForm => true,
-            Function::ClosureError | Function::LegsJacobian | Function::ClosureActuatorJacobian => {
-                from == MotionInput::Joints
-            }
-            Function::Jacobian
-            | Function::LegsPlatformJacobian
-            | Function::ClosurePlatformJacobian
-            | Function::IdmRedPlatform(Columns::Base)
-            | Function::IdmRedActuators(_)
-            | Function::IdmRedPayloadActuators
-            | Function::ProjectActuators
-            | Function::Bias
-            | Function::InverseDynamicsPreloaded => false,
-            _ => from == plain,
-        }
+        overact_codegen::serves_model(mechanism, function, from)
     }
 
     /// Whether a function serves to find pose and joints from what encoders read: those of `serves` that a

@@ -1,19 +1,21 @@
-//! `overact generate`: Rust source, one module per robot.
+//! `overact generate`: Rust or C, one module per robot.
+
+mod module;
 
 use crate::{
     effort,
     failure::{Failure, Problem},
+    functions,
     note::{tell_doubts, tell_note},
     output::{self, json, print, write},
     progress::Progress,
 };
-use overact_codegen::emission;
+use module::Module;
+use overact_codegen::{Choice, Request};
 use overact_robot::CompiledFile;
-use serde::Serialize;
 use std::{
-    collections::BTreeMap,
     fs,
-    path::{Component, Path, PathBuf},
+    path::{Path, PathBuf},
 };
 
 /// Arguments of the command.
@@ -22,9 +24,13 @@ pub(crate) struct Arguments {
     /// Descriptions
     #[arg(required = true, value_name = "TOML")]
     pub(super) files: Vec<PathBuf>,
-    /// A file for one robot, or a folder for `<description>.rs` of each
+    /// A file for one robot, or a folder for `<description>.rs` of each; of C a folder for `<robot>.h` and
+    /// `<robot>.c` of each; `-` is standard output
     #[arg(short, long, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
+    /// The language: Rust, or C99 that needs `math.h` alone
+    #[arg(long, value_enum, default_value_t = Language::Rust)]
+    lang: Language,
     /// Write nothing; fail if a file differs from what would be written
     #[arg(long, requires = "output")]
     check: bool,
@@ -33,22 +39,75 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "TOML")]
     parameters: Option<PathBuf>,
     #[command(flatten)]
+    functions: functions::Arguments,
+    #[command(flatten)]
     effort: effort::Arguments,
 }
 
-/// A robot's module.
-#[derive(Debug, Serialize)]
-struct Module {
-    robot: String,
-    description: String,
-    file: Option<PathBuf>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    source: Option<String>,
-    /// What stands behind `overact generate`.
-    #[serde(skip)]
-    arguments: String,
-    #[serde(skip)]
-    code: String,
+/// A language that robots are written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Language {
+    /// One module
+    Rust,
+    /// A header and a source file of C99
+    C,
+}
+
+impl Arguments {
+    /// The file or folder of the output; `-` is standard output.
+    fn output(&self) -> Option<&Path> {
+        let output = self.output.as_deref();
+        output.filter(|output| *output != Path::new("-"))
+    }
+
+    /// Whether the output is a folder: it is one already, is written like one, or must hold several
+    /// files.
+    fn is_folder(&self, output: &Path) -> bool {
+        let written = output.as_os_str().to_string_lossy();
+        output.is_dir()
+            || self.files.len() > 1
+            || written.ends_with(std::path::is_separator)
+            || self.lang == Language::C
+    }
+
+    /// The options that say what is written, as they stand behind the description.
+    fn options(&self) -> String {
+        let language = match self.lang {
+            Language::Rust => "",
+            Language::C => " --lang c",
+        };
+        format!("{language}{}", self.functions.words())
+    }
+
+    /// What of the arguments does not go together.
+    fn contradiction(&self, as_json: bool) -> Option<String> {
+        let is_printed = self.output.is_none() && !as_json;
+        if is_printed && self.lang == Language::C {
+            let message = "C is a header and a source file: add `-o FOLDER` to write them to";
+            return Some(message.to_owned());
+        }
+        if is_printed && self.files.len() > 1 {
+            let message = "several descriptions need a folder to write to: add `-o FOLDER`";
+            return Some(message.to_owned());
+        }
+        if self.parameters.is_some() && self.files.len() > 1 {
+            let message = "parameters are those of one description: generate one at a time";
+            return Some(message.to_owned());
+        }
+        if self.check && self.output().is_none() {
+            let message = "--check compares with files: give the file or folder, `-o FILE|FOLDER`";
+            return Some(message.to_owned());
+        }
+        let extension = self.output().and_then(Path::extension);
+        let is_file =
+            extension.is_some_and(|e| ["c", "h"].iter().any(|c| e.eq_ignore_ascii_case(c)));
+        if self.lang == Language::C && is_file {
+            let message =
+                "C is a header and a source file: give a folder instead of a file, `-o FOLDER`";
+            return Some(message.to_owned());
+        }
+        None
+    }
 }
 
 /// Runs the command.
@@ -57,74 +116,75 @@ struct Module {
 /// Descriptions with errors, two robots that would have one name, or files that differ with
 /// `--check`.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    if arguments.output.is_none() && arguments.files.len() > 1 && !as_json {
-        let message = "several descriptions need a folder to write to: add `-o FOLDER`";
-        return Err(Failure::Usage(message.to_owned()));
-    }
-    if arguments.parameters.is_some() && arguments.files.len() > 1 {
-        let message = "parameters are those of one description: generate one at a time";
-        return Err(Failure::Usage(message.to_owned()));
+    if let Some(message) = arguments.contradiction(as_json) {
+        return Err(Failure::Usage(message));
     }
     let inputs = arguments.files.iter().chain(&arguments.parameters);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
-    if !arguments.check {
+    // The files of C are called after the robots, which are not read yet.
+    if !arguments.check && arguments.lang == Language::Rust {
         let mut outputs = inputs
             .iter()
-            .filter_map(|file| module_file(file, arguments));
+            .filter_map(|file| module::rust_file(file, arguments));
         outputs.try_for_each(|output| output::check_distinct(&inputs, &[&output]))?;
     }
-    let robots = load_all(arguments, as_json)?;
-    let mut modules: Vec<Module> = robots
+    let choice = arguments.functions.choice()?;
+    let robots = load_all(arguments, choice.as_ref(), as_json)?;
+    let modules: Vec<Module> = robots
         .iter()
         .zip(&arguments.files)
-        .map(|(robot, path)| module(robot, path, arguments))
+        .map(|(robot, path)| Module::new(robot, path, arguments))
         .collect();
-    distinct(&modules)?;
+    module::distinct(&modules)?;
     if arguments.check {
-        compare(&modules)?;
-    }
-    let Some(_) = &arguments.output else {
-        if as_json {
-            modules
-                .iter_mut()
-                .for_each(|m| m.source = Some(m.code.clone()));
-            return print(&json(&serde_json::json!({ "robots": modules }))?);
-        }
-        let code: Vec<&str> = modules.iter().map(|m| m.code.as_str()).collect();
-        return print(&code.concat());
-    };
-    if !arguments.check {
-        let file = |m: &Module| Some((m.file.clone()?, m.code.clone().into_bytes()));
-        let outputs: Vec<&Path> = modules.iter().filter_map(|m| m.file.as_deref()).collect();
-        output::check_distinct(&inputs, &outputs)?;
-        make_folder(arguments)?;
-        write(modules.iter().filter_map(file).collect())?;
+        module::compare(&modules)?;
+    } else if arguments.output().is_some() {
+        write_all(&modules, &inputs, arguments)?;
     }
     if as_json {
-        return print(&json(&serde_json::json!({ "robots": modules }))?);
+        let documents: Vec<_> = modules.iter().map(Module::document).collect();
+        return print(&json(&serde_json::json!({ "robots": documents }))?);
     }
-    let what = if arguments.check {
-        "up to date"
-    } else {
-        "written"
+    if arguments.output().is_none() {
+        return print(&modules.iter().map(Module::text).collect::<String>());
+    }
+    let what = match arguments.check {
+        true => "up to date",
+        false => "written",
     };
-    let line = |m: &Module| Some(format!("{}: {what}", m.file.as_ref()?.display()));
-    print(
-        &modules
-            .iter()
-            .filter_map(line)
-            .collect::<Vec<_>>()
-            .join("\n"),
-    )
+    let files = modules.iter().flat_map(|m| &m.parts);
+    let files = files.filter_map(|part| part.file.as_ref());
+    let lines: Vec<String> = files
+        .map(|file| format!("{}: {what}", file.display()))
+        .collect();
+    print(&lines.join("\n"))
 }
 
-fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<CompiledFile>, Failure> {
+/// Writes all files, or none.
+fn write_all(modules: &[Module], inputs: &[&Path], arguments: &Arguments) -> Result<(), Failure> {
+    let parts = || modules.iter().flat_map(|m| &m.parts);
+    let outputs: Vec<&Path> = parts().filter_map(|part| part.file.as_deref()).collect();
+    output::check_distinct(inputs, &outputs)?;
+    make_folder(arguments)?;
+    let contents =
+        parts().filter_map(|part| Some((part.file.clone()?, part.code.clone().into_bytes())));
+    write(contents.collect())
+}
+
+fn load_all(
+    arguments: &Arguments,
+    choice: Option<&Choice>,
+    as_json: bool,
+) -> Result<Vec<CompiledFile>, Failure> {
     let (mut good, mut bad) = (Vec::new(), Vec::new());
     let count = arguments.files.len();
     let bar = Progress::new("generating", as_json);
     for (at, file) in arguments.files.iter().enumerate() {
         bar.at(at as f64 / count as f64, &file.display().to_string());
-        let request = arguments.effort.request();
+        let request = Request {
+            functions: choice,
+            ..arguments.effort.request()
+        };
         let compiled = match &arguments.parameters {
             Some(parameters) => CompiledFile::with_parameters(file, parameters, &request),
             None => CompiledFile::read(file, &request),
@@ -145,155 +205,14 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<CompiledFile>, F
     }
 }
 
-/// The file of a description's module, where there is one.
-fn module_file(description: &Path, arguments: &Arguments) -> Option<PathBuf> {
-    let output = arguments.output.as_ref()?;
-    Some(match is_folder(output, arguments) {
-        true => output.join(format!("{}.rs", module_name(description))),
-        false => output.clone(),
-    })
-}
-
-fn module(robot: &CompiledFile, path: &Path, arguments: &Arguments) -> Module {
-    let mut own = robot.file.clone();
-    let mut labels = label(path);
-    if let Some(parameters) = &arguments.parameters {
-        own += &format!(" --parameters {}", parameters.display());
-        labels += &format!(" --parameters {}", label(parameters));
-    }
-    Module {
-        robot: robot.model.mechanism.name.clone(),
-        description: robot.file.clone(),
-        file: module_file(path, arguments),
-        source: None,
-        code: emission::file(&robot.model, &labels),
-        arguments: own,
-    }
-}
-
-/// Whether the output is a folder: it is one already, is written like one, or must hold several
-/// files.
-fn is_folder(output: &Path, arguments: &Arguments) -> bool {
-    let written = output.as_os_str().to_string_lossy();
-    output.is_dir() || arguments.files.len() > 1 || written.ends_with(std::path::is_separator)
-}
-
 fn make_folder(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.output {
-        Some(output) if is_folder(output, arguments) => {
+    match arguments.output() {
+        Some(output) if arguments.is_folder(output) => {
             fs::create_dir_all(output).map_err(|error| {
                 let problem = Problem::new(format!("the folder can't be made: {error}"));
                 problem.file(output.display().to_string()).into()
             })
         }
         _ => Ok(()),
-    }
-}
-
-/// The description's name as a module: `DualV.toml` is `dual_v`.
-fn module_name(path: &Path) -> String {
-    let stem = path
-        .file_stem()
-        .map(|stem| stem.to_string_lossy().into_owned())
-        .unwrap_or_default();
-    let mut name = String::new();
-    let mut before = '_';
-    for c in stem.chars() {
-        if c.is_uppercase() && (before.is_lowercase() || before.is_ascii_digit()) {
-            name.push('_');
-        }
-        match c.is_alphanumeric() {
-            true => name.extend(c.to_lowercase()),
-            false => name.push('_'),
-        }
-        before = c;
-    }
-    name
-}
-
-/// How generated code calls its description: never by an absolute path, and alike from whichever
-/// folder the program is run.
-fn label(path: &Path) -> String {
-    let here = std::env::current_dir().unwrap_or_default();
-    let relative = match path.strip_prefix(&here) {
-        Ok(relative) => relative,
-        Err(_) if path.is_absolute() => path.file_name().map_or(path, Path::new),
-        Err(_) => path,
-    };
-    let parts = relative.components().filter_map(|part| match part {
-        Component::Normal(part) => Some(part.to_string_lossy().into_owned()),
-        _ => None,
-    });
-    parts.collect::<Vec<_>>().join("/")
-}
-
-/// Two robots of one name, or two modules in one file, can't stand side by side.
-fn distinct(modules: &[Module]) -> Result<(), Failure> {
-    let mut problems = Vec::new();
-    let mut robots: BTreeMap<&str, &Module> = BTreeMap::new();
-    let mut files: BTreeMap<&Path, &Module> = BTreeMap::new();
-    for module in modules {
-        let problem = |message: String| Problem::new(message).file(module.description.as_str());
-        if let Some(other) = robots.insert(&module.robot, module) {
-            let message = format!(
-                "the robot is named `{}`, like that of {}",
-                module.robot, other.description
-            );
-            problems.push(problem(message).help("give each robot a `name` of its own"));
-        }
-        if let Some(file) = &module.file
-            && let Some(other) = files.insert(file, module)
-        {
-            let message = format!(
-                "its module is {}, like that of {}",
-                file.display(),
-                other.description
-            );
-            problems.push(problem(message).help("give each description a file name of its own"));
-        }
-    }
-    if problems.is_empty() {
-        Ok(())
-    } else {
-        Err(problems.into())
-    }
-}
-
-/// Fails if a file is not what would be written.
-fn compare(modules: &[Module]) -> Result<(), Failure> {
-    let mut problems = Vec::new();
-    for module in modules {
-        let Some(file) = &module.file else { continue };
-        let message = match fs::read_to_string(file) {
-            Ok(text) if text == module.code => continue,
-            Ok(_) => "the file differs from what its description generates".to_owned(),
-            Err(error) => format!("the file can't be read: {error}"),
-        };
-        let (arguments, path) = (&module.arguments, file.display());
-        let help = format!("renew it with `overact generate {arguments} -o {path}`");
-        problems.push(Problem::new(message).file(path.to_string()).help(help));
-    }
-    if problems.is_empty() {
-        Ok(())
-    } else {
-        Err(problems.into())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{label, module_name};
-    use std::path::Path;
-
-    #[test]
-    fn names_of_modules_and_descriptions() {
-        assert_eq!(module_name(Path::new("a/DualV.toml")), "dual_v");
-        assert_eq!(module_name(Path::new("planar-4rrr.toml")), "planar_4rrr");
-        assert_eq!(
-            label(Path::new("../robots/dualv.toml")),
-            "robots/dualv.toml"
-        );
-        assert_eq!(label(Path::new("./dualv.toml")), "dualv.toml");
-        assert_eq!(label(Path::new("/nowhere/dualv.toml")), "dualv.toml");
     }
 }

@@ -38,7 +38,8 @@ pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Function, Moti
 
 /// What a function is evaluated from: those that run at every sample of a log from everything that a log
 /// may hold, matrices of the closure from joints.
-const fn sources(function: Function, tree: bool) -> &'static [MotionInput] {
+#[must_use]
+pub(crate) const fn sources(function: Function, tree: bool) -> &'static [MotionInput] {
     match function {
         Function::PoseInClosedForm => &[MotionInput::Actuators],
         _ if tree => &[MotionInput::Joints],

@@ -60,6 +60,7 @@ mod underivable;
 pub(crate) use derivable::derivable;
 pub use functions::{Derived, derive};
 pub(crate) use guard::{Guard, GuardKind};
+pub(crate) use inventory::sources;
 pub use inventory::{function_name, inventory};
 pub use motion_input::MotionInput;
 pub(crate) use orientation::station_count;

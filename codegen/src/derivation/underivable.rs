@@ -26,6 +26,8 @@ pub enum Underivable {
     },
     /// The Jacobian of the kept actuators has no structural inverse.
     SingularPartition,
+    /// Functions were chosen that the robot has not got: `has no function ...` for each.
+    NotOffered(Vec<String>),
     /// A bug of the generator.
     Internal(InternalError),
 }
@@ -74,6 +76,16 @@ impl Underivable {
                 description.name.span.clone(),
             )
             .help("choose other `kept_actuators`"),
+            Self::NotOffered(sentences) => {
+                let name = &description.name;
+                let mut all = Diagnostics::default();
+                for sentence in sentences {
+                    let message = format!("the robot `{}` {sentence}", name.value);
+                    let diagnostic = Diagnostic::new(message, name.span.clone());
+                    all.push(diagnostic.help("`overact inspect` lists the functions that it has"));
+                }
+                return all;
+            }
             Self::Internal(error) => {
                 return error.clone().of_robot(&description.name.value).into();
             }

@@ -1,53 +1,11 @@
-//! The body of a function: assignments and results as tokens.
-//!
-//! A value that is used once and has no name is written where it is used, as long as the expression
-//! stays short; every other value is a `let` with one of the [`names`](super::names).
+//! The body of a function as tokens.
 
-use super::angles;
-use super::labels::Labels;
-use super::names::Names;
-use crate::lowering::{Condition, Operand, Operation, Program};
+use crate::lowering::{Array, Condition};
+use crate::writing::body::Body;
+use crate::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
 use overact_core::ActuatorGroup;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
-use std::collections::{BTreeMap, HashSet};
-
-/// Operations that one expression may hold.
-const LONGEST: usize = 10;
-
-/// How tightly an expression binds: sums, products, atoms.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Binding {
-    Sum,
-    Product,
-    Atom,
-}
-
-struct Text {
-    tokens: TokenStream,
-    binding: Binding,
-    size: usize,
-}
-
-impl Text {
-    fn atom(tokens: TokenStream) -> Self {
-        Self {
-            tokens,
-            binding: Binding::Atom,
-            size: 0,
-        }
-    }
-
-    /// The tokens, in parentheses if the context binds more tightly.
-    fn within(&self, binding: Binding) -> TokenStream {
-        let tokens = &self.tokens;
-        if self.binding < binding {
-            quote!((#tokens))
-        } else {
-            quote!(#tokens)
-        }
-    }
-}
 
 /// A function's body.
 pub struct Written {
@@ -55,329 +13,137 @@ pub struct Written {
     pub statements: TokenStream,
     /// The output.
     pub value: TokenStream,
-    /// Where a section begins: the first name of its first assignment, and the section's.
-    pub sections: Vec<(String, String)>,
-    /// All names that are assigned.
-    pub names: Vec<String>,
 }
 
-/// Writes the body of a program: statements and the value of its output.
-pub struct Body<'p> {
-    program: &'p Program,
-    naming: Names<'p>,
-    labels: &'p Labels,
-    /// Named constants that the body uses: value and expression by name.
-    dimensions: BTreeMap<String, (f64, String)>,
-    sections: Vec<(String, String)>,
-    names: Vec<Option<Ident>>,
-    uses: Vec<usize>,
-    inlined: Vec<Option<Text>>,
-    statements: TokenStream,
-    taken: HashSet<String>,
-    /// Steps that are written before their turn.
-    written: Vec<bool>,
-    /// How many guards are written.
-    guarded: usize,
+/// Statements and value of a body whose inputs and output are these.
+#[must_use]
+pub fn write(body: &Body, inputs: &[Array], output: &Array) -> Written {
+    let writer = Writer { inputs };
+    let constants = body.constants.iter().map(|constant| {
+        let (name, value) = (ident(&constant.name), number(constant.value));
+        let doc = format!(" {}", constant.expression);
+        quote!(#[doc = #doc] const #name: ::core::primitive::f64 = #value;)
+    });
+    let statements = body.statements.iter().map(|s| writer.statement(s));
+    Written {
+        statements: quote!(#(#constants)* #(#statements)*),
+        value: writer.output(&body.output, output),
+    }
 }
 
-impl<'p> Body<'p> {
-    /// Statements and value of a program whose inputs and outputs have these labels.
-    #[must_use]
-    pub fn write(program: &'p Program, labels: &'p Labels) -> Written {
-        let taken = program.inputs.iter().map(|a| a.name.clone()).collect();
-        let count = program.steps.len();
-        let mut body = Self {
-            program,
-            naming: Names::new(program, labels),
-            labels,
-            dimensions: BTreeMap::new(),
-            sections: Vec::new(),
-            names: vec![None; count],
-            uses: program.uses(),
-            inlined: (0..count).map(|_| None).collect(),
-            statements: TokenStream::new(),
-            taken,
-            written: vec![false; count],
-            guarded: 0,
-        };
-        let mut at = 0;
-        body.angles(&angles::early(program));
-        while at < count {
-            at += body.step(at);
-        }
-        let value = body.output();
-        let names = body.names.iter().flatten().map(ToString::to_string);
-        let (constants, statements) = (body.constants(), &body.statements);
-        Written {
-            names: names.collect(),
-            statements: quote!(#constants #statements),
-            value,
-            sections: sections(&body.sections),
-        }
-    }
+fn ident(name: &str) -> Ident {
+    Ident::new(name, Span::call_site())
+}
 
-    /// Writes the sines and cosines of angles that are known from the start.
-    fn angles(&mut self, early: &angles::Early) {
-        if early.pairs.is_empty() {
-            return;
-        }
-        for &at in &early.steps {
-            self.step(at);
-            self.written[at] = true;
-        }
-        let first = self.sections.len();
-        let mut names = Vec::new();
-        let mut values = Vec::new();
-        for pair in &early.pairs {
-            values.push(self.operand(pair.angle).tokens);
-            let mut name = |step: Option<usize>| match step {
-                Some(at) => {
-                    self.written[at] = true;
-                    let name = self.declare(at);
-                    quote!(#name)
-                }
-                None => quote!(_),
-            };
-            let (sine, cosine) = (name(pair.sine), name(pair.cosine));
-            names.push(quote!((#sine, #cosine)));
-        }
-        self.statements
-            .extend(quote!(let [#(#names),*] = ::overact::math::sin_cos_all([#(#values),*]);));
-        // They are of all legs at once.
-        for (_, section) in &mut self.sections[first..] {
-            "sines and cosines".clone_into(section);
-        }
-        self.guards();
-    }
+/// Writes what a body is made of.
+struct Writer<'a> {
+    inputs: &'a [Array],
+}
 
-    /// Writes step `at`; returns how many steps were written.
-    fn step(&mut self, at: usize) -> usize {
-        if self.written[at] {
-            return 1;
-        }
-        if let Some(angle) = self.pair(at) {
-            return self.sine_and_cosine(at, angle);
-        }
-        let text = self.text(self.program.steps[at].operation);
-        let named = self.program.steps[at].name.is_some();
-        let guarded = self
-            .program
-            .guards
-            .iter()
-            .any(|g| g.operand == Operand::Step(at));
-        if self.uses[at] == 1 && !named && !guarded && text.size < LONGEST {
-            self.inlined[at] = Some(text);
-        } else {
-            let name = self.declare(at);
-            let tokens = text.tokens;
-            self.statements.extend(quote!(let #name = #tokens;));
-        }
-        self.guards();
-        1
-    }
-
-    /// The angle, if steps `at` and `at + 1` are its cosine and sine in whatever order.
-    fn pair(&self, at: usize) -> Option<Operand> {
-        let operation = |i: usize| self.program.steps.get(i).map(|s| s.operation);
-        match (operation(at)?, operation(at + 1)?) {
-            (Operation::Cosine(a), Operation::Sine(b))
-            | (Operation::Sine(a), Operation::Cosine(b))
-                if a == b =>
-            {
-                Some(a)
+impl Writer<'_> {
+    fn statement(&self, statement: &Statement) -> TokenStream {
+        match statement {
+            Statement::Assign { name, value } => {
+                let (name, value) = (ident(name), self.tokens(value));
+                quote!(let #name = #value;)
             }
-            _ => None,
-        }
-    }
-
-    fn sine_and_cosine(&mut self, at: usize, angle: Operand) -> usize {
-        let angle = self.operand(angle).tokens;
-        let (first, second) = (self.declare(at), self.declare(at + 1));
-        let cosine_first = matches!(self.program.steps[at].operation, Operation::Cosine(_));
-        let (sine, cosine) = if cosine_first {
-            (second, first)
-        } else {
-            (first, second)
-        };
-        self.statements
-            .extend(quote!(let (#sine, #cosine) = ::overact::math::sin_cos(#angle);));
-        self.guards();
-        2
-    }
-
-    /// Writes the guards whose values are there, each behind those before it: of several legs that fail at
-    /// once the first is told, in whichever order their values come.
-    fn guards(&mut self) {
-        let program = self.program;
-        while let Some(guard) = program.guards.get(self.guarded) {
-            if let Operand::Step(at) = guard.operand
-                && self.names[at].is_none()
-            {
-                return;
+            Statement::Pairs(pairs) => {
+                let names = pairs.iter().map(sine_and_cosine);
+                let angles = pairs.iter().map(|pair| self.tokens(&pair.angle));
+                quote!(let [#(#names),*] = ::overact::math::sin_cos_all([#(#angles),*]);)
             }
-            self.guarded += 1;
-            let value = self.operand(guard.operand).tokens;
-            self.statements.extend(match &guard.condition {
-                Condition::Reach { leg } => quote!(::overact::guard::reach(#value, #leg)?;),
-                Condition::Leg { leg, home } => {
-                    let home = number(*home);
-                    quote!(::overact::guard::leg(#value, #home, #leg)?;)
-                }
-                Condition::Mass => quote!(::overact::guard::mass(#value)?;),
-                Condition::Platform { actuators, home } => {
-                    let home = number(*home);
-                    let actuators = match actuators {
-                        ActuatorGroup::All => quote!(::overact::ActuatorGroup::All),
-                        ActuatorGroup::Kept => quote!(::overact::ActuatorGroup::Kept),
-                    };
-                    quote!(::overact::guard::platform(#value, #home, #actuators)?;)
-                }
-            });
+            Statement::Pair(pair) => {
+                let (names, angle) = (sine_and_cosine(pair), self.tokens(&pair.angle));
+                quote!(let #names = ::overact::math::sin_cos(#angle);)
+            }
+            Statement::Guard { value, condition } => self.guard(value, condition),
         }
     }
 
-    /// A name for the value of a step that no other value has.
-    fn declare(&mut self, at: usize) -> Ident {
-        let name = self.naming.name(at, &|name| !self.taken.contains(name));
-        self.taken.insert(name.clone());
-        let section = &self.program.steps[at].scope;
-        self.sections.push((name.clone(), section.clone()));
-        let ident = Ident::new(&name, Span::call_site());
-        self.names[at] = Some(ident.clone());
-        ident
-    }
-
-    fn operand(&mut self, operand: Operand) -> Text {
-        match operand {
-            Operand::Constant(value) => {
-                let literal = self.constant(value);
-                let binding = if value < 0.0 {
-                    Binding::Product
-                } else {
-                    Binding::Atom
+    fn guard(&self, value: &Expression, condition: &Condition) -> TokenStream {
+        let value = self.tokens(value);
+        match condition {
+            Condition::Reach { leg } => quote!(::overact::guard::reach(#value, #leg)?;),
+            Condition::Leg { leg, home } => {
+                let home = number(*home);
+                quote!(::overact::guard::leg(#value, #home, #leg)?;)
+            }
+            Condition::Mass => quote!(::overact::guard::mass(#value)?;),
+            Condition::Platform { actuators, home } => {
+                let home = number(*home);
+                let actuators = match actuators {
+                    ActuatorGroup::All => quote!(::overact::ActuatorGroup::All),
+                    ActuatorGroup::Kept => quote!(::overact::ActuatorGroup::Kept),
                 };
-                Text {
-                    tokens: literal,
-                    binding,
-                    size: 0,
+                quote!(::overact::guard::platform(#value, #home, #actuators)?;)
+            }
+        }
+    }
+
+    /// The tokens, in parentheses if the context binds more tightly.
+    fn within(&self, expression: &Expression, binding: Binding) -> TokenStream {
+        let tokens = self.tokens(expression);
+        if expression.binding() < binding {
+            quote!((#tokens))
+        } else {
+            tokens
+        }
+    }
+
+    fn tokens(&self, expression: &Expression) -> TokenStream {
+        match expression {
+            Expression::Number(value) => number(*value),
+            Expression::Constant { name, negative } => {
+                let name = ident(name);
+                match negative {
+                    true => quote!(-#name),
+                    false => quote!(#name),
                 }
             }
-            Operand::Input { array, index } => {
-                let name = Ident::new(&self.program.inputs[array].name, Span::call_site());
-                let index = Literal::usize_unsuffixed(index);
-                Text::atom(quote!(#name[#index]))
+            Expression::Input { array, index } => {
+                let name = ident(&self.inputs[*array].name);
+                let index = Literal::usize_unsuffixed(*index);
+                quote!(#name[#index])
             }
-            Operand::Step(at) => match (&self.names[at], self.inlined[at].take()) {
-                (Some(name), _) => Text::atom(quote!(#name)),
-                (None, Some(text)) => text,
-                (None, None) => Text::atom(internal_error("an operand is used before its step")),
-            },
-        }
-    }
-
-    /// A number, or the named constant that it is.
-    fn constant(&mut self, value: f64) -> TokenStream {
-        let Some(dimension) = self.labels.dimension(value.abs()) else {
-            return number(value);
-        };
-        let name = Ident::new(&dimension.name, Span::call_site());
-        let used = (value.abs(), dimension.expression.clone());
-        self.dimensions.insert(dimension.name.clone(), used);
-        match value < 0.0 {
-            true => quote!(-#name),
-            false => quote!(#name),
-        }
-    }
-
-    /// The constants that the body uses.
-    fn constants(&self) -> TokenStream {
-        let constants = self.dimensions.iter().map(|(name, (value, expression))| {
-            let (name, value) = (Ident::new(name, Span::call_site()), number(*value));
-            let doc = format!(" {expression}");
-            quote!(#[doc = #doc] const #name: ::core::primitive::f64 = #value;)
-        });
-        quote!(#(#constants)*)
-    }
-
-    fn text(&mut self, operation: Operation) -> Text {
-        match operation {
-            Operation::Add(a, b) => self.binary(a, b, &quote!(+), Binding::Sum, Binding::Sum),
-            Operation::Sub(a, b) => self.binary(a, b, &quote!(-), Binding::Sum, Binding::Product),
-            Operation::Mul(a, b) => self.binary(a, b, &quote!(*), Binding::Product, Binding::Atom),
-            Operation::Div(a, b) => self.binary(a, b, &quote!(/), Binding::Product, Binding::Atom),
-            Operation::Neg(a) => {
-                let inner = self.operand(a);
-                let tokens = inner.within(Binding::Atom);
-                Text {
-                    tokens: quote!(-#tokens),
-                    binding: Binding::Product,
-                    size: inner.size,
+            Expression::Value(name) => {
+                let name = ident(name);
+                quote!(#name)
+            }
+            Expression::Negative(inner) => {
+                let inner = self.within(inner, Binding::Atom);
+                quote!(-#inner)
+            }
+            Expression::Binary(operator, operands) => {
+                let (left, right) = operator.binding();
+                let a = self.within(&operands[0], left);
+                let b = self.within(&operands[1], right);
+                match operator {
+                    Operator::Add => quote!(#a + #b),
+                    Operator::Sub => quote!(#a - #b),
+                    Operator::Mul => quote!(#a * #b),
+                    Operator::Div => quote!(#a / #b),
                 }
             }
-            Operation::Sqrt(a) => self.call(&quote!(sqrt), &[a]),
-            Operation::Sign(a) => self.call(&quote!(sign), &[a]),
-            Operation::Signed(a, b) => self.call(&quote!(signed), &[a, b]),
-            Operation::Atan2(y, x) => self.call(&quote!(atan2), &[y, x]),
-            // A sine without its cosine, or the other way round.
-            Operation::Sine(a) => self.part(a, &quote!(0)),
-            Operation::Cosine(a) => self.part(a, &quote!(1)),
+            Expression::Call(function, operands) => self.call(*function, operands),
+            Expression::Broken(what) => internal_error(what),
         }
     }
 
-    fn binary(
-        &mut self,
-        a: Operand,
-        b: Operand,
-        operator: &TokenStream,
-        binding: Binding,
-        right: Binding,
-    ) -> Text {
-        let (a, b) = (self.operand(a), self.operand(b));
-        let (left, right) = (a.within(binding), b.within(right));
-        Text {
-            tokens: quote!(#left #operator #right),
-            binding,
-            size: a.size + b.size + 1,
+    fn call(&self, function: Call, operands: &[Expression]) -> TokenStream {
+        let operands = operands.iter().map(|operand| self.tokens(operand));
+        match function {
+            Call::Sqrt => quote!(::overact::math::sqrt(#(#operands),*)),
+            Call::Sign => quote!(::overact::math::sign(#(#operands),*)),
+            Call::Signed => quote!(::overact::math::signed(#(#operands),*)),
+            Call::Atan2 => quote!(::overact::math::atan2(#(#operands),*)),
+            Call::Sine => quote!(::overact::math::sin_cos(#(#operands),*).0),
+            Call::Cosine => quote!(::overact::math::sin_cos(#(#operands),*).1),
         }
     }
 
-    fn call(&mut self, function: &TokenStream, arguments: &[Operand]) -> Text {
-        let arguments: Vec<Text> = arguments.iter().map(|&a| self.operand(a)).collect();
-        let size = arguments.iter().map(|a| a.size).sum::<usize>() + 1;
-        let tokens = arguments.iter().map(|a| &a.tokens);
-        let tokens = quote!(::overact::math::#function(#(#tokens),*));
-        Text {
-            tokens,
-            binding: Binding::Atom,
-            size,
-        }
-    }
-
-    fn part(&mut self, angle: Operand, index: &TokenStream) -> Text {
-        let angle = self.operand(angle).tokens;
-        Text {
-            tokens: quote!(::overact::math::sin_cos(#angle).#index),
-            binding: Binding::Atom,
-            size: 1,
-        }
-    }
-
-    fn output(&mut self) -> TokenStream {
-        let values: Vec<TokenStream> = self
-            .program
-            .entries
-            .iter()
-            .map(|entry| {
-                let text = self.operand(entry.operand);
-                if entry.negative {
-                    let inner = text.within(Binding::Atom);
-                    quote!(-#inner)
-                } else {
-                    text.tokens
-                }
-            })
-            .collect();
-        match self.program.output.shape[..] {
+    fn output(&self, values: &[Expression], output: &Array) -> TokenStream {
+        let values: Vec<TokenStream> = values.iter().map(|value| self.tokens(value)).collect();
+        match output.shape[..] {
             [_, columns] if columns > 0 => {
                 let rows = values.chunks(columns).map(|row| quote!([#(#row),*]));
                 quote!([#(#rows),*])
@@ -391,19 +157,17 @@ impl<'p> Body<'p> {
     }
 }
 
-/// Where sections begin, from the section of every assignment. A few assignments on their own, of what a
-/// leg and the platform share for instance, stand in the section around them.
-fn sections(assigned: &[(String, String)]) -> Vec<(String, String)> {
-    const SHORTEST: usize = 4;
-    let mut starts: Vec<(String, String)> = Vec::new();
-    for run in assigned.chunk_by(|a, b| a.1 == b.1) {
-        let (name, section) = &run[0];
-        let is_other = starts.last().is_none_or(|(_, last)| last != section);
-        if !section.is_empty() && is_other && (run.len() >= SHORTEST || starts.is_empty()) {
-            starts.push((name.clone(), section.clone()));
+/// The pattern of a sine and a cosine.
+fn sine_and_cosine(pair: &Pair) -> TokenStream {
+    let name = |name: &Option<String>| match name {
+        Some(name) => {
+            let name = ident(name);
+            quote!(#name)
         }
-    }
-    starts
+        None => quote!(_),
+    };
+    let (sine, cosine) = (name(&pair.sine), name(&pair.cosine));
+    quote!((#sine, #cosine))
 }
 
 /// What stands in the generated code where a program breaks a rule that lowering guarantees: nothing that

@@ -1,13 +1,13 @@
 //! One generated function: documentation, signature, body.
 
 use super::boundary::boundary;
-use super::expression::Body;
-use super::labels::Labels;
+use super::expression;
 use super::layout::Sections;
-use crate::derivation::MotionInput;
 use crate::lowering::Array;
 use crate::model::{CompiledFunction, RobotModel};
-use overact_core::{Columns, Function};
+use crate::writing::body::Body;
+use crate::writing::labels::Labels;
+use crate::writing::outline::{Outline, Table};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -24,7 +24,8 @@ pub struct Item {
 /// The function as an item of an `impl` block.
 #[must_use]
 pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
-    if model.finds_joints(function) && function.computes == Function::Joints {
+    let outline = Outline::new(model, function);
+    if outline.is_newton {
         return Item {
             tokens: super::inverse::item(model),
             sections: Sections::none(&function.name),
@@ -32,18 +33,21 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
         };
     }
     let (mut sections, mut names) = (Vec::new(), Vec::new());
-    let (statements, value) = match twin(model, function) {
+    let (statements, value) = match outline.twin {
         Some(twin) => (TokenStream::new(), call(twin)),
         None => {
-            let written = Body::write(&function.program, &Labels::new(model, function));
-            (sections, names) = (written.sections, written.names);
+            let program = &function.program;
+            // A word of Rust is no name that the derivation gives.
+            let body = Body::write(program, &Labels::new(model, function), &|_| false);
+            let written = expression::write(&body, &program.inputs, &program.output);
+            (sections, names) = (body.sections, body.names);
             let value = written.value;
             let value = quote!(::core::result::Result::Ok(#value));
             (written.statements, value)
         }
     };
     Item {
-        tokens: around(model, function, &statements, &value),
+        tokens: around(model, function, &outline, &statements, &value),
         sections: Sections {
             function: function.name.clone(),
             starts: sections,
@@ -56,22 +60,23 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
 fn around(
     model: &RobotModel,
     function: &CompiledFunction,
+    outline: &Outline<'_>,
     statements: &TokenStream,
     value: &TokenStream,
 ) -> TokenStream {
-    let arguments = arguments(model, function);
     let name = format_ident!("{}", function.name);
     let output = array_type(&function.program.output);
-    let documentation = documentation(model, function);
-    let check = boundary(model, &arguments);
-    let find_pose = (model.finds_pose(function) && needs_pose(model, function)).then(|| {
+    let documentation = documentation(function, outline);
+    let check = boundary(model, &outline.arguments);
+    let find_pose = outline.finds_pose.then(|| {
         quote! {
             let pose = &Self::pose_from_actuators(actuators, start)?;
         }
     });
-    let find_joints =
-        needs_joints(model, function).then(|| quote!(let joints = &Self::joints(pose)?;));
-    let parameters = arguments.iter().map(|argument| {
+    let find_joints = outline
+        .finds_joints
+        .then(|| quote!(let joints = &Self::joints(pose)?;));
+    let parameters = outline.arguments.iter().map(|argument| {
         let (name, kind) = (format_ident!("{}", argument.name), array_type(argument));
         quote!(#name: &#kind)
     });
@@ -87,44 +92,12 @@ fn around(
     }
 }
 
-/// The function from joints that has the same program: where Newton's method finds the joints of a
-/// pose, the function from the pose only calls it.
-fn twin<'m>(model: &'m RobotModel, function: &CompiledFunction) -> Option<&'m CompiledFunction> {
-    let is_pose = needs_joints(model, function) && function.from == MotionInput::Pose;
-    is_pose
-        .then(|| model.function(function.computes, MotionInput::Joints))
-        .flatten()
-}
-
 /// The call of a function with arguments of the names of its inputs.
 fn call(function: &CompiledFunction) -> TokenStream {
     let name = format_ident!("{}", function.name);
     let inputs = function.program.inputs.iter();
     let inputs = inputs.map(|array| format_ident!("{}", array.name));
     quote!(Self::#name(#(#inputs),*))
-}
-
-/// Whether the function's program, or the search of its joints, uses the pose.
-fn needs_pose(model: &RobotModel, function: &CompiledFunction) -> bool {
-    let used = function.program.used_inputs();
-    let pose = function
-        .program
-        .inputs
-        .iter()
-        .position(|array| array.name == "pose");
-    pose.is_some_and(|at| used[at]) || needs_joints(model, function)
-}
-
-/// Whether the function's program uses joints that Newton's method has to find first.
-fn needs_joints(model: &RobotModel, function: &CompiledFunction) -> bool {
-    let inputs = &function.program.inputs;
-    let used = function.program.used_inputs();
-    let joints = inputs
-        .iter()
-        .zip(used)
-        .any(|(array, used)| array.name == "joints" && used);
-    // The joints themselves are what Newton's method gives.
-    model.finds_joints(function) && (joints || function.computes == Function::Joints)
 }
 
 /// `[f64; 3]` or `[[f64; 64]; 3]`.
@@ -143,128 +116,30 @@ pub(crate) fn array_type(array: &Array) -> TokenStream {
     }
 }
 
-/// The arguments in order: the program's inputs, but for what is found first, and what it is found from.
-fn arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Array> {
-    let array = |name: &str, length: usize| Array {
-        name: name.to_owned(),
-        shape: vec![length],
-    };
-    let mut arguments = Vec::new();
-    for input in &function.program.inputs {
-        match input.name.as_str() {
-            "joints" if model.finds_joints(function) => {}
-            "pose" if model.finds_pose(function) => {
-                arguments.push(array("actuators", model.mechanism.actuated().len()));
-            }
-            _ => arguments.push(input.clone()),
-        }
-    }
-    if model.finds_pose(function) {
-        arguments.push(array("start", model.mechanism.pose_len()));
-    }
-    arguments
-}
-
 /// Lines of documentation: meaning, inputs, output, errors, operations.
-fn documentation(model: &RobotModel, function: &CompiledFunction) -> Vec<String> {
+fn documentation(function: &CompiledFunction, outline: &Outline<'_>) -> Vec<String> {
     let mut lines = vec![format!(" {}", function.computes.summary()), String::new()];
-    let from = match (function.from, model.is_tree()) {
-        (_, true) => " From the joints' positions and rates.",
-        (MotionInput::Pose, _) => " From the platform's pose and motion.",
-        (MotionInput::Joints, _) => {
-            " From measured joint positions and the platform's motion; of the pose only the orientation is used."
-        }
-        (MotionInput::Actuators, _) if !model.finds_pose(function) => {
-            " From the actuators' positions."
-        }
-        (MotionInput::Actuators, _) => {
-            " From the actuators' motion: forward kinematics from the pose `start`, then least squares."
-        }
-    };
-    lines.push(from.to_owned());
-    for array in &function.program.inputs {
-        if let Some(text) = input_meaning(model, &array.name) {
-            let pose_is_found = model.finds_pose(function) && array.name == "pose";
-            let joints_are_found = model.finds_joints(function) && array.name == "joints";
-            if !pose_is_found && !joints_are_found {
-                lines.push(format!(" - `{}`: {text}", array.name));
-            }
-        }
-    }
-    if model.finds_pose(function) {
-        lines.push(" - `actuators`: q, positions of the actuated joints (m, rad)".to_owned());
-        lines.push(
-            " - `start`: a pose near the wanted one, in its assembly mode (m, rad)".to_owned(),
-        );
-    }
-    let shape: Vec<String> = function
-        .program
-        .output
-        .shape
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+    lines.push(format!(" {}", outline.origin));
+    let meanings = outline.meanings.iter();
+    lines.extend(meanings.map(|(name, meaning)| format!(" - `{name}`: {meaning}")));
+    let shape = function.program.output.shape.iter();
+    let shape: Vec<String> = shape.map(ToString::to_string).collect();
     lines.push(String::new());
     lines.push(format!(" Output: {}.", shape.join(" x ")));
-    if function.computes.columns().is_some() {
-        lines.push(format!(" Columns: {}.", columns_constant(function)));
-    }
+    let table = outline.columns.map(|table| match table {
+        Table::Parameters => "`PARAMETERS`",
+        Table::BaseParameters => "`BASE_PARAMETERS`",
+        Table::PayloadParameters => "`PAYLOAD_PARAMETERS`",
+    });
+    lines.extend(table.map(|table| format!(" Columns: {table}.")));
     lines.push(String::new());
     lines.push(format!(" {}.", function.program.cost()));
     lines.push(String::new());
     lines.push(" # Errors".to_owned());
-    let can_fail = model.finds_pose(function)
-        || needs_joints(model, function)
-        || !function.program.guards.is_empty();
-    lines.push(if can_fail {
+    lines.push(if outline.can_fail {
         " An input that is not finite, a pose out of reach, or a singular configuration.".to_owned()
     } else {
         " An input that is not finite.".to_owned()
     });
     lines
-}
-
-fn columns_constant(function: &CompiledFunction) -> &'static str {
-    match (function.computes, function.computes.columns()) {
-        (Function::IdmRedPayload | Function::IdmRedPayloadActuators, _) => "`PAYLOAD_PARAMETERS`",
-        (_, Some(Columns::Base)) => "`BASE_PARAMETERS`",
-        _ => "`PARAMETERS`",
-    }
-}
-
-fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
-    let platform = model.mechanism.platform.as_ref();
-    let coordinates = || {
-        platform
-            .map(|p| p.motion.pose_coordinates().join(", "))
-            .unwrap_or_default()
-    };
-    let rates = || {
-        platform
-            .map(|p| p.motion.twist_names().join(", "))
-            .unwrap_or_default()
-    };
-    Some(match name {
-        "pose" if platform.is_some_and(|p| p.motion.has_quaternion()) => format!(
-            "x = `[{}]` (m), in the base frame; the quaternion is scaled to length 1",
-            coordinates()
-        ),
-        "pose" => format!("x = `[{}]` (m, rad), in the base frame", coordinates()),
-        "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),
-        "actuators" => "q, positions of the actuated joints (m, rad)".to_owned(),
-        "twist" => format!("v = `[{}]` (m/s, rad/s), in the base frame", rates()),
-        "acceleration" => "the derivative of `twist` (m/s², rad/s²)".to_owned(),
-        "joint_velocities" => "velocities of the joints (m/s, rad/s)".to_owned(),
-        "joint_accelerations" => "accelerations of the joints (m/s², rad/s²)".to_owned(),
-        "actuator_velocities" => "velocities of the actuated joints (m/s, rad/s)".to_owned(),
-        "actuator_accelerations" => {
-            "accelerations of the actuated joints (m/s², rad/s²)".to_owned()
-        }
-        "torques" => "τ, forces and torques of the actuators (N, N m)".to_owned(),
-        "parameters" => {
-            "values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)".to_owned()
-        }
-        "preload" => "coordinates of the internal torque on `null_space` (N, N m)".to_owned(),
-        _ => return None,
-    })
 }

@@ -1,35 +1,27 @@
 //! From a [`RobotModel`] to Rust.
 //!
 //! Macro, build script, command line and `generated/` all come from [`robot()`]: one `impl` block with
-//! constants and flat functions, and one `impl overact::Model`, unless the parameters are known. Nothing is allocated, nothing panics,
+//! constants and flat functions, and one `impl overact::Model`, unless the parameters are known
+//! or functions were left out that it is asked for. Nothing is allocated, nothing panics,
 //! nothing is unsafe; a singular configuration is an error that names the leg. Paths are absolute, for the
 //! code stands in scopes that are not ours.
 //!
-//! The code is to be read beside the paper: values have `names`, constants of the description theirs
-//! (`dimensions`), the `legend` in the type's documentation says what they mean, and `layout` puts
-//! headings over the sections of a body.
+//! The code is to be read beside the paper: `writing` names its values and explains the names in the type's
+//! documentation, and `layout` puts headings over the sections of a body.
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
 
-mod angles;
 mod boundary;
 mod constants;
-mod dimensions;
 mod expression;
 mod function;
 mod inverse;
-mod labels;
 mod layout;
-mod legend;
 mod model_impl;
-mod names;
-#[cfg(test)]
-mod tests;
-mod text;
 
 use crate::model::RobotModel;
+use crate::writing::{labels::Labels, legend, text};
 use function::Item;
-use labels::Labels;
 use layout::Sections;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
@@ -51,9 +43,11 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     let functions = model.functions.iter().map(|f| function::item(model, f));
     let functions: Vec<Item> = functions.collect();
     let tokens = functions.iter().map(|f| &f.tokens);
-    let forward = model_impl::pose_from_actuators(model);
-    // The functions of a model take the parameters as an input.
-    let is_model = model.selection.values.is_none();
+    let forward = model
+        .forward_kinematics
+        .then(|| model_impl::pose_from_actuators(model));
+    // The functions of a model take the parameters as an input, and none that it is asked for is missing.
+    let is_model = model.selection.values.is_none() && model.is_model;
     let model_impl = is_model.then(|| model_impl::item(model, name));
     let items = quote! {
         #[allow(
@@ -106,23 +100,36 @@ fn module_and_sections(model: &RobotModel) -> (TokenStream, Vec<Sections>) {
         items,
         sections,
     } = robot(model, &name);
-    let summary = sentence(&model.mechanism.summary);
+    let (summary, derives) = (summary(model), derives());
+    // With a comma at the end, as the tokens of a list on several lines are written.
     let module = quote! {
         #[doc = #summary]
         #(#[doc = #documentation])*
-        #[derive(
-            ::core::fmt::Debug,
-            ::core::clone::Clone,
-            ::core::marker::Copy,
-            ::core::cmp::PartialEq,
-            ::core::cmp::Eq,
-            ::core::default::Default,
-        )]
+        #[derive(#(#derives,)*)]
         pub struct #name;
 
         #items
     };
     (module, sections)
+}
+
+/// The first line of documentation of a robot's type.
+#[must_use]
+pub fn summary(model: &RobotModel) -> String {
+    sentence(&model.mechanism.summary)
+}
+
+/// What a robot's type derives.
+#[must_use]
+pub fn derives() -> Vec<syn::Path> {
+    vec![
+        syn::parse_quote!(::core::fmt::Debug),
+        syn::parse_quote!(::core::clone::Clone),
+        syn::parse_quote!(::core::marker::Copy),
+        syn::parse_quote!(::core::cmp::PartialEq),
+        syn::parse_quote!(::core::cmp::Eq),
+        syn::parse_quote!(::core::default::Default),
+    ]
 }
 
 /// How large the robot is.

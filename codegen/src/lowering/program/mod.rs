@@ -1,4 +1,4 @@
-//! The straight-line program: the one form that both backends take.
+//! The straight-line program: the one form that all backends take.
 
 mod cost;
 mod verify;

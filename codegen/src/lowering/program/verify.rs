@@ -4,7 +4,7 @@ use super::{Condition, Operand, Program};
 use std::collections::HashSet;
 
 impl Program {
-    /// Checks what both backends take for granted: operands are there before they are used, constants are
+    /// Checks what all backends take for granted: operands are there before they are used, constants are
     /// numbers, guards and the output stand on values that exist, shapes fit, and every step is needed.
     ///
     /// # Errors

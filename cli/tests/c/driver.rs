@@ -1,0 +1,225 @@
+//! A program around generated C that calls its functions: compiled, fed with numbers, and read.
+//!
+//! The repository holds no `unsafe` code, so C is not linked to the tests but run beside them. A call is a
+//! number of a function followed by its inputs, an answer the error followed by the output, all as doubles.
+
+use overact_codegen::c::Files;
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What a test may fail with.
+pub(crate) type Failure = Box<dyn std::error::Error>;
+
+/// What an output holds before it is written.
+pub(crate) const UNTOUCHED: f64 = 0.125;
+
+/// A function as the driver calls it.
+#[derive(Debug, Clone)]
+pub(crate) struct Call {
+    /// The name behind the prefix.
+    pub(crate) name: String,
+    /// How many numbers each argument has.
+    pub(crate) arguments: Vec<usize>,
+    /// How many numbers the output has.
+    pub(crate) output: usize,
+}
+
+/// A call with its inputs.
+pub(crate) struct Question {
+    /// Index among the calls.
+    pub(crate) call: usize,
+    /// All inputs, one argument behind the other.
+    pub(crate) inputs: Vec<f64>,
+}
+
+/// A compiler that is there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Compiler(pub(crate) &'static str);
+
+impl Compiler {
+    /// The compilers among GCC and Clang that can be run; the others are told.
+    pub(crate) fn all() -> Vec<Self> {
+        let is_there = |compiler: &Self| {
+            let there = Command::new(compiler.0).arg("--version").output().is_ok();
+            if !there {
+                eprintln!("skipped: there is no {}", compiler.0);
+            }
+            there
+        };
+        ["gcc", "clang"]
+            .map(Self)
+            .into_iter()
+            .filter(is_there)
+            .collect()
+    }
+}
+
+/// Every warning that a careful C programmer asks for is an error.
+pub(crate) const WARNINGS: [&str; 9] = [
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-pedantic",
+    "-Wconversion",
+    "-Wshadow",
+    "-Wdouble-promotion",
+    "-Wstrict-prototypes",
+];
+
+/// Generated C as a program.
+pub(crate) struct Driver {
+    program: PathBuf,
+    calls: Vec<Call>,
+    folder: PathBuf,
+}
+
+impl Driver {
+    /// Compiles a robot with the functions that shall be called.
+    pub(crate) fn build(
+        compiler: Compiler,
+        folder: &Path,
+        files: &Files,
+        calls: Vec<Call>,
+    ) -> Result<Self, Failure> {
+        fs::create_dir_all(folder)?;
+        let stem = &files.stem;
+        fs::write(folder.join(format!("{stem}.h")), &files.header)?;
+        fs::write(folder.join(format!("{stem}.c")), &files.source)?;
+        fs::write(folder.join("driver.c"), text(stem, &calls)?)?;
+        let program = folder.join("driver");
+        let mut command = Command::new(compiler.0);
+        command
+            .current_dir(folder)
+            .args(WARNINGS)
+            .args(["-O1", "-o"]);
+        command
+            .arg(&program)
+            .args(["driver.c", &format!("{stem}.c"), "-lm"]);
+        let said = command.output()?;
+        if !said.status.success() {
+            let said = String::from_utf8_lossy(&said.stderr).into_owned();
+            return Err(format!("{} refuses {stem}.c:\n{said}", compiler.0).into());
+        }
+        Ok(Self {
+            program,
+            calls,
+            folder: folder.to_owned(),
+        })
+    }
+
+    /// The texts of all errors, by their numbers.
+    pub(crate) fn texts(&self) -> Result<Vec<String>, Failure> {
+        let said = Command::new(&self.program).arg("texts").output()?;
+        let said = String::from_utf8(said.stdout)?;
+        Ok(said.lines().map(str::to_owned).collect())
+    }
+
+    /// Error and output of each call.
+    pub(crate) fn answers(
+        &self,
+        questions: &[Question],
+    ) -> Result<Vec<(usize, Vec<f64>)>, Failure> {
+        let mut bytes = Vec::new();
+        for question in questions {
+            let call = question.call as f64;
+            let numbers = [call].into_iter().chain(question.inputs.iter().copied());
+            numbers.for_each(|number| bytes.extend(number.to_ne_bytes()));
+        }
+        let file = self.folder.join("questions");
+        fs::write(&file, bytes)?;
+        let said = Command::new(&self.program)
+            .stdin(File::open(&file)?)
+            .output()?;
+        if !said.status.success() {
+            return Err(format!("the driver failed: {:?}", said.status).into());
+        }
+        let (numbers, rest) = said.stdout.as_chunks::<8>();
+        assert!(rest.is_empty());
+        let mut numbers = numbers.iter().map(|bytes| f64::from_ne_bytes(*bytes));
+        let mut answers = Vec::new();
+        for question in questions {
+            let length = self.calls[question.call].output;
+            let error = numbers.next().ok_or("an answer is missing")?;
+            let output: Vec<f64> = numbers.by_ref().take(length).collect();
+            assert_eq!(output.len(), length);
+            answers.push((error as usize, output));
+        }
+        assert!(numbers.next().is_none());
+        Ok(answers)
+    }
+}
+
+/// The driver.
+fn text(stem: &str, calls: &[Call]) -> Result<String, Failure> {
+    let length = |call: &Call| call.arguments.iter().sum::<usize>();
+    let inputs = calls.iter().map(length).max().unwrap_or(0) + 1;
+    let outputs = calls.iter().map(|call| call.output).max().unwrap_or(0) + 1;
+    let mut text = format!(
+        "#include \"{stem}.h\"\n#include <stdio.h>\n#include <string.h>\n\n\
+         static double in[{inputs}];\nstatic double out[{outputs}];\n\n"
+    );
+    let table = |name: &str, numbers: Vec<usize>| {
+        let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+        format!(
+            "static const size_t {name}[] = {{ {} }};\n",
+            numbers.join(", ")
+        )
+    };
+    text += &table("in_length", calls.iter().map(length).collect());
+    text += &table("out_length", calls.iter().map(|call| call.output).collect());
+    let partition = calls.iter().find(|call| call.name == "partition");
+    text += &partition.map_or(String::new(), |call| crate::partition::wrapper(stem, call));
+    text += "\nstatic int call(int number)\n{\n    switch (number) {\n";
+    for (number, call) in calls.iter().enumerate() {
+        let mut at = 0;
+        let mut arguments = Vec::new();
+        for length in &call.arguments {
+            arguments.push(format!("&in[{at}]"));
+            at += length;
+        }
+        arguments.push("out".to_owned());
+        let (name, arguments) = (&call.name, arguments.join(", "));
+        match call.name == "partition" {
+            true => writeln!(text, "    case {number}: return partition();")?,
+            false => writeln!(
+                text,
+                "    case {number}: return (int){stem}_{name}({arguments});"
+            )?,
+        }
+    }
+    write!(
+        text,
+        "    default: return -1;\n    }}\n}}\n\n\
+         int main(int count, char **words)\n{{\n    \
+             double number;\n    \
+             if ((count > 1) && (strcmp(words[1], \"texts\") == 0)) {{\n        \
+                 for (int i = 0; strcmp({stem}_error_text(({stem}_error)i), \"no error of this robot\") != 0; i++) {{\n            \
+                     puts({stem}_error_text(({stem}_error)i));\n        \
+                 }}\n        \
+                 return 0;\n    \
+             }}\n    \
+             while (fread(&number, sizeof number, 1, stdin) == 1) {{\n        \
+                 const int which = (int)number;\n        \
+                 double error;\n        \
+                 if (fread(in, sizeof in[0], in_length[which], stdin) != in_length[which]) {{\n            \
+                     return 1;\n        \
+                 }}\n        \
+                 for (size_t i = 0; i < out_length[which]; i++) {{\n            \
+                     out[i] = {UNTOUCHED:?};\n        \
+                 }}\n        \
+                 error = (double)call(which);\n        \
+                 if (fwrite(&error, sizeof error, 1, stdout) != 1) {{\n            \
+                     return 1;\n        \
+                 }}\n        \
+                 if (fwrite(out, sizeof out[0], out_length[which], stdout) != out_length[which]) {{\n            \
+                     return 1;\n        \
+                 }}\n    \
+             }}\n    \
+             return 0;\n\
+         }}\n"
+    )?;
+    Ok(text)
+}

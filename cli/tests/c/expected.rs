@@ -1,0 +1,192 @@
+//! What a function should give: its program, evaluated, after what Rust's runtime finds before it runs.
+
+use crate::driver::Call;
+use overact::{Error, Function, Model};
+use overact_codegen::evaluation::Rows;
+use overact_codegen::internals::random_states;
+use overact_codegen::{CompiledFunction, RobotModel};
+use overact_robot::InterpretedRobot;
+use std::collections::BTreeMap;
+
+/// All inputs of a state, by the names of arguments.
+pub(crate) type Inputs = BTreeMap<&'static str, Vec<f64>>;
+
+/// The name of forward kinematics, which is none of the table's functions.
+pub(crate) const FORWARD: &str = "pose_from_actuators";
+
+/// Names and lengths of a function's arguments.
+pub(crate) fn arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<(String, usize)> {
+    let mut arguments = Vec::new();
+    for array in &function.program.inputs {
+        match array.name.as_str() {
+            "joints" if model.finds_joints(function) => {}
+            "pose" if model.finds_pose(function) => {
+                arguments.push(("actuators".to_owned(), model.mechanism.actuated().len()));
+            }
+            name => arguments.push((name.to_owned(), array.len())),
+        }
+    }
+    if model.finds_pose(function) {
+        arguments.push(("start".to_owned(), model.mechanism.pose_len()));
+    }
+    arguments
+}
+
+/// The arguments of forward kinematics.
+pub(crate) fn forward_arguments(model: &RobotModel) -> Vec<(String, usize)> {
+    let mechanism = &model.mechanism;
+    vec![
+        ("actuators".to_owned(), mechanism.actuated().len()),
+        ("start".to_owned(), mechanism.pose_len()),
+    ]
+}
+
+/// All functions of a robot as the driver calls them.
+pub(crate) fn calls(model: &RobotModel) -> Vec<(Call, Vec<String>)> {
+    let call = |name: &str, arguments: Vec<(String, usize)>, output: usize| {
+        let (names, arguments) = arguments.into_iter().unzip();
+        let name = name.to_owned();
+        (
+            Call {
+                name,
+                arguments,
+                output,
+            },
+            names,
+        )
+    };
+    let functions = model.functions.iter();
+    let mut calls: Vec<_> = functions
+        .map(|f| call(&f.name, arguments(model, f), f.program.entries.len()))
+        .collect();
+    if model.forward_kinematics {
+        let length = model.mechanism.pose_len();
+        calls.push(call(FORWARD, forward_arguments(model), length));
+    }
+    calls
+}
+
+/// A function's output at a state, by its index among the calls.
+pub(crate) fn output(
+    robot: &InterpretedRobot,
+    index: usize,
+    inputs: &Inputs,
+) -> Result<Vec<f64>, Error> {
+    let model = robot.model();
+    let (actuators, start) = (&inputs["actuators"], &inputs["start"]);
+    let forward = || {
+        let mut pose = start.clone();
+        robot
+            .pose_from_actuators(actuators, &mut pose)
+            .map(|()| pose)
+    };
+    let Some(function) = model.functions.get(index) else {
+        return forward();
+    };
+    let pose = match model.finds_pose(function) {
+        true => forward()?,
+        false => robot.unit_pose(&inputs["pose"])?,
+    };
+    let joints = || {
+        let mut joints = vec![0.0; model.mechanism.joints().len()];
+        let found = robot.evaluate(Function::Joints, &[&pose], &mut joints);
+        found.map(|()| joints).map_err(|error| error.error)
+    };
+    let finds_joints = model.finds_joints(function);
+    if finds_joints && function.computes == Function::Joints {
+        return joints();
+    }
+    let used = function.program.used_inputs();
+    let arrays = function.program.inputs.iter().zip(used);
+    let needs_joints = arrays.clone().any(|(a, used)| a.name == "joints" && used);
+    let joints = match finds_joints && needs_joints {
+        true => joints()?,
+        false => inputs["joints"].clone(),
+    };
+    let rows = arrays.map(|(array, _)| {
+        let values = match array.name.as_str() {
+            "pose" => &pose,
+            "joints" => &joints,
+            name => &inputs[name],
+        };
+        Rows {
+            values,
+            shared: false,
+        }
+    });
+    let rows: Vec<Rows<'_>> = rows.collect();
+    let mut output = vec![0.0; function.program.entries.len()];
+    match function.program.evaluate(1, &rows, &mut output) {
+        Ok(()) => Ok(output),
+        Err(failed) => Err(robot.error(&function.program, &failed).error),
+    }
+}
+
+/// Numbers between -1 and 1 that are alike whenever they are drawn.
+pub(crate) struct Dice(u64);
+
+impl Dice {
+    pub(crate) const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn many(&mut self, count: usize, size: f64) -> Vec<f64> {
+        (0..count).map(|_| size * self.next()).collect()
+    }
+}
+
+/// Random states with all that functions take. Actuators' positions are those of the pose, where it has
+/// some.
+pub(crate) fn states(robot: &InterpretedRobot, count: usize, seed: u64) -> Vec<Inputs> {
+    let model = robot.model();
+    let mechanism = &model.mechanism;
+    let mut dice = Dice::new(seed);
+    let (n, r) = (mechanism.actuated().len(), mechanism.dof());
+    let drawn = random_states(mechanism, count, seed).into_iter();
+    let all = drawn.map(|state| {
+        let actuators = mechanism.actuated();
+        let actuators: Vec<f64> = actuators.iter().map(|&at| state.joints[at]).collect();
+        let mut start = state.pose.clone();
+        let step = dice.many(r, 0.02);
+        robot.displace(&mut start, &step);
+        let standard = model
+            .selection
+            .standard
+            .iter()
+            .chain(&model.selection.payload);
+        let parameters = standard.map(|&parameter| {
+            let name = model.parameter_name(parameter);
+            let is_large = ["m_", "xx_", "yy_", "zz_", "ia_"]
+                .iter()
+                .any(|p| name.starts_with(p));
+            match is_large {
+                true => 2.0 + dice.next(),
+                false => 0.1 * dice.next(),
+            }
+        });
+        BTreeMap::from([
+            ("parameters", parameters.collect()),
+            ("pose", state.pose),
+            ("joints", state.joints),
+            ("joint_velocities", state.twist.clone()),
+            ("joint_accelerations", state.acceleration.clone()),
+            ("twist", state.twist),
+            ("acceleration", state.acceleration),
+            ("actuators", actuators),
+            ("actuator_velocities", dice.many(n, 1.0)),
+            ("actuator_accelerations", dice.many(n, 5.0)),
+            ("torques", dice.many(n, 10.0)),
+            ("preload", dice.many(n - r.min(n), 3.0)),
+            ("start", start),
+        ])
+    });
+    all.collect()
+}

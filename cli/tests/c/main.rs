@@ -1,0 +1,301 @@
+//! Generated C: compiled by GCC and Clang with every warning as an error, and compared with the programs that
+//! it was written from at random states, with what is out of reach, singular or no number among them.
+
+mod driver;
+mod expected;
+mod partition;
+
+use driver::{Compiler, Driver, Failure, Question, UNTOUCHED};
+use expected::{Inputs, calls, output, states};
+use overact::{Columns, Function};
+use overact_codegen::derivation::MotionInput;
+use overact_codegen::{Choice, Effort, Request, RobotModel, Source, c, compile_with};
+use overact_robot::InterpretedRobot;
+use overact_tier::{by_tier, is_full};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// How many times larger than what one rounding of the inputs changes a difference may be, where that is above
+/// the tolerance: near singularities, and of what is zero but for rounding.
+const ROUNDINGS: f64 = 20.0;
+
+/// Largest difference, relative to the largest number of an output. Sines of the C library and those of the
+/// evaluation differ in their last digit.
+const TOLERANCE: f64 = 1e-13;
+
+/// Robots of the default tier, with some of their functions where all take long to compile; forward kinematics
+/// with and without a quaternion, case 2, and functions from each kind of input are among them.
+const FEW: [(&str, &[&str]); 4] = [
+    (
+        "dualv",
+        &[
+            "control",
+            "idm_red_platform",
+            "idm_red_actuators_base_from_joints",
+            "idm_red_payload_from_actuators",
+        ],
+    ),
+    ("emps", &[]),
+    ("five_bar", &[]),
+    ("hexapod", &["pose_from_actuators", "twist_from_actuators"]),
+];
+
+fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+fn model(path: &Path, effort: Effort, functions: &[&str]) -> Result<RobotModel, Failure> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let source = Source::new(name, fs::read_to_string(path)?);
+    let choice = Choice::new(functions.iter().copied()).ok();
+    let request = Request {
+        functions: choice.as_ref(),
+        ..Request::with_effort(effort)
+    };
+    let compiled = compile_with(&source, &request);
+    Ok(compiled
+        .map_err(|errors| errors.render_plain(&source))?
+        .model)
+}
+
+/// A folder of its own for what is compiled.
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join(name)
+}
+
+/// What was seen of a robot.
+struct Seen {
+    /// The largest relative difference, and of which function.
+    worst: (f64, String),
+    /// How many outputs were compared.
+    values: usize,
+    /// How many differ by more than the tolerance, where a rounding of the inputs does so, too, and the largest
+    /// ratio of both.
+    sensitive: (usize, f64),
+    /// Texts of the errors that both have.
+    errors: Vec<String>,
+}
+
+/// Compares all functions of a robot, by both compilers.
+fn compare(name: &str, model: RobotModel, count: usize) -> Result<Option<Seen>, Failure> {
+    let files = c::files(&model, &format!("{name}.toml"));
+    let robot = InterpretedRobot::new(model);
+    let near = states(&robot, count, 11);
+    let mut all = near.clone();
+    all.extend(near.iter().map(|state| far(&robot, state)));
+    let mut calls = calls(robot.model());
+    let mut questions = Vec::new();
+    let mut wanted = Vec::new();
+    for state in &all {
+        for (call, (_, arguments)) in calls.iter().enumerate() {
+            let inputs = arguments
+                .iter()
+                .flat_map(|name| state[name.as_str()].clone());
+            questions.push(Question {
+                call,
+                inputs: inputs.collect(),
+            });
+            wanted.push(output(&robot, call, state));
+        }
+    }
+    let functions = calls.len();
+    let partitions = has_partitions(robot.model()).then(|| {
+        calls.push((partition::call(&robot), Vec::new()));
+        calls.len() - 1
+    });
+    let mut seen = None;
+    for compiler in Compiler::all() {
+        let own: Vec<_> = calls.iter().map(|(call, _)| call.clone()).collect();
+        let driver = Driver::build(compiler, &folder(name).join(compiler.0), &files, own)?;
+        let texts = driver.texts()?;
+        let mut new = Seen {
+            worst: (0.0, String::new()),
+            values: 0,
+            sensitive: (0, 0.0),
+            errors: Vec::new(),
+        };
+        let answers = driver.answers(&questions)?;
+        let questions = questions.iter().zip(&wanted).enumerate();
+        for ((at, (question, wanted)), (error, found)) in questions.zip(answers) {
+            let function = &calls[question.call].0.name;
+            let text = texts.get(error).ok_or("an error without a text")?;
+            match wanted {
+                Ok(wanted) => {
+                    assert_eq!(error, 0, "{name}: {function}: {text}");
+                    new.values += 1;
+                    let difference = difference(&found, wanted);
+                    if difference > TOLERANCE {
+                        let state = &all[at / functions];
+                        let change = change(&robot, question.call, state, wanted);
+                        new.sensitive.0 += 1;
+                        new.sensitive.1 = new.sensitive.1.max(difference / change);
+                    } else if difference > new.worst.0 {
+                        new.worst = (difference, function.clone());
+                    }
+                }
+                Err(wanted) => {
+                    let wanted = wanted.to_string();
+                    assert!(
+                        error != 0 && wanted.starts_with(text),
+                        "{name}: {function}: {text}, not {wanted}"
+                    );
+                    assert!(
+                        found.iter().all(|&x| x == UNTOUCHED),
+                        "{name}: {function}: the output is touched"
+                    );
+                    new.errors.push(text.clone());
+                }
+            }
+        }
+        new.errors.sort();
+        new.errors.dedup();
+        println!(
+            "{name}, {}: {:.1e} ({}) of {} outputs; errors: {}",
+            compiler.0,
+            new.worst.0,
+            new.worst.1,
+            new.values,
+            new.errors.join(", ")
+        );
+        let (count, ratio) = new.sensitive;
+        println!(
+            "{name}, {}: {count} outputs differ by {ratio:.1} roundings of the inputs",
+            compiler.0
+        );
+        assert!(ratio < ROUNDINGS, "{name}: {ratio:.1e} roundings");
+        assert!(
+            count < new.values / 20,
+            "{name}: {count} of {} are sensitive",
+            new.values
+        );
+        if let Some(index) = partitions {
+            let (worst, values) = partition::compare(&robot, &driver, index, &near)?;
+            println!(
+                "{name}, {}: {worst:.1e} times the condition number of {values} partitions",
+                compiler.0
+            );
+            assert!(
+                worst < TOLERANCE && values > 0,
+                "{name}: {worst:.1e} of partitions"
+            );
+        }
+        seen = Some(new);
+    }
+    Ok(seen)
+}
+
+/// By how much a rounding of the inputs changes a function's output, relative to its largest number.
+fn change(robot: &InterpretedRobot, call: usize, state: &Inputs, wanted: &[f64]) -> f64 {
+    let mut largest = f64::MIN_POSITIVE;
+    for turn in 0..8_usize {
+        let mut rounded = state.clone();
+        for (at, number) in rounded.values_mut().flatten().enumerate() {
+            // Up or down, in another pattern each time.
+            let up = (at * (2 * turn + 1) + turn) % 3 == 0;
+            *number *= 1.0 + if up { f64::EPSILON } else { -f64::EPSILON };
+        }
+        if let Ok(output) = output(robot, call, &rounded) {
+            largest = largest.max(difference(&output, wanted));
+        }
+    }
+    largest
+}
+
+/// Whether the C has partitions of case 2.
+fn has_partitions(model: &RobotModel) -> bool {
+    let regressor = model.function(
+        Function::IdmRedPlatform(Columns::Standard),
+        MotionInput::Pose,
+    );
+    model.mechanism.actuated().len() > model.mechanism.dof() && regressor.is_some()
+}
+
+/// The state far from home, where most poses are out of reach.
+fn far(robot: &InterpretedRobot, state: &Inputs) -> Inputs {
+    let home = &robot.model().mechanism.home;
+    let mut far = state.clone();
+    for (name, home) in [
+        ("pose", &home.pose),
+        ("joints", &home.joints),
+        ("start", &home.pose),
+    ] {
+        let moved = state[name]
+            .iter()
+            .zip(home)
+            .map(|(x, home)| home + 4.0 * (x - home));
+        far.insert(name, moved.collect());
+    }
+    far.insert(
+        "actuators",
+        state["actuators"].iter().map(|q| q + 1.0).collect(),
+    );
+    far
+}
+
+/// The largest difference relative to the largest number.
+fn difference(found: &[f64], wanted: &[f64]) -> f64 {
+    assert_eq!(found.len(), wanted.len());
+    let size = wanted
+        .iter()
+        .fold(0.0_f64, |m, x| m.max(x.abs()))
+        .max(1e-300);
+    let worst = found.iter().zip(wanted).map(|(a, b)| (a - b).abs());
+    // A maximum would pass over what is no number.
+    worst
+        .map(|d| {
+            if d.is_finite() {
+                d / size
+            } else {
+                f64::INFINITY
+            }
+        })
+        .fold(0.0, f64::max)
+}
+
+/// Names of all descriptions of `robots/`.
+fn stems() -> Result<Vec<String>, Failure> {
+    let mut stems = Vec::new();
+    for entry in fs::read_dir(repository("robots"))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            stems.extend(
+                path.file_stem()
+                    .map(|stem| stem.to_string_lossy().into_owned()),
+            );
+        }
+    }
+    stems.sort();
+    Ok(stems)
+}
+
+#[test]
+fn robots_of_the_library_agree() -> Result<(), Failure> {
+    let robots: Vec<(String, &[&str])> = match is_full() {
+        true => stems()?.into_iter().map(|stem| (stem, &[][..])).collect(),
+        false => FEW
+            .map(|(stem, functions)| (stem.to_owned(), functions))
+            .to_vec(),
+    };
+    assert!(robots.len() >= FEW.len());
+    for (stem, functions) in robots {
+        let path = repository(&format!("robots/{stem}.toml"));
+        let model = model(&path, by_tier([Effort::None, Effort::Quick]), functions)?;
+        let seen = compare(&stem, model, by_tier([20, 200]))?;
+        assert!(seen.is_none_or(|seen| seen.values > 0));
+    }
+    Ok(())
+}
+
+/// No robot of the library has joints that Newton's method finds.
+#[test]
+fn robots_that_iterate_agree() -> Result<(), Failure> {
+    let names = by_tier([&["newton_point"][..], &["newton_point", "newton_spatial"]]);
+    for name in names {
+        let path = repository(&format!("cli/tests/c/{name}.toml"));
+        let seen = compare(name, model(&path, Effort::None, &[])?, by_tier([20, 100]))?;
+        if let Some(seen) = seen {
+            assert!(!seen.errors.is_empty());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,238 @@
+//! One function: documentation, signature, body.
+
+use super::errors;
+use super::expression::{Writer, fails};
+use super::lines::documentation;
+use super::naming::Naming;
+use crate::lowering::Array;
+use crate::model::{CompiledFunction, RobotModel};
+use crate::writing::body::Body;
+use crate::writing::labels::Labels;
+use crate::writing::outline::{Outline, Table};
+use overact_core::Extent;
+
+/// A function as its parts.
+pub struct Written {
+    /// The comment in the header.
+    pub documentation: String,
+    /// The signature, without what ends it.
+    pub signature: String,
+    /// The body in braces; empty where the runtime's part writes it.
+    pub body: String,
+    /// All names that the body assigns.
+    pub names: Vec<String>,
+}
+
+/// Writes a function of a robot.
+#[must_use]
+pub fn written(model: &RobotModel, function: &CompiledFunction, naming: &Naming) -> Written {
+    let outline = Outline::new(model, function);
+    let (mut body, mut names) = (String::new(), Vec::new());
+    if !outline.is_newton {
+        let boundary = boundary(model, &outline, naming);
+        let (rest, own) = rest(model, function, &outline, naming);
+        body = format!("{{\n{boundary}{rest}}}\n");
+        names = own;
+    }
+    Written {
+        documentation: documented(model, function, &outline, naming),
+        signature: signature(&function.name, &outline.arguments, naming),
+        body,
+        names,
+    }
+}
+
+/// The signature of a function with these arguments and an output.
+#[must_use]
+pub fn signature(name: &str, arguments: &[Array], naming: &Naming) -> String {
+    let restrict = naming.constant("RESTRICT");
+    let arguments = arguments.iter();
+    let mut lines: Vec<String> = arguments
+        .map(|argument| format!("    const double *{restrict} {}", argument.name))
+        .collect();
+    lines.push(format!("    double *{restrict} output"));
+    let (kind, name) = (naming.name("error"), naming.name(name));
+    format!("{kind} {name}(\n{})", lines.join(",\n"))
+}
+
+/// Whether a robot's pose ends with a quaternion.
+#[must_use]
+pub fn has_quaternion(model: &RobotModel) -> bool {
+    let platform = model.mechanism.platform.as_ref();
+    platform.is_some_and(|platform| platform.motion.has_quaternion())
+}
+
+/// What a function does before all else: it refuses numbers that are not finite, scales the quaternion of a pose
+/// to length 1, and finds the pose and the joints that the rest takes.
+fn boundary(model: &RobotModel, outline: &Outline<'_>, naming: &Naming) -> String {
+    let mut out = String::new();
+    for Array { name, shape } in &outline.arguments {
+        let length = shape.iter().product::<usize>();
+        // C compares no count with 0 without a warning.
+        if length == 0 {
+            out += &format!("    (void){name};\n");
+            continue;
+        }
+        let holds = format!("{}({name}, {length})", naming.name("is_finite"));
+        out += &fails(&holds, &naming.constant(&errors::not_finite(name)));
+    }
+    if takes_pose(outline) && has_quaternion(model) {
+        out += &format!("    double unit_pose[{}];\n", naming.constant("POSE"));
+        let holds = format!("{}(pose, unit_pose)", naming.name("unit_quaternion"));
+        out += &fails(&holds, &naming.constant("ZERO_QUATERNION_POSE"));
+    }
+    if outline.finds_pose {
+        let call = format!(
+            "{}(actuators, start, found_pose)",
+            naming.name("pose_from_actuators")
+        );
+        out += &found("found_pose", "POSE", &call, naming);
+    }
+    if outline.finds_joints {
+        let pose = pose_name(model, outline);
+        let call = format!("{}({pose}, found_joints)", naming.name("joints"));
+        out += &found("found_joints", "JOINTS", &call, naming);
+    }
+    out
+}
+
+/// An array that a function fills, or its error.
+fn found(array: &str, size: &str, call: &str, naming: &Naming) -> String {
+    let (size, kind, ok) = (
+        naming.constant(size),
+        naming.name("error"),
+        naming.constant("OK"),
+    );
+    format!(
+        "    double {array}[{size}];\n    const {kind} {array}_error = {call};\n    \
+         if ({array}_error != {ok}) {{\n        return {array}_error;\n    }}\n"
+    )
+}
+
+fn takes_pose(outline: &Outline<'_>) -> bool {
+    outline
+        .arguments
+        .iter()
+        .any(|argument| argument.name == "pose")
+}
+
+/// What the pose is called in the body.
+fn pose_name(model: &RobotModel, outline: &Outline<'_>) -> &'static str {
+    match (outline.finds_pose, has_quaternion(model)) {
+        (true, _) => "found_pose",
+        (false, true) => "unit_pose",
+        (false, false) => "pose",
+    }
+}
+
+/// What stands behind the boundary, and the names that it assigns.
+fn rest(
+    model: &RobotModel,
+    function: &CompiledFunction,
+    outline: &Outline<'_>,
+    naming: &Naming,
+) -> (String, Vec<String>) {
+    let program = &function.program;
+    let called = |array: &Array| match array.name.as_str() {
+        "pose" => pose_name(model, outline).to_owned(),
+        "joints" if outline.finds_joints => "found_joints".to_owned(),
+        name => name.to_owned(),
+    };
+    let inputs: Vec<String> = program.inputs.iter().map(called).collect();
+    if let Some(twin) = outline.twin {
+        let name = naming.name(&twin.name);
+        let call = format!("    return {name}({}, output);\n", inputs.join(", "));
+        return (call, Vec::new());
+    }
+    let reserved = |name: &str| naming.is_reserved(name);
+    let body = Body::write(program, &Labels::new(model, function), &reserved);
+    let mut writer = Writer {
+        model,
+        naming,
+        inputs,
+        angles: 0,
+    };
+    let statements = writer.write(&body, &program.output);
+    let ok = naming.constant("OK");
+    (format!("{statements}    return {ok};\n"), body.names)
+}
+
+/// The comment before a function.
+fn documented(
+    model: &RobotModel,
+    function: &CompiledFunction,
+    outline: &Outline<'_>,
+    naming: &Naming,
+) -> String {
+    let mut lines = vec![function.computes.summary().to_owned(), String::new()];
+    lines.push(outline.origin.to_owned());
+    let meaning = |name: &str| {
+        let known = outline.meanings.iter().find(|(known, _)| known == name);
+        let meaning = known.map_or("", |(_, meaning)| meaning.as_str());
+        let table = |name| naming.name(name);
+        let meaning = meaning
+            .replace("`PARAMETERS`", &table("parameters"))
+            .replace("`PAYLOAD_PARAMETERS`", &table("payload_parameters"));
+        meaning.replace('`', "")
+    };
+    for argument in &outline.arguments {
+        let (name, size) = (&argument.name, size(model, &argument.name, naming));
+        lines.push(format!("@param {name} {} ({size})", meaning(name)));
+    }
+    let (rows, columns) = function.computes.extents();
+    let extent = |extent| format!("[{}]", naming.constant(extent_name(extent)));
+    let shape = format!(
+        "{}{}",
+        extent(rows),
+        columns.map(extent).unwrap_or_default()
+    );
+    let table = outline.columns.map(|table| match table {
+        Table::Parameters => "parameters",
+        Table::BaseParameters => "base_parameters",
+        Table::PayloadParameters => "payload_parameters",
+    });
+    let table = table.map(|table| format!("; columns: {}", naming.name(table)));
+    let shapes = function.program.output.shape.iter();
+    let shapes: Vec<String> = shapes.map(ToString::to_string).collect();
+    lines.push(format!(
+        "@param[out] output {shape}, {}{}",
+        shapes.join(" x "),
+        table.unwrap_or_default()
+    ));
+    lines.push(match outline.can_fail {
+        true => "@return 0, or an error: an input that is not finite, a pose out of reach, or a singular configuration.",
+        false => "@return 0, or an error: an input that is not finite.",
+    }.to_owned());
+    lines.push(String::new());
+    lines.push(format!("{}.", function.program.cost()));
+    documentation(&lines)
+}
+
+/// How many numbers an argument has, by the macros of sizes.
+fn size(model: &RobotModel, argument: &str, naming: &Naming) -> String {
+    let sizes: &[&str] = match argument {
+        "pose" | "start" => &["POSE"],
+        "joints" => &["JOINTS"],
+        "parameters" => &["PARAMETERS", "PAYLOAD_PARAMETERS"],
+        "preload" => &["REDUNDANCY"],
+        "twist" | "acceleration" => &["DOF"],
+        "joint_velocities" | "joint_accelerations" if model.is_tree() => &["DOF"],
+        _ => &["ACTUATORS"],
+    };
+    let sizes: Vec<String> = sizes.iter().map(|size| naming.constant(size)).collect();
+    sizes.join(" + ")
+}
+
+/// The macro of an extent, without prefix.
+const fn extent_name(extent: Extent) -> &'static str {
+    match extent {
+        Extent::Pose => "POSE",
+        Extent::Actuators => "ACTUATORS",
+        Extent::Joints => "JOINTS",
+        Extent::Redundancy => "REDUNDANCY",
+        Extent::Parameters => "PARAMETERS",
+        Extent::BaseParameters => "BASE_PARAMETERS",
+        Extent::PayloadParameters => "PAYLOAD_PARAMETERS",
+        _ => "DOF",
+    }
+}

@@ -1,0 +1,274 @@
+//! Functions that iterate: forward kinematics by Gauss and Newton, inverse kinematics by Newton's method, and
+//! partitions of case 2. They are the counterparts of `overact::forward`, `overact::inverse` and
+//! `overact::partition`, operation by operation; `codegen/src/emission/model_impl.rs` and `inverse.rs` are
+//! their Rust.
+//!
+//! In the texts `rob_` and `ROB_` stand for the robot's prefix.
+
+use super::errors;
+use super::function::{has_quaternion, signature};
+use super::lines::documentation;
+use super::naming::Naming;
+use crate::derivation::{JointsBy, MotionInput};
+use crate::lowering::Array;
+use crate::model::RobotModel;
+use overact_core::Function;
+
+const DISPLACE: &str = include_str!("text/displace.c");
+const DISPLACE_QUATERNION: &str = include_str!("text/displace_quaternion.c");
+const GAUSS_NEWTON: &str = include_str!("text/gauss_newton.c");
+/// Arguments that are not finite.
+const FORWARD_CHECKS: &str = "
+{
+    if (!(rob_is_finite(actuators, ROB_ACTUATORS))) {
+        return ROB_NOT_FINITE_ACTUATORS;
+    }
+    if (!(rob_is_finite(start, ROB_POSE))) {
+        return ROB_NOT_FINITE_START;
+    }
+";
+
+const FORWARD_OF_A_TREE: &str = "\
+    for (int i = 0; i < ROB_POSE; i++) {
+        output[i] = actuators[i];
+    }
+    return ROB_OK;
+}
+";
+
+const FORWARD_START: &str = "\
+    double pose[ROB_POSE];
+    for (int i = 0; i < ROB_POSE; i++) {
+        pose[i] = start[i];
+    }
+";
+
+const FORWARD_START_QUATERNION: &str = "\
+    double pose[ROB_POSE];
+    if (!(rob_unit_quaternion(start, pose))) {
+        return ROB_ZERO_QUATERNION_START;
+    }
+";
+
+const FORWARD_BY_RULE: &str = "\
+    rob_error error = rob_pose_in_closed_form(actuators, pose);
+    if (error != ROB_OK) {
+        error = rob_gauss_newton(actuators, pose);
+    }
+";
+
+const FORWARD_AGAIN_BY_RULE: &str = "\
+    rob_error error = rob_gauss_newton(actuators, pose);
+    if (error != ROB_OK) {
+        if (rob_pose_in_closed_form(actuators, pose) == ROB_OK) {
+            error = rob_gauss_newton(actuators, pose);
+        }
+    }
+";
+
+const FORWARD: &str = "\
+    const rob_error error = rob_gauss_newton(actuators, pose);
+";
+
+const FORWARD_END: &str = "\
+    if (error != ROB_OK) {
+        return error;
+    }
+    for (int i = 0; i < ROB_POSE; i++) {
+        output[i] = pose[i];
+    }
+    return ROB_OK;
+}
+";
+
+const NEWTON: &str = include_str!("text/newton.c");
+/// What `ROB_WAY` stands for is the scaling of the quaternion on the way.
+const JOINTS: &str = include_str!("text/joints.c");
+/// The quaternion of a pose on the way, scaled to length 1.
+const WAY_OF_A_QUATERNION: &str = "\
+            {
+                double *const q = &way[ROB_POSE - 4];
+                const double norm = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+                for (int i = 0; i < 4; i++) {
+                    q[i] /= norm;
+                }
+            }
+";
+
+const JOINTS_CHECKS: &str = "
+{
+    if (!(rob_is_finite(pose, ROB_POSE))) {
+        return ROB_NOT_FINITE_POSE;
+    }
+";
+
+const JOINTS_CHECKS_QUATERNION: &str = "\
+    double unit_pose[ROB_POSE];
+    if (!(rob_unit_quaternion(pose, unit_pose))) {
+        return ROB_ZERO_QUATERNION_POSE;
+    }
+";
+
+const PARTITION_TYPE: &str = include_str!("text/partition.h");
+const PARTITION: &str = include_str!("text/partition.c");
+/// Whether partitions of case 2 are written: for redundant robots with all that they are made from.
+fn has_partitions(model: &RobotModel) -> bool {
+    let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
+    let jacobian = model.function(Function::InverseJacobian, MotionInput::Pose);
+    let regressor = model.function(
+        Function::IdmRedPlatform(overact_core::Columns::Standard),
+        MotionInput::Pose,
+    );
+    is_redundant && jacobian.is_some() && regressor.is_some()
+}
+
+/// The arguments of `pose_from_actuators`.
+fn forward_arguments(model: &RobotModel) -> [Array; 2] {
+    let array = |name: &str, length: usize| Array {
+        name: name.to_owned(),
+        shape: vec![length],
+    };
+    let mechanism = &model.mechanism;
+    [
+        array("actuators", mechanism.actuated().len()),
+        array("start", mechanism.pose_len()),
+    ]
+}
+
+/// What is declared in the header.
+#[must_use]
+pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
+    let mut out = String::new();
+    if model.forward_kinematics {
+        let way = match closed_form(model) {
+            ClosedForm::None => "",
+            ClosedForm::Alone => " It is pose_in_closed_form where that has a value.",
+            ClosedForm::Again => {
+                " Where the iteration fails from there, it starts again from pose_in_closed_form."
+            }
+        };
+        let lines = [
+            format!("Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.{way}"),
+            String::new(),
+            "@param actuators q, positions of the actuated joints (m, rad) (ROB_ACTUATORS)".to_owned(),
+            "@param start a pose near the wanted one, in its assembly mode (m, rad) (ROB_POSE)".to_owned(),
+            "@param[out] output [ROB_POSE]".to_owned(),
+            "@return 0, or an error: an input that is not finite, no convergence, or a singular or unreachable configuration on the way.".to_owned(),
+        ];
+        out += &naming.apply(&documentation(&lines));
+        let signature = signature("pose_from_actuators", &forward_arguments(model), naming);
+        out += &format!("{signature};\n\n");
+    }
+    if has_partitions(model) {
+        out += &naming.apply(PARTITION_TYPE);
+    }
+    out
+}
+
+/// How forward kinematics uses a closed form.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum ClosedForm {
+    /// There is none.
+    None,
+    /// It is the pose, as there is no actuator too many.
+    Alone,
+    /// It is where the iteration starts again.
+    Again,
+}
+
+fn closed_form(model: &RobotModel) -> ClosedForm {
+    let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
+    match model.function(Function::PoseInClosedForm, MotionInput::Actuators) {
+        Some(_) if is_redundant => ClosedForm::Again,
+        Some(_) => ClosedForm::Alone,
+        None => ClosedForm::None,
+    }
+}
+
+/// What stands in the source file.
+#[must_use]
+pub fn definitions(model: &RobotModel, naming: &Naming) -> String {
+    let mut parts = Vec::new();
+    if model.selection.joints == JointsBy::Newton && has_joints(model) {
+        parts.push(joints(model, naming));
+    }
+    if model.forward_kinematics {
+        parts.push(forward(model, naming));
+    }
+    if has_partitions(model) {
+        parts.push(naming.apply(PARTITION));
+    }
+    parts.join("\n")
+}
+
+fn has_joints(model: &RobotModel) -> bool {
+    model
+        .function(Function::Joints, MotionInput::Pose)
+        .is_some()
+}
+
+fn forward(model: &RobotModel, naming: &Naming) -> String {
+    let head = signature("pose_from_actuators", &forward_arguments(model), naming);
+    let text = |parts: &[&str]| naming.apply(&parts.concat());
+    if model.is_tree() {
+        return format!("{head}{}", text(&[FORWARD_CHECKS, FORWARD_OF_A_TREE]));
+    }
+    let (displace, start) = match has_quaternion(model) {
+        true => (DISPLACE_QUATERNION, FORWARD_START_QUATERNION),
+        false => (DISPLACE, FORWARD_START),
+    };
+    let found = match closed_form(model) {
+        ClosedForm::None => FORWARD,
+        ClosedForm::Alone => FORWARD_BY_RULE,
+        ClosedForm::Again => FORWARD_AGAIN_BY_RULE,
+    };
+    let helpers = text(&[displace, "\n", GAUSS_NEWTON, "\n"]);
+    let body = text(&[FORWARD_CHECKS, start, found, FORWARD_END]);
+    format!("{helpers}{head}{body}")
+}
+
+/// Inverse kinematics by Newton's method, with the tables that it needs of the legs.
+fn joints(model: &RobotModel, naming: &Naming) -> String {
+    let mechanism = &model.mechanism;
+    let mut first = vec!["0".to_owned()];
+    let starts = (0..mechanism.legs.len()).map(|leg| mechanism.leg_range(leg).end.to_string());
+    first.extend(starts);
+    let legs = errors::leg_constants(model);
+    let of_legs = |kind: &str| {
+        let names = legs
+            .iter()
+            .map(|leg| naming.constant(&format!("{kind}_{leg}")));
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let count = legs.len();
+    let table = |kind: &str, name: &str, count: usize, elements: &str| {
+        let head = naming.apply(&format!("static const {kind} rob_{name}[{count}]"));
+        format!("{head} = {{ {elements} }};\n")
+    };
+    let mut out = table("int", "first_joints", count + 1, &first.join(", "));
+    out += &table(
+        "rob_error",
+        "legs_out_of_reach",
+        count,
+        &of_legs("OUT_OF_REACH"),
+    );
+    out += &table(
+        "rob_error",
+        "singular_legs",
+        count,
+        &of_legs("SINGULAR_LEG"),
+    );
+    let pose = Array {
+        name: "pose".to_owned(),
+        shape: vec![mechanism.pose_len()],
+    };
+    let head = signature("joints", &[pose], naming);
+    let (scaled, goal, way) = match has_quaternion(model) {
+        true => (JOINTS_CHECKS_QUATERNION, "unit_pose", WAY_OF_A_QUATERNION),
+        false => ("", "pose", ""),
+    };
+    let body = JOINTS.replace("ROB_GOAL", goal).replace("ROB_WAY", way);
+    let text = |parts: &[&str]| naming.apply(&parts.concat());
+    out += &text(&["\n", NEWTON, "\n"]);
+    out + &head + &text(&[JOINTS_CHECKS, scaled, &body])
+}

@@ -1,0 +1,110 @@
+//! Lines of a file: comments that nothing ends early, strings, and expressions broken where they are too
+//! long.
+
+/// Width of a line.
+const WIDTH: usize = 100;
+
+/// A text that stands in a comment: it neither ends it nor looks like the begin of another one.
+#[must_use]
+pub fn comment_text(text: &str) -> String {
+    text.replace("*/", "* /").replace("/*", "/ *")
+}
+
+/// A text as a string literal.
+#[must_use]
+pub fn string(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            // Two question marks could begin a trigraph.
+            '?' => out.push_str("\\?"),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
+/// A comment before a declaration; an empty line parts paragraphs.
+#[must_use]
+pub fn documentation(paragraphs: &[String]) -> String {
+    let mut out = String::from("/**\n");
+    for paragraph in paragraphs {
+        for line in filled(&comment_text(paragraph), WIDTH - 3) {
+            out += format!(" * {line}").trim_end();
+            out.push('\n');
+        }
+    }
+    out += " */\n";
+    out
+}
+
+/// A comment of lines that stay as they are.
+#[must_use]
+pub fn verbatim(lines: &[String]) -> String {
+    let mut out = String::from("/*\n");
+    for line in lines {
+        out += format!(" * {}", comment_text(line)).trim_end();
+        out.push('\n');
+    }
+    out += " */\n";
+    out
+}
+
+/// A line of code, with what does not fit on lines of their own that are indented more. It holds no string.
+#[must_use]
+pub fn code(indent: usize, text: &str) -> String {
+    let mut out = String::new();
+    let mut indent = indent;
+    for (at, line) in filled(text, WIDTH - indent - 4).iter().enumerate() {
+        if at == 1 {
+            indent += 4;
+        }
+        out += &format!("{:indent$}{line}\n", "");
+    }
+    out
+}
+
+/// The words of a text on lines of at most `width` characters, or one word more than that.
+fn filled(text: &str, width: usize) -> Vec<String> {
+    let (mut lines, mut line) = (Vec::new(), String::new());
+    for word in text.split(' ') {
+        if line.chars().count() + 1 + word.chars().count() > width && !line.trim().is_empty() {
+            lines.push(std::mem::take(&mut line));
+        } else if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    lines.push(line);
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{code, documentation, string};
+
+    #[test]
+    fn comments_end_where_they_shall() {
+        let hostile = documentation(&["a */ int x; /* b".to_owned()]);
+        assert_eq!(hostile, "/**\n * a * / int x; / * b\n */\n");
+    }
+
+    #[test]
+    fn strings_are_what_they_were() {
+        assert_eq!(string("N m/rad"), "\"N m/rad\"");
+        assert_eq!(string("a\"b\\c??/\n"), r#""a\"b\\c\?\?/ ""#);
+    }
+
+    #[test]
+    fn long_lines_are_broken() {
+        let long = format!("x = {};", vec!["abcdefg"; 20].join(" + "));
+        let broken = code(4, &long);
+        assert!(broken.lines().count() > 1);
+        assert!(broken.lines().all(|line| line.len() <= 100), "{broken}");
+        let squeeze = |s: &str| s.split_whitespace().collect::<String>();
+        assert_eq!(squeeze(&broken), squeeze(&long));
+    }
+}

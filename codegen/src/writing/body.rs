@@ -1,0 +1,337 @@
+//! The body of a function: assignments and results as a reader shall see them, in no language yet.
+//!
+//! A value that is used once and has no name is written where it is used, as long as the expression
+//! stays short; every other value is an assignment with one of the [`names`](super::names). What a language
+//! calls otherwise, and how it writes a sum, is its own affair.
+
+use super::angles;
+use super::labels::Labels;
+use super::names::Names;
+use super::statement::{Call, Expression, Operator, Pair, Statement};
+use crate::lowering::{Operand, Operation, Program};
+use std::collections::{BTreeMap, HashSet};
+
+/// Operations that one expression may hold.
+const LONGEST: usize = 10;
+
+/// A named constant of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constant {
+    /// The name.
+    pub name: String,
+    /// The value.
+    pub value: f64,
+    /// What it is, in the description's names.
+    pub expression: String,
+}
+
+/// A function's body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Constants that it uses, by name.
+    pub constants: Vec<Constant>,
+    /// The assignments and conditions.
+    pub statements: Vec<Statement>,
+    /// The output, row-major.
+    pub output: Vec<Expression>,
+    /// Where a section begins: the first name of its first assignment, and the section's.
+    pub sections: Vec<(String, String)>,
+    /// All names that are assigned, in the order of the program's steps.
+    pub names: Vec<String>,
+}
+
+impl Body {
+    /// Statements and values of a program whose inputs and outputs have these labels; names that are
+    /// `reserved` are not given.
+    #[must_use]
+    pub fn write(program: &Program, labels: &Labels, reserved: &dyn Fn(&str) -> bool) -> Self {
+        let count = program.steps.len();
+        let mut writer = Writer {
+            program,
+            naming: Names::new(program, labels),
+            labels,
+            reserved,
+            constants: BTreeMap::new(),
+            sections: Vec::new(),
+            names: vec![None; count],
+            uses: program.uses(),
+            inlined: vec![None; count],
+            statements: Vec::new(),
+            taken: program.inputs.iter().map(|a| a.name.clone()).collect(),
+            written: vec![false; count],
+            guarded: 0,
+        };
+        writer.angles(&angles::early(program));
+        let mut at = 0;
+        while at < count {
+            at += writer.step(at);
+        }
+        let output = writer.output();
+        Self {
+            constants: writer.constants.into_values().collect(),
+            statements: writer.statements,
+            output,
+            sections: sections(&writer.sections),
+            names: writer.names.into_iter().flatten().collect(),
+        }
+    }
+}
+
+/// An expression and how many operations it holds.
+#[derive(Debug, Clone)]
+struct Sized {
+    expression: Expression,
+    size: usize,
+}
+
+/// Writes the body of a program.
+struct Writer<'p> {
+    program: &'p Program,
+    naming: Names<'p>,
+    labels: &'p Labels,
+    reserved: &'p dyn Fn(&str) -> bool,
+    constants: BTreeMap<String, Constant>,
+    sections: Vec<(String, String)>,
+    names: Vec<Option<String>>,
+    uses: Vec<usize>,
+    inlined: Vec<Option<Sized>>,
+    statements: Vec<Statement>,
+    taken: HashSet<String>,
+    /// Steps that are written before their turn.
+    written: Vec<bool>,
+    /// How many guards are written.
+    guarded: usize,
+}
+
+impl Writer<'_> {
+    /// Writes the sines and cosines of angles that are known from the start.
+    fn angles(&mut self, early: &angles::Early) {
+        if early.pairs.is_empty() {
+            return;
+        }
+        for &at in &early.steps {
+            self.step(at);
+            self.written[at] = true;
+        }
+        let first = self.sections.len();
+        let mut pairs = Vec::new();
+        for pair in &early.pairs {
+            let angle = self.operand(pair.angle).expression;
+            let mut name = |step: Option<usize>| {
+                let at = step?;
+                self.written[at] = true;
+                Some(self.declare(at))
+            };
+            let (sine, cosine) = (name(pair.sine), name(pair.cosine));
+            pairs.push(Pair {
+                angle,
+                sine,
+                cosine,
+            });
+        }
+        self.statements.push(Statement::Pairs(pairs));
+        // They are of all legs at once.
+        for (_, section) in &mut self.sections[first..] {
+            "sines and cosines".clone_into(section);
+        }
+        self.guards();
+    }
+
+    /// Writes step `at`; returns how many steps were written.
+    fn step(&mut self, at: usize) -> usize {
+        if self.written[at] {
+            return 1;
+        }
+        if let Some(angle) = self.pair(at) {
+            return self.sine_and_cosine(at, angle);
+        }
+        let text = self.text(self.program.steps[at].operation);
+        let named = self.program.steps[at].name.is_some();
+        let guards = &self.program.guards;
+        let guarded = guards.iter().any(|g| g.operand == Operand::Step(at));
+        if self.uses[at] == 1 && !named && !guarded && text.size < LONGEST {
+            self.inlined[at] = Some(text);
+        } else {
+            let name = self.declare(at);
+            self.statements.push(Statement::Assign {
+                name,
+                value: text.expression,
+            });
+        }
+        self.guards();
+        1
+    }
+
+    /// The angle, if steps `at` and `at + 1` are its cosine and sine in whatever order.
+    fn pair(&self, at: usize) -> Option<Operand> {
+        let operation = |i: usize| self.program.steps.get(i).map(|s| s.operation);
+        match (operation(at)?, operation(at + 1)?) {
+            (Operation::Cosine(a), Operation::Sine(b))
+            | (Operation::Sine(a), Operation::Cosine(b))
+                if a == b =>
+            {
+                Some(a)
+            }
+            _ => None,
+        }
+    }
+
+    fn sine_and_cosine(&mut self, at: usize, angle: Operand) -> usize {
+        let angle = self.operand(angle).expression;
+        let (first, second) = (self.declare(at), self.declare(at + 1));
+        let cosine_first = matches!(self.program.steps[at].operation, Operation::Cosine(_));
+        let (sine, cosine) = match cosine_first {
+            true => (second, first),
+            false => (first, second),
+        };
+        self.statements.push(Statement::Pair(Pair {
+            angle,
+            sine: Some(sine),
+            cosine: Some(cosine),
+        }));
+        self.guards();
+        2
+    }
+
+    /// Writes the guards whose values are there, each behind those before it: of several legs that fail at
+    /// once the first is told, in whichever order their values come.
+    fn guards(&mut self) {
+        let program = self.program;
+        while let Some(guard) = program.guards.get(self.guarded) {
+            if let Operand::Step(at) = guard.operand
+                && self.names[at].is_none()
+            {
+                return;
+            }
+            self.guarded += 1;
+            let value = self.operand(guard.operand).expression;
+            self.statements.push(Statement::Guard {
+                value,
+                condition: guard.condition.clone(),
+            });
+        }
+    }
+
+    /// A name for the value of a step that no other value has.
+    fn declare(&mut self, at: usize) -> String {
+        let (taken, reserved) = (&self.taken, self.reserved);
+        let is_free = |name: &str| !taken.contains(name) && !reserved(name);
+        let name = self.naming.name(at, &is_free);
+        self.taken.insert(name.clone());
+        let section = &self.program.steps[at].scope;
+        self.sections.push((name.clone(), section.clone()));
+        self.names[at] = Some(name.clone());
+        name
+    }
+
+    fn operand(&mut self, operand: Operand) -> Sized {
+        let expression = match operand {
+            Operand::Constant(value) => self.constant(value),
+            Operand::Input { array, index } => Expression::Input { array, index },
+            Operand::Step(at) => match (&self.names[at], self.inlined[at].take()) {
+                (Some(name), _) => Expression::Value(name.clone()),
+                (None, Some(text)) => return text,
+                (None, None) => Expression::Broken("an operand is used before its step"),
+            },
+        };
+        Sized {
+            expression,
+            size: 0,
+        }
+    }
+
+    /// A number, or the named constant that it is.
+    fn constant(&mut self, value: f64) -> Expression {
+        let known = self.labels.dimension(value.abs());
+        let Some(dimension) = known.filter(|known| !(self.reserved)(&known.name)) else {
+            return Expression::Number(value);
+        };
+        let name = dimension.name.clone();
+        let constant = Constant {
+            name: name.clone(),
+            value: value.abs(),
+            expression: dimension.expression.clone(),
+        };
+        self.constants.insert(name.clone(), constant);
+        Expression::Constant {
+            name,
+            negative: value < 0.0,
+        }
+    }
+
+    fn text(&mut self, operation: Operation) -> Sized {
+        match operation {
+            Operation::Add(a, b) => self.binary(Operator::Add, a, b),
+            Operation::Sub(a, b) => self.binary(Operator::Sub, a, b),
+            Operation::Mul(a, b) => self.binary(Operator::Mul, a, b),
+            Operation::Div(a, b) => self.binary(Operator::Div, a, b),
+            Operation::Neg(a) => {
+                let inner = self.operand(a);
+                Sized {
+                    expression: Expression::Negative(Box::new(inner.expression)),
+                    size: inner.size,
+                }
+            }
+            Operation::Sqrt(a) => self.call(Call::Sqrt, &[a]),
+            Operation::Sign(a) => self.call(Call::Sign, &[a]),
+            Operation::Signed(a, b) => self.call(Call::Signed, &[a, b]),
+            Operation::Atan2(y, x) => self.call(Call::Atan2, &[y, x]),
+            // A sine without its cosine, or the other way round.
+            Operation::Sine(a) => self.part(Call::Sine, a),
+            Operation::Cosine(a) => self.part(Call::Cosine, a),
+        }
+    }
+
+    fn binary(&mut self, operator: Operator, a: Operand, b: Operand) -> Sized {
+        let (a, b) = (self.operand(a), self.operand(b));
+        Sized {
+            size: a.size + b.size + 1,
+            expression: Expression::Binary(operator, Box::new([a.expression, b.expression])),
+        }
+    }
+
+    fn call(&mut self, function: Call, operands: &[Operand]) -> Sized {
+        let operands: Vec<Sized> = operands.iter().map(|&a| self.operand(a)).collect();
+        let size = operands.iter().map(|a| a.size).sum::<usize>() + 1;
+        let operands = operands.into_iter().map(|a| a.expression);
+        Sized {
+            expression: Expression::Call(function, operands.collect()),
+            size,
+        }
+    }
+
+    fn part(&mut self, function: Call, angle: Operand) -> Sized {
+        let angle = self.operand(angle).expression;
+        Sized {
+            expression: Expression::Call(function, vec![angle]),
+            size: 1,
+        }
+    }
+
+    fn output(&mut self) -> Vec<Expression> {
+        let entries = self.program.entries.iter();
+        let value = |entry: &crate::lowering::Entry| {
+            let value = self.operand(entry.operand).expression;
+            match entry.negative {
+                true => Expression::Negative(Box::new(value)),
+                false => value,
+            }
+        };
+        entries.map(value).collect()
+    }
+}
+
+/// Where sections begin, from the section of every assignment. A few assignments on their own, of what a
+/// leg and the platform share for instance, stand in the section around them.
+fn sections(assigned: &[(String, String)]) -> Vec<(String, String)> {
+    const SHORTEST: usize = 4;
+    let mut starts: Vec<(String, String)> = Vec::new();
+    for run in assigned.chunk_by(|a, b| a.1 == b.1) {
+        let (name, section) = &run[0];
+        let is_other = starts.last().is_none_or(|(_, last)| last != section);
+        if !section.is_empty() && is_other && (run.len() >= SHORTEST || starts.is_empty()) {
+            starts.push((name.clone(), section.clone()));
+        }
+    }
+    starts
+}

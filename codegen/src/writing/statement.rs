@@ -1,0 +1,134 @@
+//! Statements and expressions as all languages have them.
+
+use crate::lowering::Condition;
+
+/// How tightly an expression binds: sums, products, atoms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Binding {
+    /// a + b, a - b.
+    Sum,
+    /// a b, a / b, -a.
+    Product,
+    /// What needs no parentheses.
+    Atom,
+}
+
+/// An operator between two operands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operator {
+    /// a + b.
+    Add,
+    /// a - b.
+    Sub,
+    /// a b.
+    Mul,
+    /// a / b.
+    Div,
+}
+
+/// A function that a language has to know.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Call {
+    /// Square root.
+    Sqrt,
+    /// -1, 0 or 1.
+    Sign,
+    /// The first operand with the sign of the second.
+    Signed,
+    /// The angle of a direction, y first.
+    Atan2,
+    /// A sine without its cosine.
+    Sine,
+    /// A cosine without its sine.
+    Cosine,
+}
+
+/// An expression.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Expression {
+    /// A number.
+    Number(f64),
+    /// A named constant, or its negative.
+    Constant {
+        /// The constant's name.
+        name: String,
+        /// Whether its negative is meant.
+        negative: bool,
+    },
+    /// Element of an input array.
+    Input {
+        /// Which input.
+        array: usize,
+        /// Which element.
+        index: usize,
+    },
+    /// A value that was assigned.
+    Value(String),
+    /// The negative.
+    Negative(Box<Self>),
+    /// Two operands.
+    Binary(Operator, Box<[Self; 2]>),
+    /// A function of operands.
+    Call(Call, Vec<Self>),
+    /// What stands where a program breaks a rule that lowering guarantees.
+    Broken(&'static str),
+}
+
+impl Operator {
+    /// How tightly it binds, and how tightly its right operand has to.
+    #[must_use]
+    pub const fn binding(self) -> (Binding, Binding) {
+        match self {
+            Self::Add => (Binding::Sum, Binding::Sum),
+            Self::Sub => (Binding::Sum, Binding::Product),
+            Self::Mul | Self::Div => (Binding::Product, Binding::Atom),
+        }
+    }
+}
+
+impl Expression {
+    /// How tightly the expression binds.
+    #[must_use]
+    pub fn binding(&self) -> Binding {
+        match self {
+            Self::Number(value) if *value < 0.0 => Binding::Product,
+            Self::Constant { negative: true, .. } | Self::Negative(_) => Binding::Product,
+            Self::Binary(operator, _) => operator.binding().0,
+            _ => Binding::Atom,
+        }
+    }
+}
+
+/// Sine and cosine of an angle, each with its name if it is wanted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pair {
+    /// The angle.
+    pub angle: Expression,
+    /// Name of the sine.
+    pub sine: Option<String>,
+    /// Name of the cosine.
+    pub cosine: Option<String>,
+}
+
+/// One statement.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Statement {
+    /// An assignment.
+    Assign {
+        /// The name.
+        name: String,
+        /// The value.
+        value: Expression,
+    },
+    /// Sines and cosines of several angles, which do not depend on one another.
+    Pairs(Vec<Pair>),
+    /// Sine and cosine of one angle.
+    Pair(Pair),
+    /// A condition on a value.
+    Guard {
+        /// The value.
+        value: Expression,
+        /// The condition.
+        condition: Condition,
+    },
+}
