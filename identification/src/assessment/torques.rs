@@ -18,7 +18,6 @@ use crate::{
     data::Log,
     error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
-    filters::Decimator,
     kinematics::Motions,
     regression::{columns::ColumnSet, factor::Factor},
     settings::Settings,
@@ -304,7 +303,7 @@ fn run_factors(
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
     let mut motions = Motions::new(model, log, settings)?;
-    let decimator = Decimator::new(settings.decimation)?;
+    let decimator = settings.decimator(settings.decimation, log.sampling_frequency())?;
     let (p, width) = (base.columns.len(), base.columns.len() + n * n);
     let mut streams = (0..r)
         .map(|_| decimator.stream(width, motions.samples()))

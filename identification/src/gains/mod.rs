@@ -14,6 +14,7 @@
 //! - `noise`: the noise of the drives' signals, as the residuals tell it;
 //! - `solve`: generalised total least squares with exact columns W and w;
 //! - `deviations`: how sure the gains are;
+//! - `shares`: what their uncertainty does to estimates that are made with them;
 //! - `result`: what is told.
 
 mod deviations;
@@ -22,9 +23,11 @@ mod noise;
 mod observation;
 mod result;
 mod selection;
+mod shares;
 mod solve;
 
 pub use result::{DriveGain, Gains, JointParameter};
+pub(crate) use shares::DriveShares;
 
 use overact::Model;
 
@@ -75,7 +78,7 @@ pub fn drive_gains(
     let all = || info.actuators.iter().map(|name| format!("`{name}`"));
     let sure = deviations(&equations, &selection, &solution);
     let sure = sure.ok_or_else(|| undetermined(&all().collect::<Vec<_>>()))?;
-    let (parameters, drives) = sure.split_at(selection.parameters());
+    let (parameters, drives) = sure.all.split_at(selection.parameters());
     let each = solution.gains().iter().zip(drives).zip(all());
     let unsure: Vec<String> = each
         .filter(|((gain, deviation), _)| **gain < DETERMINED * **deviation)
@@ -105,5 +108,6 @@ pub fn drive_gains(
         drives: info.actuators.iter().enumerate().map(drive).collect(),
         parameters: parameters.iter().enumerate().map(parameter).collect(),
         equations: count,
+        covariance: sure.gains,
     })
 }

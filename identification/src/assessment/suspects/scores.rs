@@ -16,7 +16,7 @@ use crate::{
     blocks::{BLOCK, evaluate, slice},
     data::{Log, Variant},
     error::Error,
-    filters::{DECIMATION_PADDING, Decimation, Decimator},
+    filters::{DECIMATION_PADDING, Decimation},
     kinematics::{
         Motion, Motions,
         conditioning::{KeptActuators, home_scales},
@@ -207,7 +207,7 @@ impl Pass<'_> {
     fn run(&self, log: &Log) -> Result<RunScores, Error> {
         let lines = self.model.info().sizes.dof;
         let mut motions = Motions::new(self.model, log, self.settings)?;
-        let decimator = Decimator::new(self.decimation)?;
+        let decimator = self.settings.decimator(self.decimation, log.sampling_frequency())?;
         let samples = motions.samples();
         let mut streams: Vec<Decimation> = (0..lines)
             .map(|_| decimator.stream(self.width(), samples))
