@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 #[derive(Debug, Clone)]
 pub(crate) struct Fourier {
     size: usize,
-    /// cos and sin of 2 π k/size for k below size/2.
+    /// cos and sin of π k/half for k below half, for half = 1, 2, 4 … below size, one behind the other.
     turns: Vec<(f64, f64)>,
 }
 
@@ -19,9 +19,15 @@ impl Fourier {
             let angle = 2.0 * PI * k as f64 / size as f64;
             (angle.cos(), angle.sin())
         };
+        let finest: Vec<(f64, f64)> = (0..size / 2).map(turn).collect();
+        let halves = (0..size.trailing_zeros()).map(|bit| 1_usize << bit);
+        let turns = halves.flat_map(|half| {
+            let stride = size / (2 * half);
+            finest.iter().step_by(stride).take(half).copied()
+        });
         Self {
             size,
-            turns: (0..size / 2).map(turn).collect(),
+            turns: turns.collect(),
         }
     }
 
@@ -88,16 +94,19 @@ impl Fourier {
         }
         let mut half = 1;
         while half < self.size {
-            let stride = self.size / (2 * half);
-            for start in (0..self.size).step_by(2 * half) {
-                for k in 0..half {
-                    let (cosine, sine) = self.turns[k * stride];
-                    let (i, j) = (start + k, start + k + half);
-                    let a = cosine * real[j] + sine * imaginary[j];
-                    let b = cosine * imaginary[j] - sine * real[j];
-                    (real[j], imaginary[j]) = (real[i] - a, imaginary[i] - b);
-                    real[i] += a;
-                    imaginary[i] += b;
+            // The angles of the coarser steps stand before these, half - 1 in all.
+            let turns = &self.turns[half - 1..2 * half - 1];
+            let parts = real.chunks_exact_mut(2 * half);
+            for (real, imaginary) in parts.zip(imaginary.chunks_exact_mut(2 * half)) {
+                let (first, second) = (real.split_at_mut(half), imaginary.split_at_mut(half));
+                let upper = first.0.iter_mut().zip(second.0);
+                let lower = first.1.iter_mut().zip(second.1);
+                for (((x, y), (u, v)), (cosine, sine)) in upper.zip(lower).zip(turns) {
+                    let a = cosine * *u + sine * *v;
+                    let b = cosine * *v - sine * *u;
+                    (*u, *v) = (*x - a, *y - b);
+                    *x += a;
+                    *y += b;
                 }
             }
             half *= 2;

@@ -1,10 +1,14 @@
 //! One pass over the beginnings of the runs. What is kept does not grow with the data.
 
+use std::sync::OnceLock;
+
 use nalgebra::DMatrix;
 use overact::{Function, Model, StandardParameter};
 use rayon::prelude::*;
 
 use super::{
+    accused::Accused,
+    beside::Beside,
     columns::{Layout, Sample, Suspect, moments, rates, suspects},
     nearby::Nearby,
     pairs::{Correlation, correlations},
@@ -56,6 +60,15 @@ pub(crate) struct Scores {
     pub(super) late: Vec<usize>,
     /// What each run tells.
     pub(super) runs: Vec<RunScores>,
+    /// What was found beside the estimate's own columns.
+    pub(super) own: Found,
+}
+
+/// What tests beside the estimate's own columns have in common, and all of them, once one was asked for.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Found {
+    pub(super) beside: OnceLock<Option<Beside>>,
+    pub(super) accused: OnceLock<Vec<Option<Accused>>>,
 }
 
 /// What a pass needs.
@@ -125,6 +138,7 @@ pub(crate) fn scores(
         selected,
         runs: scores,
         suspects,
+        own: Found::default(),
     })
 }
 

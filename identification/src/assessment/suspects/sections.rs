@@ -88,6 +88,17 @@ impl RunScores {
         DMatrixView::from_slice(all, layout.base, layout.columns)
     }
 
+    /// Products of some columns of base parameters with some of all columns, over cosine m.
+    pub(super) fn beside(
+        &self,
+        layout: &Layout,
+        m: usize,
+        (rows, columns): (&[usize], &[usize]),
+    ) -> DMatrix<f64> {
+        let all = self.cross(layout, m);
+        DMatrix::from_fn(rows.len(), columns.len(), |i, j| all[(rows[i], columns[j])])
+    }
+
     /// Products of the columns of a block with each other, over cosine m.
     pub(super) fn own(&self, layout: &Layout, block: usize, m: usize) -> DMatrixView<'_, f64> {
         let (place, first) = (&layout.places[block], m * layout.squares);
