@@ -2,12 +2,16 @@
 
 use std::f64::consts::PI;
 
+#[cfg(target_arch = "x86_64")]
+use pulp::NullaryFnOnce;
+
 /// A transform of one length, planned once.
 #[derive(Debug, Clone)]
 pub(crate) struct Fourier {
     size: usize,
     /// cos and sin of π k/half for k below half, for half = 1, 2, 4 … below size, one behind the other.
-    turns: Vec<(f64, f64)>,
+    cosines: Vec<f64>,
+    sines: Vec<f64>,
 }
 
 impl Fourier {
@@ -25,9 +29,11 @@ impl Fourier {
             let stride = size / (2 * half);
             finest.iter().step_by(stride).take(half).copied()
         });
+        let (cosines, sines) = turns.unzip();
         Self {
             size,
-            turns: turns.collect(),
+            cosines,
+            sines,
         }
     }
 
@@ -49,7 +55,11 @@ impl Fourier {
         imaginary[..second.len()].copy_from_slice(second);
         self.transform(&mut real, &mut imaginary);
         // The signals are the real and the imaginary part: even and odd parts of the spectrum.
-        let mut spectra = [Spectrum::default(), Spectrum::default()];
+        let empty = || Spectrum {
+            real: Vec::with_capacity(self.frequencies()),
+            imaginary: Vec::with_capacity(self.frequencies()),
+        };
+        let mut spectra = [empty(), empty()];
         for k in 0..self.frequencies() {
             let mirrored = (self.size - k) % self.size;
             let (a, b) = (real[k], imaginary[k]);
@@ -92,21 +102,56 @@ impl Fourier {
                 imaginary.swap(k, mirrored);
             }
         }
+        let work = Butterflies {
+            fourier: self,
+            real,
+            imaginary,
+        };
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            simd.vectorize(work);
+            return;
+        }
+        work.run();
+    }
+}
+
+/// The steps of a transform whose values have been put in order.
+struct Butterflies<'a> {
+    fourier: &'a Fourier,
+    real: &'a mut [f64],
+    imaginary: &'a mut [f64],
+}
+
+#[cfg(target_arch = "x86_64")]
+impl NullaryFnOnce for Butterflies<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.run();
+    }
+}
+
+impl Butterflies<'_> {
+    #[inline(always)]
+    fn run(self) {
         let mut half = 1;
-        while half < self.size {
+        while half < self.fourier.size {
             // The angles of the coarser steps stand before these, half - 1 in all.
-            let turns = &self.turns[half - 1..2 * half - 1];
-            let parts = real.chunks_exact_mut(2 * half);
-            for (real, imaginary) in parts.zip(imaginary.chunks_exact_mut(2 * half)) {
-                let (first, second) = (real.split_at_mut(half), imaginary.split_at_mut(half));
-                let upper = first.0.iter_mut().zip(second.0);
-                let lower = first.1.iter_mut().zip(second.1);
-                for (((x, y), (u, v)), (cosine, sine)) in upper.zip(lower).zip(turns) {
-                    let a = cosine * *u + sine * *v;
-                    let b = cosine * *v - sine * *u;
-                    (*u, *v) = (*x - a, *y - b);
-                    *x += a;
-                    *y += b;
+            let cosines = &self.fourier.cosines[half - 1..2 * half - 1];
+            let sines = &self.fourier.sines[half - 1..2 * half - 1];
+            let parts = self.real.chunks_exact_mut(2 * half);
+            for (real, imaginary) in parts.zip(self.imaginary.chunks_exact_mut(2 * half)) {
+                let (x, u) = real.split_at_mut(half);
+                let (y, v) = imaginary.split_at_mut(half);
+                // Loops: closures that iterators call would not be compiled for wide vectors.
+                for k in 0..half {
+                    let a = cosines[k] * u[k] + sines[k] * v[k];
+                    let b = cosines[k] * v[k] - sines[k] * u[k];
+                    (u[k], v[k]) = (x[k] - a, y[k] - b);
+                    x[k] += a;
+                    y[k] += b;
                 }
             }
             half *= 2;

@@ -68,11 +68,14 @@ pub fn estimate_projection(
     let mut warnings = Vec::new();
     let (selected, names) = on_data(prepared, system, &mut warnings)?;
     let base = estimate(system, &selected, settings)?;
-    let rest = essential(system, &selected, &names, &base, settings)?;
+    let more = drive_covariance(prepared, projection, (&selected, &base.weights));
+    let (rest, intervals) = rayon::join(
+        || essential(system, &selected, &names, &base, settings),
+        || Intervals::new(system, &selected, &base).widened(more.as_ref()),
+    );
+    let rest = rest?;
     warnings.extend(quality_warnings(system, &base));
     let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
-    let more = drive_covariance(prepared, projection, (&selected, &base.weights));
-    let intervals = Intervals::new(system, &selected, &base).widened(more.as_ref());
     let chosen = recommended(system, (&selected, &names), &base, &intervals, settings)?;
     let chosen_noise = Noise::new(system, &chosen.selected, &chosen.estimation);
     let context = Context {

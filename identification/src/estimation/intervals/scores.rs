@@ -75,7 +75,7 @@ impl Covariance {
         let noise = stretches().map(|stretch| context.noise(stretch));
         let noise = noise.reduce(|| DMatrix::zeros(p, p), |a, b| a + b);
         let inverse = &context.estimation.inverse;
-        let noise = inverse.tr_mul(&noise) * inverse;
+        let noise = inverse.transpose() * noise * inverse;
         let shares: Vec<Share> = stretches()
             .filter_map(|stretch| context.share(stretch, &noise))
             .collect();
@@ -317,9 +317,10 @@ impl<'a> Context<'a> {
     fn turned(&self, sections: &DMatrix<f64>, waves: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
         let p = self.selected.len();
         let sums = sections * waves;
+        let turned = self.estimation.inverse.transpose();
         let sums = sums.column_iter().map(|sum| {
             let sum = nalgebra::DMatrixView::from_slice(sum.as_slice(), p, p);
-            self.estimation.inverse.tr_mul(&sum)
+            &turned * sum
         });
         sums.collect()
     }
@@ -341,8 +342,9 @@ impl<'a> Context<'a> {
                     .collect();
                 let z = DMatrix::from_fn(p, cosines, |row, b| fitted[b][(row, i)]);
                 let y = DMatrix::from_fn(p, cosines, |row, b| noisy[b][(row, i)]);
-                let crossed = z.tr_mul(&y);
-                let taken = z.tr_mul(&(noise * &z));
+                let turned = z.transpose();
+                let crossed = &turned * &y;
+                let taken = turned * (noise * &z);
                 let c = DMatrix::from_fn(cosines, cosines, |a, b| {
                     spectrum[a.abs_diff(b)] + spectrum[a + b + 2] + taken[(a, b)]
                         - crossed[(a, b)]
