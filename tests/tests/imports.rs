@@ -95,6 +95,7 @@ const HOUSES: [House; 6] = [
             "beside",
             "numbers",
             "plot",
+            "sheet",
             "page",
         ],
     },

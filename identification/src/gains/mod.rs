@@ -36,6 +36,7 @@ use crate::{
     error::{Error, Problem},
     regression::factor::Factor,
     settings::Settings,
+    significant,
 };
 use deviations::deviations;
 use known::Split;
@@ -77,15 +78,19 @@ pub fn drive_gains(
     let solution = solve(&equations, &selection)?;
     let all = || info.actuators.iter().map(|name| format!("`{name}`"));
     let sure = deviations(&equations, &selection, &solution);
-    let sure = sure.ok_or_else(|| undetermined(&all().collect::<Vec<_>>()))?;
+    let sure = sure.ok_or_else(|| undetermined(&all().collect::<Vec<_>>(), ""))?;
     let (parameters, drives) = sure.all.split_at(selection.parameters());
     let each = solution.gains().iter().zip(drives).zip(all());
     let unsure: Vec<String> = each
         .filter(|((gain, deviation), _)| **gain < DETERMINED * **deviation)
-        .map(|(_, name)| name)
+        .map(|((gain, deviation), name)| {
+            let [gain, deviation] = [gain, deviation].map(|value| significant(*value, 2));
+            format!("{name} ({gain}, standard deviation {deviation})")
+        })
         .collect();
     if !unsure.is_empty() {
-        return Err(undetermined(&unsure));
+        let why = format!(" to a {DETERMINED}th of themselves");
+        return Err(undetermined(&unsure, &why));
     }
     let plain = total_least_squares(&equations, &selection, &solution);
     let drive = |(index, name): (usize, &&str)| DriveGain {
