@@ -391,7 +391,14 @@ fn all_read_their_own_parameters() {
         let torques = list(&read[0]["inverse_dynamics"]);
         assert!(torques.iter().any(|torque| number(torque) != 0.0), "{name}");
         assert_eq!(read, ask(&["explicit.json"]), "{name}");
-        bench.good(&["simulate", "my.toml", "-o", "logs/", "--parameters", "parameters.toml"]);
+        bench.good(&[
+            "simulate",
+            "my.toml",
+            "-o",
+            "logs/",
+            "--parameters",
+            "parameters.toml",
+        ]);
         let generate = ["generate", "my.toml", "--effort", "none", "-o", "my.rs"];
         bench.good(&[&generate[..], &["--parameters", "parameters.toml"]].concat());
         let code = bench.read("my.rs");

@@ -285,7 +285,12 @@ fn a_decimation_behind_a_low_pass_is_one_after_the_other() {
         for block in signal.chunks(77) {
             stream.push(block, &mut found);
         }
-        close(&found, &expected, 1e-12, &format!("behind a low-pass, {factor}"));
+        close(
+            &found,
+            &expected,
+            1e-12,
+            &format!("behind a low-pass, {factor}"),
+        );
         assert!(behind.stream(1, 18).is_err(), "shorter than the reflection");
     }
 }

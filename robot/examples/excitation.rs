@@ -4,9 +4,7 @@
 
 use overact::{Function, Model};
 use overact_report::{Plot, sheet};
-use overact_robot::{
-    CaseOfRuns, Error, Excitation, ExcitationEffort, LimitKind, Robot,
-};
+use overact_robot::{CaseOfRuns, Error, Excitation, ExcitationEffort, LimitKind, Robot};
 use overact_simulation::{Trajectory, sample};
 use std::process::ExitCode;
 
@@ -61,7 +59,10 @@ fn compared(found: &Excitation, case: usize) -> Vec<Plot> {
         let mut all: Vec<f64> = found.hundred.iter().map(|one| of(&one[case])).collect();
         all.sort_by(f64::total_cmp);
         let places: Vec<f64> = (1..=all.len()).map(|place| place as f64).collect();
-        let own = found.described.iter().map(|own| (&own.cases[case], "by hand"));
+        let own = found
+            .described
+            .iter()
+            .map(|own| (&own.cases[case], "by hand"));
         let others = [
             (&found.random.cases[case], "best random"),
             (&found.found.cases[case], "found"),
@@ -76,7 +77,10 @@ fn compared(found: &Excitation, case: usize) -> Vec<Plot> {
         );
         Plot {
             title: format!("{model}: {name}"),
-            axes: [String::from("a hundred random ones, in order"), String::new()],
+            axes: [
+                String::from("a hundred random ones, in order"),
+                String::new(),
+            ],
             logarithmic: true,
             curves: vec![(String::from("random"), places, all)],
             dots: true,
@@ -131,7 +135,12 @@ fn motion(robot: &Robot, found: &Excitation, run: &str) -> Vec<Plot> {
     let home = info.home_pose.iter().cycle();
     let away = motion.pose.iter().zip(home).map(|(at, home)| at - home);
     let all = [
-        (LimitKind::Position, away.collect(), sizes.pose, info.coordinates),
+        (
+            LimitKind::Position,
+            away.collect(),
+            sizes.pose,
+            info.coordinates,
+        ),
         (LimitKind::Velocity, rates, sizes.actuators, info.actuators),
         (
             LimitKind::Torque,
@@ -146,7 +155,11 @@ fn motion(robot: &Robot, found: &Excitation, run: &str) -> Vec<Plot> {
         let curve = |(at, name): (usize, &&str)| {
             let most = limit.values.get(at).copied().unwrap_or(f64::NAN);
             let own = values.iter().skip(at).step_by(width);
-            ((*name).to_owned(), time.clone(), own.map(|v| v / most).collect())
+            (
+                (*name).to_owned(),
+                time.clone(),
+                own.map(|v| v / most).collect(),
+            )
         };
         Some(Plot {
             title: format!("{run}: {} by its limit", kind.name()),

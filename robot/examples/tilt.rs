@@ -49,7 +49,10 @@ fn told(description: &str, logs: [&String; 2], file: &str) -> Result<(), Box<dyn
     for (name, tilt) in [("as described", Vector2::zeros()), ("gravity tilted", tilt)] {
         let robot = tilted(&text, tilt)?;
         let (training, test) = logs.split_at(1);
-        let result = Identifier::new(&robot).runs(training).validation(test).run()?;
+        let result = Identifier::new(&robot)
+            .runs(training)
+            .validation(test)
+            .run()?;
         for stage in [Stage::Base, Stage::Consistent] {
             let errors = errors(&result, stage);
             let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
@@ -113,7 +116,10 @@ fn best(text: &str, runs: &[Log]) -> Result<Vector2<f64>, Box<dyn Error>> {
 
 /// Errors on the held-out run, percent.
 fn errors(result: &Identification, stage: Stage) -> Vec<f64> {
-    let own = result.cross_validation.iter().find(|one| one.stage == stage);
+    let own = result
+        .cross_validation
+        .iter()
+        .find(|one| one.stage == stage);
     let torques = own.iter().flat_map(|one| &one.torques);
     torques.map(|one| one.relative_error_percent).collect()
 }
@@ -125,7 +131,10 @@ fn plots(results: &[(&str, Identification)]) -> Vec<Plot> {
         let found = all.find(|one| !one.identified && one.stage == Stage::Base);
         found.map(|one| one.torques.clone()).unwrap_or_default()
     };
-    let all: Vec<_> = results.iter().map(|(name, own_result)| (name, own(own_result))).collect();
+    let all: Vec<_> = results
+        .iter()
+        .map(|(name, own_result)| (name, own(own_result)))
+        .collect();
     let Some((_, first)) = all.first() else {
         return Vec::new();
     };
@@ -134,7 +143,11 @@ fn plots(results: &[(&str, Identification)]) -> Vec<Plot> {
             let own = torques.get(joint)?;
             let both = own.measured.iter().zip(&own.predicted);
             let left: Vec<f64> = both.map(|(a, b)| a - b).collect();
-            Some((format!("measured - predicted, {name}"), own.time.clone(), left))
+            Some((
+                format!("measured - predicted, {name}"),
+                own.time.clone(),
+                left,
+            ))
         });
         let measured = (
             String::from("measured"),

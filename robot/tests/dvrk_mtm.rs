@@ -83,7 +83,11 @@ fn the_test_run_is_predicted_as_published() {
     for ((own, consistent), published) in both {
         assert!(own.min(*consistent) < ABOVE * published, "{published}");
     }
-    println!("{own:.1?} {:.2}, {consistent:.1?} {:.2}", mean(&own), mean(&consistent));
+    println!(
+        "{own:.1?} {:.2}, {consistent:.1?} {:.2}",
+        mean(&own),
+        mean(&consistent)
+    );
     let bodies = result.consistent[0].bodies.iter();
     assert!(bodies.clone().count() == 9 && bodies.clone().all(|body| body.definiteness > 0.0));
 }

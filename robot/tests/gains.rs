@@ -281,7 +281,10 @@ fn a_serial_robot_tells_its_gains_by_the_mass_of_a_payload_alone() {
             }
         };
         for (own, truth) in found.drives.iter().zip(wrong) {
-            println!("{}: {} ± {}, {truth}", own.actuator, own.factor, own.deviation);
+            println!(
+                "{}: {} ± {}, {truth}",
+                own.actuator, own.factor, own.deviation
+            );
         }
         let misses = misses(&found, &wrong);
         assert!(misses.iter().all(|miss| miss.abs() < 3.5), "{misses:?}");
@@ -354,12 +357,17 @@ fn an_unknown_payload_of_a_serial_robot_is_found() {
             ..Runs::default()
         };
         let result = Identifier::new(&robot).data(&runs).run().expect("a result");
-        let base = result.by_least_squares().find(|one| one.stage == Stage::Base);
+        let base = result
+            .by_least_squares()
+            .find(|one| one.stage == Stage::Base);
         let mut all = base.expect("an estimate").parameters.iter();
         let mass = all.find(|one| one.name.starts_with("m_payload"));
         let mass = mass.expect("the payload's mass");
         let truth = mass.true_value.expect("a true value");
-        println!("{}: {} in {:?}, {truth}", mass.name, mass.value, mass.interval_95);
+        println!(
+            "{}: {} in {:?}, {truth}",
+            mass.name, mass.value, mass.interval_95
+        );
         assert!((mass.value / truth - 1.0).abs() < 0.02, "{mass:?}");
         assert_eq!(mass.name, "m_payload");
     }

@@ -282,7 +282,8 @@ impl Doubt<'_> {
                 let sum = r.columns(p, share.len()) * &share;
                 // Below the triangle of W only the size of the sum matters.
                 let mut rows = DMatrix::zeros(p + 1, p + 1);
-                rows.view_mut((0, 0), (p, p)).copy_from(&r.view((0, 0), (p, p)));
+                rows.view_mut((0, 0), (p, p))
+                    .copy_from(&r.view((0, 0), (p, p)));
                 rows.view_mut((0, p), (p, 1)).copy_from(&sum.rows(0, p));
                 rows[(p, p)] = sum.rows_range(p..).norm();
                 let relabelled = fault == Some(Fault::Label(run));

@@ -48,11 +48,7 @@ impl DriveShares {
     ///
     /// # Errors
     /// As [`Motions::next`]; the runs have been gone through before.
-    pub(crate) fn new(
-        observer: &Observer<'_>,
-        runs: &[Log],
-        gains: &Gains,
-    ) -> Result<Self, Error> {
+    pub(crate) fn new(observer: &Observer<'_>, runs: &[Log], gains: &Gains) -> Result<Self, Error> {
         let info = observer.model.info();
         let (parameters, drives) = (observer.base.len(), info.sizes.actuators);
         let new = |projection: &Projection| {
@@ -137,12 +133,7 @@ fn run(
 }
 
 /// Rows of a line of a projection with what each of `n` drives contributes in the place of Y.
-fn joined(
-    chunk: &Chunk,
-    drives: &[f64],
-    (projection, line): (usize, usize),
-    n: usize,
-) -> Vec<f64> {
+fn joined(chunk: &Chunk, drives: &[f64], (projection, line): (usize, usize), n: usize) -> Vec<f64> {
     let rows = &chunk.lines[projection][line];
     let width = rows.len() / (drives.len() / n).max(1);
     let mut all = Vec::with_capacity(rows.len() + drives.len());
@@ -173,7 +164,10 @@ fn drives(
     let platform: Vec<Vec<f64>> = (0..r)
         .map(|line| {
             let entries = jacobians.iter().skip(line).step_by(r);
-            entries.zip(torques).map(|(share, own)| share * own).collect()
+            entries
+                .zip(torques)
+                .map(|(share, own)| share * own)
+                .collect()
         })
         .collect();
     let scales = home_scales(observer.model);

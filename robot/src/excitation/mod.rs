@@ -264,7 +264,9 @@ impl<'a> Task<'a> {
             let both = chains.hundred.iter().zip(&all);
             chains.hundred = match index {
                 0 => all.iter().map(|one| one.information.clone()).collect(),
-                _ => both.map(|(sum, one)| added(sum, &one.information)).collect(),
+                _ => both
+                    .map(|(sum, one)| added(sum, &one.information))
+                    .collect(),
             };
             told_random = added(&told_random, &of_random.information);
             told = added(&told, &found.information);

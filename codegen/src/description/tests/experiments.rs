@@ -170,7 +170,9 @@ fn torques_pass_the_low_pass_once() {
     let both = errors("[identification]\nfilter_equations = true\nfilter_torques = true");
     assert_eq!(
         both,
-        ["3:20 `filter_equations`: with `filter_torques` the torques would pass the low-pass twice"]
+        [
+            "3:20 `filter_equations`: with `filter_torques` the torques would pass the low-pass twice"
+        ]
     );
     let word = errors("[identification]\nfilter_equations = 6");
     assert!(word[0].starts_with("3:20 `filter_equations`: "), "{word:?}");

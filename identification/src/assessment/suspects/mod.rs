@@ -49,9 +49,9 @@ mod shapes;
 mod spread;
 mod test;
 
+pub(crate) use accused::Accused;
 pub(crate) use columns::Suspect;
 pub(crate) use pairs::Correlation;
 pub(crate) use scores::{Scores, scores};
 pub(crate) use shapes::{Reach, Shape};
-pub(crate) use accused::Accused;
 pub(crate) use test::Group;

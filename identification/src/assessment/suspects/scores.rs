@@ -221,7 +221,9 @@ impl Pass<'_> {
     fn run(&self, log: &Log) -> Result<RunScores, Error> {
         let lines = self.model.info().sizes.dof;
         let mut motions = Motions::new(self.model, log, self.settings)?;
-        let decimator = self.settings.decimator(self.decimation, log.sampling_frequency())?;
+        let decimator = self
+            .settings
+            .decimator(self.decimation, log.sampling_frequency())?;
         let samples = motions.samples();
         let mut streams: Vec<Decimation> = (0..lines)
             .map(|_| decimator.stream(self.width(), samples))
