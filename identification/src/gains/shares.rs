@@ -12,7 +12,7 @@
 use nalgebra::DMatrix;
 use overact::Function;
 
-use super::Gains;
+use super::result::Gains;
 use crate::{
     blocks::{BLOCK, slice},
     data::Log,
