@@ -315,7 +315,7 @@ fn all_are_identified() {
     for name in robots_of_the_tier() {
         let text = shortened(&name, by_tier(["1 s", "2 s"]));
         // What published work did with a measured log does not suit a short virtual run.
-        if ["standstill_velocity", "filter_torques"]
+        if ["standstill_velocity", "filter_torques", "filter_equations"]
             .iter()
             .any(|key| text.contains(key))
         {
@@ -349,6 +349,61 @@ fn all_are_identified() {
     }
     println!("all: {within} of {all}");
     assert!(20 * within >= 19 * all, "{within} of {all}");
+}
+
+/// Parameters that a robot can have, as `identify --parameters` writes them, are read by `evaluate`, whose torques
+/// are those of the numbers themselves, by `simulate` and by `generate`.
+#[test]
+fn all_read_their_own_parameters() {
+    let bench = Bench::new();
+    let all = robots_of_the_tier();
+    for name in all.into_iter().take(by_tier([1, usize::MAX])) {
+        bench.write("my.toml", &shortened(&name, "2 s"));
+        let identified = bench.json(&["identify", "my.toml", "--parameters", "parameters.toml"]);
+        let consistent = &identified["consistent"][0];
+        let bodies = list(&consistent["bodies"]);
+        let definite = |body: &Value| number(&body["definiteness"]) > 0.0;
+        assert!(bodies.iter().all(definite), "{name}: {consistent}");
+        let inspected = bench.json(&["inspect", "my.toml", "--effort", "none"]);
+        let found = list(&consistent["parameters"]);
+        let value = |wanted: &&str| -> f64 {
+            let own = found.iter().find(|one| one["name"] == **wanted);
+            number(&own.unwrap_or_else(|| panic!("{name}: {wanted}"))["value"])
+        };
+        let values: Vec<f64> = names(&inspected["parameters"]).iter().map(value).collect();
+        let home: Vec<f64> = list(&inspected["home_pose"]).iter().map(number).collect();
+        let dof = list(&inspected["coordinates"]).len();
+        let rates: Vec<f64> = (0..dof).map(|i| 0.1 + 0.1 * i as f64).collect();
+        let state = match inspected["functions"][0]["from"].as_str() {
+            Some("joints") => json!({ "joints": home, "joint_velocities": rates,
+                "joint_accelerations": rates }),
+            _ => json!({ "pose": home, "twist": rates, "acceleration": rates }),
+        };
+        let mut explicit = state.clone();
+        explicit["parameters"] = json!(values);
+        bench.write("states.json", &json!([state]).to_string());
+        bench.write("explicit.json", &json!([explicit]).to_string());
+        let ask = |more: &[&str]| {
+            let start = ["evaluate", "my.toml", "inverse_dynamics", "--states"];
+            bench.json(&[&start[..], more].concat())["results"].clone()
+        };
+        let read = ask(&["states.json", "--parameters", "parameters.toml"]);
+        let torques = list(&read[0]["inverse_dynamics"]);
+        assert!(torques.iter().any(|torque| number(torque) != 0.0), "{name}");
+        assert_eq!(read, ask(&["explicit.json"]), "{name}");
+        bench.good(&[
+            "simulate",
+            "my.toml",
+            "-o",
+            "logs/",
+            "--parameters",
+            "parameters.toml",
+        ]);
+        let generate = ["generate", "my.toml", "--effort", "none", "-o", "my.rs"];
+        bench.good(&[&generate[..], &["--parameters", "parameters.toml"]].concat());
+        let code = bench.read("my.rs");
+        assert!(code.contains("fn inverse_dynamics("), "{name}");
+    }
 }
 
 /// How many parameters lie within three honest deviations of the truth. Some are determined well, and

@@ -72,7 +72,7 @@ pub use identify::{
     BaseParameter, Identification, Outcome, Prepared, Progress, RankedProjection, Regrouping,
     Study, estimate_projection,
     figures::{Figures, PredictionFigures, ResidualFigures},
-    identify, prepare, study,
+    identify, identify_with_gains, prepare, study,
     tracking::TrackingError,
 };
 pub use kinematics::{Motion, Motions, motion};

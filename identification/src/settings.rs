@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Problem},
-    filters::{DECIMATION_PADDING, butterworth, settling},
+    filters::{DECIMATION_PADDING, Decimator, butterworth, settling},
     prior::Prior,
 };
 
@@ -93,6 +93,10 @@ pub struct Settings {
     /// decimated, published work does this.
     #[serde(default)]
     pub filter_torques: bool,
+    /// Whether both sides of the equations pass the low-pass of the positions before they are decimated: what
+    /// it does to the torques it does to the columns then, to steps of dry friction above all.
+    #[serde(default)]
+    pub filter_equations: bool,
     /// Of a held-out run so many of the decimated samples, from the first on, count in the errors; all of
     /// them if absent.
     #[serde(default)]
@@ -159,6 +163,7 @@ impl Settings {
             velocity_dead_band: 0.0,
             standstill_velocity: Vec::new(),
             filter_torques: false,
+            filter_equations: false,
             validation_samples: None,
             averaged_reversals: false,
             r_sigma: 10.0,
@@ -208,7 +213,19 @@ impl Settings {
             1
         };
         let skipped = self.skip_start.saturating_add(self.skip_end);
-        filter.max(skipped.saturating_add(decimation.max(self.decimation)))
+        let again = if self.filter_equations { filter } else { 1 };
+        let used = decimation.max(self.decimation).max(again);
+        filter.max(skipped.saturating_add(used))
+    }
+
+    /// What makes equations of rows that are sampled at a `frequency` (Hz) and of which one in `factor` is kept.
+    pub(crate) fn decimator(&self, factor: usize, frequency: f64) -> Result<Decimator, Error> {
+        let decimator = Decimator::new(factor)?;
+        if !self.filter_equations {
+            return Ok(decimator);
+        }
+        let cutoff = self.filter_cutoff_hz * 2.0 / frequency;
+        Ok(decimator.behind(butterworth(self.filter_order, cutoff)?))
     }
 
     /// Checks the settings against the robot; those that concern a run are checked with it.
@@ -251,6 +268,12 @@ impl Settings {
                     self.velocity_dead_band
                 ))
                 .help("choose about three times the noise of the velocities, or 0 for none"),
+            );
+        }
+        if self.filter_torques && self.filter_equations {
+            problems.push(
+                Problem::new("the torques would pass the low-pass twice: both `filter_torques` and `filter_equations` are set")
+                    .help("`filter_equations` filters torques and columns alike; leave out the other one"),
             );
         }
         problems.extend(self.check_standstill(info));

@@ -269,3 +269,28 @@ fn blocks_give_what_the_whole_signal_gives() {
         );
     }
 }
+
+#[test]
+fn a_decimation_behind_a_low_pass_is_one_after_the_other() {
+    let wave = |k: usize| (0.01 * k as f64).sin() + 0.3 * ((k * k) as f64).sin();
+    let signal: Vec<f64> = (0..3000).map(wave).collect();
+    let filter = butterworth(6, 0.05).expect("a design");
+    let filtered = filtfilt(&filter, &signal).expect("long enough");
+    for factor in [1, 10] {
+        let whole = Decimator::new(factor).expect("a factor");
+        let expected = whole.apply(&filtered).expect("long enough");
+        let behind = whole.behind(filter.clone());
+        let mut stream = behind.stream(1, signal.len()).expect("long enough");
+        let mut found = Vec::new();
+        for block in signal.chunks(77) {
+            stream.push(block, &mut found);
+        }
+        close(
+            &found,
+            &expected,
+            1e-12,
+            &format!("behind a low-pass, {factor}"),
+        );
+        assert!(behind.stream(1, 18).is_err(), "shorter than the reflection");
+    }
+}

@@ -10,7 +10,7 @@ use overact::Model;
 use overact_codegen::description::{COUPLED_MOTORS, Leg};
 use overact_identification::{
     Calibration, CalibrationScope, Dataset, Gains, Identification, Instruments, Log, Progress,
-    Settings, Stage, Study, drive_gains, identify, study,
+    Settings, Stage, Study, drive_gains, identify_with_gains, study,
 };
 use std::collections::BTreeMap;
 
@@ -168,9 +168,9 @@ impl<'a> Identifier<'a> {
     /// for.
     fn identified(&self) -> Result<Identification, Error> {
         if !self.gains {
-            return self.estimated();
+            return self.estimated(None);
         }
-        let (mut result, gains) = self.with_gains(|own| own.estimated())?;
+        let (mut result, gains) = self.with_gains(|own, gains| own.estimated(Some(gains)))?;
         let others = std::mem::take(&mut result.warnings);
         result.warnings = [gains.warnings(), others].concat();
         result.gains = gains.drives;
@@ -196,7 +196,7 @@ impl<'a> Identifier<'a> {
     /// What is made of all runs with their torques multiplied by the gains of the drives, and the gains.
     fn with_gains<T>(
         &self,
-        make: impl FnOnce(&Identifier<'_>) -> Result<T, Error>,
+        make: impl FnOnce(&Identifier<'_>, &Gains) -> Result<T, Error>,
     ) -> Result<(T, Gains), Error> {
         let gains = self.drive_gains()?;
         let factors = gains.factors();
@@ -210,11 +210,11 @@ impl<'a> Identifier<'a> {
             validation: &validation,
             ..self.clone()
         };
-        Ok((make(&own)?, gains))
+        Ok((make(&own, &gains)?, gains))
     }
 
-    /// The identification with the torques as they are.
-    fn estimated(&self) -> Result<Identification, Error> {
+    /// The identification with the torques as they are, by which gains they have been multiplied.
+    fn estimated(&self, gains: Option<&Gains>) -> Result<Identification, Error> {
         self.robot.check_prior()?;
         let settings = self.with_defaults();
         let essential = self.essential();
@@ -228,9 +228,10 @@ impl<'a> Identifier<'a> {
             variants: &variants.lent(),
             ..self.dataset()
         };
-        let mut result = identify(
+        let mut result = identify_with_gains(
             self.robot.model(),
             &dataset,
+            gains,
             &without_elimination(&settings, essential),
             self.progress,
         )?;
@@ -249,7 +250,7 @@ impl<'a> Identifier<'a> {
         if !self.gains {
             return self.studied();
         }
-        let (mut study, gains) = self.with_gains(|own| own.studied())?;
+        let (mut study, gains) = self.with_gains(|own, _| own.studied())?;
         study.warnings.splice(0..0, gains.warnings());
         Ok(study)
     }

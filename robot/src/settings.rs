@@ -59,6 +59,7 @@ pub(crate) fn settings(description: &Description, info: &Info<'_>, frequency: f6
         velocity_dead_band: table.velocity_dead_band,
         standstill_velocity: table.standstill_velocity.clone(),
         filter_torques: table.filter_torques,
+        filter_equations: table.filter_equations,
         validation_samples: table.validation_samples,
         averaged_reversals: table.reversals == Reversals::Averaged,
         r_sigma: table.r_sigma,

@@ -4,6 +4,7 @@ use crate::{calibration::of_tree, interpreted::InterpretedRobot, robot::Robot};
 use overact::{Columns, Function, Model};
 use overact_codegen::{Effort, Request, derivation::MotionInput, mechanism::Mechanism, model_with};
 use overact_identification::Variant;
+use rayon::prelude::*;
 
 /// Part of a length by which it is changed. Torques are quadratic in a length, so that a difference over
 /// this step is off by as small a part.
@@ -40,7 +41,7 @@ impl Robot {
     pub fn variants(&self) -> Variants {
         let described = self.model();
         let mechanism = &described.model().mechanism;
-        let changed = of_tree(mechanism).into_iter();
+        let changed = of_tree(mechanism).into_par_iter();
         let changed = changed.filter_map(|(place, length, value)| {
             let step = STEP * value.abs();
             let mut mechanism = mechanism.clone();

@@ -98,6 +98,7 @@ const HOUSES: [House; 6] = [
             "beside",
             "numbers",
             "plot",
+            "sheet",
             "page",
         ],
     },

@@ -119,6 +119,8 @@ pub struct Identification {
     pub standstill_velocity: Vec<f64>,
     /// Whether the torques pass the low-pass of the positions, too.
     pub filter_torques: bool,
+    /// Whether both sides of the equations pass it.
+    pub filter_equations: bool,
     /// So many decimated samples of a held-out run, from the first on, count in its errors; all if absent.
     pub validation_samples: Option<usize>,
     /// The sign of velocities around reversals.
@@ -309,6 +311,7 @@ pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>)
         velocity_dead_band: 0.0,
         standstill_velocity: Vec::new(),
         filter_torques: false,
+        filter_equations: false,
         validation_samples: None,
         reversals: Reversals::default(),
         r_sigma: 10.0,
@@ -362,6 +365,15 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
     }
     let torques = table.get("filter_torques").and_then(|i| i.boolean());
     settings.filter_torques = torques.unwrap_or(settings.filter_torques);
+    if let Some(item) = table.get("filter_equations") {
+        settings.filter_equations = item.boolean().unwrap_or(settings.filter_equations);
+        if settings.filter_equations && settings.filter_torques {
+            let error = item
+                .error("with `filter_torques` the torques would pass the low-pass twice")
+                .help("`filter_equations` filters torques and columns alike; leave out `filter_torques`");
+            table.context.report(error);
+        }
+    }
     settings.validation_samples = size("validation_samples", 1);
     if let Some(item) = table.get("r_sigma") {
         let ratio = item.positive(Dimension::NONE, scope);

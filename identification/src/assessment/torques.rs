@@ -8,6 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use overact::{Function, Model};
+use rayon::prelude::*;
 
 use super::{
     check::{About, Check, CheckKind, Grade},
@@ -18,7 +19,6 @@ use crate::{
     data::Log,
     error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
-    filters::Decimator,
     kinematics::Motions,
     regression::{columns::ColumnSet, factor::Factor},
     settings::Settings,
@@ -58,7 +58,7 @@ pub(crate) fn explanation(
     let info = model.info();
     let n = info.sizes.actuators;
     let columns = Columns::new(model, settings)?;
-    let doubt = columns.doubt(model, runs, settings)?;
+    let doubt = columns.doubt((model, runs), settings, Drives::OneByOne)?;
     let before = doubt.error(None);
     let mut faults: Vec<Fault> = Vec::new();
     faults.extend((0..n).flat_map(|i| GAINS.map(|gain| Fault::Gain(i, gain))));
@@ -67,9 +67,10 @@ pub(crate) fn explanation(
         faults.extend((0..runs.len()).map(Fault::Label));
     }
     let errors = faults
-        .into_iter()
+        .into_par_iter()
         .map(|fault| (fault, doubt.error(Some(fault))));
-    let best = errors.min_by(|a, b| a.1.total_cmp(&b.1));
+    let errors: Vec<(Fault, f64)> = errors.collect();
+    let best = errors.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
     let explains =
         |(_, after): &(Fault, f64)| *after < EXPLAINED * before && before - after > WORTHWHILE;
     let so = |after: f64| {
@@ -85,7 +86,7 @@ pub(crate) fn explanation(
     }
     // What happened to positions happened in all runs.
     let positions = positions::Fault::all(model)
-        .into_iter()
+        .into_par_iter()
         .filter_map(|fault| {
             let repaired = |log: &Log| {
                 let (mut positions, torques) = log.load()?;
@@ -95,10 +96,11 @@ pub(crate) fn explanation(
             };
             let runs: Result<Vec<Log>, Error> = runs.iter().map(repaired).collect();
             // A change that leads out of the workspace explains nothing.
-            let doubt = columns.doubt(model, &runs.ok()?, settings).ok()?;
-            Some((fault, doubt.error(None)))
+            let doubt = columns.doubt((model, &runs.ok()?), settings, Drives::Together);
+            Some((fault, doubt.ok()?.error(None)))
         });
-    let best = positions.min_by(|a, b| a.1.total_cmp(&b.1));
+    let positions: Vec<(positions::Fault, f64)> = positions.collect();
+    let best = positions.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
     let explains = |(_, after): &(positions::Fault, f64)| {
         *after < EXPLAINED * before && before - after > WORTHWHILE
     };
@@ -215,20 +217,21 @@ impl Columns {
     /// Goes through runs.
     fn doubt(
         &self,
-        model: &dyn Model,
-        runs: &[Log],
+        (model, runs): (&dyn Model, &[Log]),
         settings: &Settings,
+        drives: Drives,
     ) -> Result<Doubt<'_>, Error> {
         let loaded = !model.info().payload_parameters.is_empty();
         let factors = |log: &Log| {
             let log = log.clone().with_payload(loaded);
-            run_factors(model, &log, settings, &self.columns, &self.base)
+            run_factors(model, &log, settings, self, drives)
         };
         Ok(Doubt {
             columns: self,
             factors: runs.iter().map(factors).collect::<Result<_, _>>()?,
             labels: runs.iter().map(Log::payload).collect(),
             actuators: model.info().sizes.actuators,
+            drives,
         })
     }
 }
@@ -236,19 +239,21 @@ impl Columns {
 /// The R factors of all runs.
 struct Doubt<'a> {
     columns: &'a Columns,
-    /// For each run and line, that of [W, J_iᵀ τ_j].
+    /// For each run and line, that of W and of what the drives add.
     factors: Vec<Vec<Factor>>,
     /// Whether each run is labelled as carrying the payload.
     labels: Vec<bool>,
     actuators: usize,
+    drives: Drives,
 }
 
 impl Doubt<'_> {
-    /// The part of the inputs that is left unexplained when a fault is taken back, each line being
-    /// divided by its norm.
-    fn error(&self, fault: Option<Fault>) -> f64 {
-        let (n, p) = (self.actuators, self.columns.base.columns.len());
-        // The columns that add up to the inputs.
+    /// By what the columns of the drives are multiplied to add up to the inputs when a fault is taken back.
+    fn share(&self, fault: Option<Fault>) -> DVector<f64> {
+        let n = self.actuators;
+        if self.drives == Drives::Together {
+            return DVector::from_element(1, 1.0);
+        }
         let mut share = DVector::zeros(n * n);
         for i in 0..n {
             let (from, gain) = match fault {
@@ -259,6 +264,14 @@ impl Doubt<'_> {
             };
             share[i * n + from] = gain;
         }
+        share
+    }
+
+    /// The part of the inputs that is left unexplained when a fault is taken back, each line being
+    /// divided by its norm.
+    fn error(&self, fault: Option<Fault>) -> f64 {
+        let p = self.columns.base.columns.len();
+        let share = self.share(fault);
         let lines = self.factors.first().map_or(0, Vec::len);
         let mut stacked: Vec<DMatrix<f64>> = Vec::new();
         let mut count = 0;
@@ -266,8 +279,13 @@ impl Doubt<'_> {
             let mut of_line = Vec::new();
             for (run, factors) in self.factors.iter().enumerate() {
                 let r = factors[line].matrix();
-                let mut rows = r.columns(0, p).clone_owned().insert_column(p, 0.0);
-                rows.set_column(p, &(r.columns(p, n * n) * &share));
+                let sum = r.columns(p, share.len()) * &share;
+                // Below the triangle of W only the size of the sum matters.
+                let mut rows = DMatrix::zeros(p + 1, p + 1);
+                rows.view_mut((0, 0), (p, p))
+                    .copy_from(&r.view((0, 0), (p, p)));
+                rows.view_mut((0, p), (p, 1)).copy_from(&sum.rows(0, p));
+                rows[(p, p)] = sum.rows_range(p..).norm();
                 let relabelled = fault == Some(Fault::Label(run));
                 if self.labels[run] == relabelled {
                     for &column in &self.columns.payload {
@@ -293,19 +311,32 @@ impl Doubt<'_> {
     }
 }
 
-/// The factor of [W, J_iᵀ τ_j] of each line of a run.
+/// How torques stand beside the columns of the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Drives {
+    /// Every J_iᵀ τ_j in a column of its own.
+    OneByOne,
+    /// Σ_i J_iᵀ τ_i in one column.
+    Together,
+}
+
+/// The factor of each line of a run: W, then what the drives add.
 fn run_factors(
     model: &dyn Model,
     log: &Log,
     settings: &Settings,
-    columns: &ColumnSet,
-    base: &BaseParameters,
+    Columns { columns, base, .. }: &Columns,
+    drives: Drives,
 ) -> Result<Vec<Factor>, Error> {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
     let mut motions = Motions::new(model, log, settings)?;
-    let decimator = Decimator::new(settings.decimation)?;
-    let (p, width) = (base.columns.len(), base.columns.len() + n * n);
+    let decimator = settings.decimator(settings.decimation, log.sampling_frequency())?;
+    let more = match drives {
+        Drives::OneByOne => n * n,
+        Drives::Together => 1,
+    };
+    let (p, width) = (base.columns.len(), base.columns.len() + more);
     let mut streams = (0..r)
         .map(|_| decimator.stream(width, motions.samples()))
         .collect::<Result<Vec<_>, _>>()?;
@@ -328,7 +359,7 @@ fn run_factors(
                     &states,
                     (count, 1.0 / motion.sampling_frequency),
                     motion.payload,
-                    (&base.columns, n * n),
+                    (&base.columns, more),
                 )
                 .map_err(at)?;
             let mut jacobians = vec![0.0; count * n * r];
@@ -340,11 +371,14 @@ fn run_factors(
                 for (sample, row) in rows.chunks_exact_mut(width).enumerate() {
                     let jacobian = slice(&jacobians, n * r, sample, 1);
                     let torques = slice(torques, n, sample, 1);
-                    let products = (0..n).flat_map(|i| {
-                        torques
-                            .iter()
-                            .map(move |torque| jacobian[i * r + line] * torque)
-                    });
+                    let share = |i: usize| jacobian[i * r + line];
+                    if drives == Drives::Together {
+                        let all = torques.iter().enumerate();
+                        row[p] = all.map(|(i, torque)| share(i) * torque).sum();
+                        continue;
+                    }
+                    let products =
+                        (0..n).flat_map(|i| torques.iter().map(move |torque| share(i) * torque));
                     row[p..]
                         .iter_mut()
                         .zip(products)

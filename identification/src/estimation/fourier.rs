@@ -2,12 +2,16 @@
 
 use std::f64::consts::PI;
 
+#[cfg(target_arch = "x86_64")]
+use pulp::NullaryFnOnce;
+
 /// A transform of one length, planned once.
 #[derive(Debug, Clone)]
 pub(crate) struct Fourier {
     size: usize,
-    /// cos and sin of 2 π k/size for k below size/2.
-    turns: Vec<(f64, f64)>,
+    /// cos and sin of π k/half for k below half, for half = 1, 2, 4 … below size, one behind the other.
+    cosines: Vec<f64>,
+    sines: Vec<f64>,
 }
 
 impl Fourier {
@@ -19,9 +23,17 @@ impl Fourier {
             let angle = 2.0 * PI * k as f64 / size as f64;
             (angle.cos(), angle.sin())
         };
+        let finest: Vec<(f64, f64)> = (0..size / 2).map(turn).collect();
+        let halves = (0..size.trailing_zeros()).map(|bit| 1_usize << bit);
+        let turns = halves.flat_map(|half| {
+            let stride = size / (2 * half);
+            finest.iter().step_by(stride).take(half).copied()
+        });
+        let (cosines, sines) = turns.unzip();
         Self {
             size,
-            turns: (0..size / 2).map(turn).collect(),
+            cosines,
+            sines,
         }
     }
 
@@ -43,7 +55,11 @@ impl Fourier {
         imaginary[..second.len()].copy_from_slice(second);
         self.transform(&mut real, &mut imaginary);
         // The signals are the real and the imaginary part: even and odd parts of the spectrum.
-        let mut spectra = [Spectrum::default(), Spectrum::default()];
+        let empty = || Spectrum {
+            real: Vec::with_capacity(self.frequencies()),
+            imaginary: Vec::with_capacity(self.frequencies()),
+        };
+        let mut spectra = [empty(), empty()];
         for k in 0..self.frequencies() {
             let mirrored = (self.size - k) % self.size;
             let (a, b) = (real[k], imaginary[k]);
@@ -86,18 +102,56 @@ impl Fourier {
                 imaginary.swap(k, mirrored);
             }
         }
+        let work = Butterflies {
+            fourier: self,
+            real,
+            imaginary,
+        };
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            simd.vectorize(work);
+            return;
+        }
+        work.run();
+    }
+}
+
+/// The steps of a transform whose values have been put in order.
+struct Butterflies<'a> {
+    fourier: &'a Fourier,
+    real: &'a mut [f64],
+    imaginary: &'a mut [f64],
+}
+
+#[cfg(target_arch = "x86_64")]
+impl NullaryFnOnce for Butterflies<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.run();
+    }
+}
+
+impl Butterflies<'_> {
+    #[inline(always)]
+    fn run(self) {
         let mut half = 1;
-        while half < self.size {
-            let stride = self.size / (2 * half);
-            for start in (0..self.size).step_by(2 * half) {
+        while half < self.fourier.size {
+            // The angles of the coarser steps stand before these, half - 1 in all.
+            let cosines = &self.fourier.cosines[half - 1..2 * half - 1];
+            let sines = &self.fourier.sines[half - 1..2 * half - 1];
+            let parts = self.real.chunks_exact_mut(2 * half);
+            for (real, imaginary) in parts.zip(self.imaginary.chunks_exact_mut(2 * half)) {
+                let (x, u) = real.split_at_mut(half);
+                let (y, v) = imaginary.split_at_mut(half);
+                // Loops: closures that iterators call would not be compiled for wide vectors.
                 for k in 0..half {
-                    let (cosine, sine) = self.turns[k * stride];
-                    let (i, j) = (start + k, start + k + half);
-                    let a = cosine * real[j] + sine * imaginary[j];
-                    let b = cosine * imaginary[j] - sine * real[j];
-                    (real[j], imaginary[j]) = (real[i] - a, imaginary[i] - b);
-                    real[i] += a;
-                    imaginary[i] += b;
+                    let a = cosines[k] * u[k] + sines[k] * v[k];
+                    let b = cosines[k] * v[k] - sines[k] * u[k];
+                    (u[k], v[k]) = (x[k] - a, y[k] - b);
+                    x[k] += a;
+                    y[k] += b;
                 }
             }
             half *= 2;

@@ -16,6 +16,9 @@
 //! where s' are the backward pass's states behind the group. M and T come from the sections
 //! themselves, by passing unit states and unit samples. This is a matrix product over all signals at
 //! once, and what waits for the backward pass is n_d times shorter than the signal.
+//!
+//! Where all samples are kept, another low-pass can take the place of the decimation's, so that both sides
+//! of the equations are filtered alike.
 
 use std::sync::Arc;
 
@@ -24,7 +27,7 @@ use nalgebra::{DMatrix, DMatrixView};
 use super::{
     cascade::{Cascade, reflected, settling, started},
     design::{LowPass, chebyshev1},
-    zero_phase::{TRANSIENT, check_length},
+    zero_phase::{TRANSIENT, ZeroPhase, check_length},
 };
 use crate::error::{Error, Problem};
 
@@ -48,6 +51,8 @@ const SMALLEST_HOP: usize = 256;
 pub struct Decimator {
     factor: usize,
     filter: Option<Arc<GroupFilter>>,
+    /// A low-pass that comes first.
+    first: Option<LowPass>,
 }
 
 /// The low-pass with what it does to whole groups.
@@ -121,7 +126,18 @@ impl Decimator {
         } else {
             Some(Arc::new(GroupFilter::new(factor)?))
         };
-        Ok(Self { factor, filter })
+        Ok(Self {
+            factor,
+            filter,
+            first: None,
+        })
+    }
+
+    /// The same behind a low-pass, run forwards and backwards.
+    #[must_use]
+    pub fn behind(self, low_pass: LowPass) -> Self {
+        let first = Some(low_pass);
+        Self { first, ..self }
     }
 
     /// The factor n_d.
@@ -145,13 +161,23 @@ impl Decimator {
     /// The decimation of `samples` rows of `width` values that come block by block.
     ///
     /// # Errors
-    /// No more than 24 samples.
+    /// No more than 24 samples, or than three times the order of the low-pass before it.
     pub fn stream(&self, width: usize, samples: usize) -> Result<Decimation, Error> {
+        let first = self.first.as_ref();
+        let first = first.map(|own| ZeroPhase::new(own, width, samples));
+        Ok(Decimation {
+            first: first.transpose()?,
+            groups: self.groups(width, samples)?,
+        })
+    }
+
+    /// What groups the samples, where not all of them are kept.
+    fn groups(&self, width: usize, samples: usize) -> Result<Option<Groups>, Error> {
         let Some(filter) = &self.filter else {
-            return Ok(Decimation(None));
+            return Ok(None);
         };
         check_length(&filter.low_pass, samples)?;
-        Ok(Decimation(Some(Groups {
+        Ok(Some(Groups {
             filter: Arc::clone(filter),
             width: width.max(1),
             factor: self.factor,
@@ -162,7 +188,7 @@ impl Decimator {
             pending: Vec::new(),
             hop: SMALLEST_HOP.max(2 * filter.overlap),
             last: Vec::new(),
-        })))
+        }))
     }
 
     /// Low-passes `signal` and keeps one sample in n_d.
@@ -187,15 +213,24 @@ pub fn decimate(signal: &[f64], factor: usize) -> Result<Vec<f64>, Error> {
 
 /// The decimation of several signals side by side whose samples come in blocks of any size.
 #[derive(Debug, Clone)]
-pub struct Decimation(Option<Groups>);
+pub struct Decimation {
+    first: Option<ZeroPhase>,
+    groups: Option<Groups>,
+}
 
 impl Decimation {
     /// Takes rows and appends the kept ones that are finished to `kept`. The rows that complete the
     /// number announced bring out all that is left; rows beyond it are ignored.
     pub fn push(&mut self, rows: &[f64], kept: &mut Vec<f64>) {
-        match &mut self.0 {
-            Some(groups) => groups.push(rows, kept),
-            None => kept.extend_from_slice(rows),
+        match (&mut self.first, &mut self.groups) {
+            (None, None) => kept.extend_from_slice(rows),
+            (None, Some(groups)) => groups.push(rows, kept),
+            (Some(first), None) => first.push(rows, kept),
+            (Some(first), Some(groups)) => {
+                let mut filtered = Vec::new();
+                first.push(rows, &mut filtered);
+                groups.push(&filtered, kept);
+            }
         }
     }
 }

@@ -14,12 +14,20 @@ use crate::regression::{factor::Factor, system::Stretch};
 /// Batches that are wanted at least.
 const FEWEST_BATCHES: usize = 30;
 
-/// The deviations of all values of a solution, in their order; none where the data do not tell them.
+/// How sure a solution is.
+pub(super) struct Deviations {
+    /// Of all values, in their order.
+    pub(super) all: Vec<f64>,
+    /// Covariance of the gains.
+    pub(super) gains: DMatrix<f64>,
+}
+
+/// The deviations of a solution; none where the data do not tell them.
 pub(super) fn deviations(
     equations: &Equations,
     selection: &Selection,
     solution: &Solution,
-) -> Option<Vec<f64>> {
+) -> Option<Deviations> {
     let system = &equations.system;
     let samples = |stretch: &Stretch| stretch.lines.first().map_or(0, DMatrix::nrows);
     let kept: usize = system.stretches.iter().map(samples).sum();
@@ -54,11 +62,11 @@ pub(super) fn deviations(
     let equations = (all * system.lines.len()) as f64;
     let freedom = equations / (equations - size as f64).max(1.0);
     let scale = (freedom * all as f64 / kept.max(1) as f64).sqrt();
-    let deviations: Vec<f64> = errors.row_iter().map(|row| scale * row.norm()).collect();
-    deviations
-        .iter()
-        .all(|deviation| deviation.is_finite())
-        .then_some(deviations)
+    let all: Vec<f64> = errors.row_iter().map(|row| scale * row.norm()).collect();
+    let gains = errors.rows(own, selection.drives) * scale;
+    let gains = &gains * gains.transpose();
+    let sound = all.iter().all(|deviation| deviation.is_finite());
+    sound.then_some(Deviations { all, gains })
 }
 
 /// Samples of a batch: about the third root of their number, longer than noise is correlated over after

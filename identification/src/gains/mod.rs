@@ -14,6 +14,7 @@
 //! - `noise`: the noise of the drives' signals, as the residuals tell it;
 //! - `solve`: generalised total least squares with exact columns W and w;
 //! - `deviations`: how sure the gains are;
+//! - `shares`: what their uncertainty does to estimates that are made with them;
 //! - `result`: what is told.
 
 mod deviations;
@@ -22,9 +23,11 @@ mod noise;
 mod observation;
 mod result;
 mod selection;
+mod shares;
 mod solve;
 
 pub use result::{DriveGain, Gains, JointParameter};
+pub(crate) use shares::DriveShares;
 
 use overact::Model;
 
@@ -33,6 +36,7 @@ use crate::{
     error::{Error, Problem},
     regression::factor::Factor,
     settings::Settings,
+    significant,
 };
 use deviations::deviations;
 use known::Split;
@@ -74,15 +78,19 @@ pub fn drive_gains(
     let solution = solve(&equations, &selection)?;
     let all = || info.actuators.iter().map(|name| format!("`{name}`"));
     let sure = deviations(&equations, &selection, &solution);
-    let sure = sure.ok_or_else(|| undetermined(&all().collect::<Vec<_>>()))?;
-    let (parameters, drives) = sure.split_at(selection.parameters());
+    let sure = sure.ok_or_else(|| undetermined(&all().collect::<Vec<_>>(), ""))?;
+    let (parameters, drives) = sure.all.split_at(selection.parameters());
     let each = solution.gains().iter().zip(drives).zip(all());
     let unsure: Vec<String> = each
         .filter(|((gain, deviation), _)| **gain < DETERMINED * **deviation)
-        .map(|(_, name)| name)
+        .map(|((gain, deviation), name)| {
+            let [gain, deviation] = [gain, deviation].map(|value| significant(*value, 2));
+            format!("{name} ({gain}, standard deviation {deviation})")
+        })
         .collect();
     if !unsure.is_empty() {
-        return Err(undetermined(&unsure));
+        let why = format!(" to a {DETERMINED}th of themselves");
+        return Err(undetermined(&unsure, &why));
     }
     let plain = total_least_squares(&equations, &selection, &solution);
     let drive = |(index, name): (usize, &&str)| DriveGain {
@@ -105,5 +113,6 @@ pub fn drive_gains(
         drives: info.actuators.iter().enumerate().map(drive).collect(),
         parameters: parameters.iter().enumerate().map(parameter).collect(),
         equations: count,
+        covariance: sure.gains,
     })
 }

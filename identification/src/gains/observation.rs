@@ -14,7 +14,6 @@ use crate::{
     blocks::{BLOCK, slice},
     data::Log,
     error::{Error, Problem},
-    filters::Decimator,
     kinematics::{self, Motion, Motions},
     regression::{
         projection::Projection,
@@ -101,7 +100,9 @@ impl Observer<'_> {
         let (r, n) = (sizes.dof, sizes.actuators);
         let mut motions = Motions::new(self.model, log, self.settings)?;
         let samples = motions.samples();
-        let decimator = Decimator::new(self.settings.decimation)?;
+        let decimator = self
+            .settings
+            .decimator(self.settings.decimation, log.sampling_frequency())?;
         let width = self.columns() + 1;
         let plan = Plan::new(decimator.kept(samples), budget / (r * width).max(1));
         let sink = |line: usize| {

@@ -1,5 +1,6 @@
 //! Gains of the drives, as they are printed and as they are serialised.
 
+use nalgebra::DMatrix;
 use serde::Serialize;
 
 /// Deviations by which a gain differs from that of the description before it is worth a warning.
@@ -56,9 +57,20 @@ pub struct Gains {
     pub parameters: Vec<JointParameter>,
     /// Number of equations.
     pub equations: usize,
+    /// Covariance of the gains, one row for each actuator.
+    #[serde(skip)]
+    pub(super) covariance: DMatrix<f64>,
 }
 
 impl Gains {
+    /// The covariance of the parts δg/g of themselves by which the gains are off.
+    pub(super) fn relative_covariance(&self) -> DMatrix<f64> {
+        let factors = self.factors();
+        DMatrix::from_fn(factors.len(), factors.len(), |i, j| {
+            self.covariance[(i, j)] / (factors[i] * factors[j])
+        })
+    }
+
     /// By what the torques of each actuator are to be multiplied.
     #[must_use]
     pub fn factors(&self) -> Vec<f64> {

@@ -44,7 +44,10 @@ impl Selection {
             .collect();
         match missing.is_empty() {
             true => Ok(Self { columns, drives }),
-            false => Err(undetermined(&missing)),
+            false => Err(undetermined(
+                &missing,
+                ", whose torques are combinations of what the parameters and the other drives explain",
+            )),
         }
     }
 
@@ -61,10 +64,10 @@ pub(super) fn size(line: &Factor) -> f64 {
     if norm > 0.0 { norm } else { 1.0 }
 }
 
-/// The problem of gains that the data do not tell.
-pub(super) fn undetermined(actuators: &[String]) -> Error {
+/// The problem of gains that the data do not tell, and why.
+pub(super) fn undetermined(actuators: &[String], why: &str) -> Error {
     let message = format!(
-        "gains are not determined: the data do not tell {} of {}",
+        "gains are not determined: the data do not tell {} of {}{why}",
         if actuators.len() == 1 {
             "that"
         } else {

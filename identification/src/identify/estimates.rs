@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::{prepare::Prepared, progress::Progress};
@@ -67,14 +68,19 @@ pub fn estimate_projection(
     let mut warnings = Vec::new();
     let (selected, names) = on_data(prepared, system, &mut warnings)?;
     let base = estimate(system, &selected, settings)?;
-    let rest = essential(system, &selected, &names, &base, settings)?;
+    let more = drive_covariance(prepared, projection, (&selected, &base.weights));
+    let (rest, intervals) = rayon::join(
+        || essential(system, &selected, &names, &base, settings),
+        || Intervals::new(system, &selected, &base).widened(more.as_ref()),
+    );
+    let rest = rest?;
     warnings.extend(quality_warnings(system, &base));
     let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
-    let intervals = Intervals::new(system, &selected, &base);
     let chosen = recommended(system, (&selected, &names), &base, &intervals, settings)?;
     let chosen_noise = Noise::new(system, &chosen.selected, &chosen.estimation);
     let context = Context {
         prepared,
+        projection,
         system,
         truth: truth(prepared, true_values),
         intervals,
@@ -148,6 +154,7 @@ fn truth(prepared: &Prepared, true_values: Option<&BTreeMap<String, f64>>) -> BT
 /// What all estimates of a projection share.
 struct Context<'a> {
     prepared: &'a Prepared,
+    projection: usize,
     system: &'a System,
     truth: BTreeMap<usize, f64>,
     intervals: Intervals,
@@ -173,7 +180,7 @@ impl Context<'_> {
             weighted: self.weighted,
             parameters: self.parameters(
                 (&estimation, &self.intervals),
-                &correlated(&estimation, noise.as_ref(), selected),
+                &self.correlated(&estimation, noise.as_ref(), selected),
                 (selected, names),
             ),
             residual_norm: estimation.residual_norm,
@@ -204,7 +211,13 @@ impl Context<'_> {
             ..settings.clone()
         };
         let estimation = estimate(self.system, selected, &settings)?;
+        let more = drive_covariance(
+            self.prepared,
+            self.projection,
+            (selected, &estimation.weights),
+        );
         let intervals = Intervals::new(self.system, selected, &estimation);
+        let intervals = intervals.widened(more.as_ref());
         let white = estimation.standard_deviations.iter();
         let pairs = white.zip(intervals.deviations());
         let correlated: Vec<f64> = pairs.map(|(white, own)| white.max(own)).collect();
@@ -251,7 +264,11 @@ impl Context<'_> {
         let honest = self.intervals.deviations();
         let told = told.compared((self.system, selected), (base, &honest), &found, &named);
         let estimation = found.estimation.clone();
-        let intervals = found.intervals.as_ref().unwrap_or(&self.intervals);
+        // Instruments move the estimate little; what gains do to it is taken from least squares.
+        let more = drive_covariance(self.prepared, self.projection, (selected, &base.weights));
+        let own = found.intervals.clone();
+        let own = own.map(|own| own.widened(more.as_ref()));
+        let intervals = own.as_ref().unwrap_or(&self.intervals);
         let white = estimation.standard_deviations.iter();
         let pairs = white.zip(intervals.deviations());
         let correlated: Vec<f64> = pairs.map(|(white, own)| white.max(own)).collect();
@@ -267,6 +284,27 @@ impl Context<'_> {
             )
         };
         (Some(estimate), told)
+    }
+
+    /// Deviations under correlated residuals, white ones where these are not known, with the part that is
+    /// the gains'.
+    fn correlated(
+        &self,
+        estimation: &Estimation,
+        noise: Option<&Noise>,
+        selected: &[usize],
+    ) -> Vec<f64> {
+        let own = noise.map_or_else(
+            || estimation.standard_deviations.clone(),
+            |noise| noise.deviations(selected, estimation),
+        );
+        let place = (selected, estimation.weights.as_slice());
+        let Some(more) = drive_covariance(self.prepared, self.projection, place) else {
+            return own;
+        };
+        let more = more.diagonal();
+        let each = own.iter().zip(more.iter());
+        each.map(|(own, more)| (own * own + more).sqrt()).collect()
     }
 
     /// SI unit of a base parameter.
@@ -311,12 +349,13 @@ impl Context<'_> {
     }
 }
 
-/// Deviations under correlated residuals, white ones where these are not known.
-fn correlated(estimation: &Estimation, noise: Option<&Noise>, selected: &[usize]) -> Vec<f64> {
-    noise.map_or_else(
-        || estimation.standard_deviations.clone(),
-        |noise| noise.deviations(selected, estimation),
-    )
+/// What the uncertainty of gains adds to the covariance of an estimate, where there is any.
+fn drive_covariance(
+    prepared: &Prepared,
+    projection: usize,
+    estimate: (&[usize], &[f64]),
+) -> Option<DMatrix<f64>> {
+    prepared.drives.as_ref()?.covariance(projection, estimate)
 }
 
 /// The base parameters that the data can tell apart, with their names; the others are warned of.

@@ -66,7 +66,8 @@ pub struct Identification {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gains: Vec<DriveGain>,
     /// The base parameters that were estimated together with the gains. Their deviations have a part that is
-    /// the gains'; deviations of the other estimates are those for the gains as they were found.
+    /// the gains', as have `correlated_standard_deviation` and `interval_95` of the other estimates;
+    /// `standard_deviation` of these holds for the gains as they were found.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gain_parameters: Vec<JointParameter>,
     /// Table 4, where controlled runs were compared.

@@ -41,6 +41,7 @@ use crate::{
     data::Dataset,
     error::Error,
     estimation::instruments::regressor::ErrorsInRegressor,
+    gains::Gains,
     regression::projection::{ModelKind, Projection},
     result::{Estimate, Stage},
     settings::Settings,
@@ -57,11 +58,29 @@ pub fn identify(
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Identification, Error> {
+    identify_with_gains(model, dataset, None, settings, progress)
+}
+
+/// [`identify`] from runs whose torques have been multiplied by gains that were identified: deviations and
+/// intervals have the part that is the gains'.
+///
+/// # Errors
+/// As [`identify`].
+pub fn identify_with_gains(
+    model: &dyn Model,
+    dataset: &Dataset<'_>,
+    gains: Option<&Gains>,
+    settings: &Settings,
+    progress: &dyn Fn(Progress<'_>),
+) -> Result<Identification, Error> {
     let info = model.info();
     // A cross-validation run that can't be used is better known before the long work.
     check_runs(model, dataset.validation, settings)?;
     let projections = projections(model, settings);
-    let prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
+    let mut prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
+    if let Some(gains) = gains {
+        prepared = prepared.with_gains((model, dataset.runs), gains, settings)?;
+    }
     let mut warnings = prepared_warnings(&prepared, dataset.validation);
     let logs = dataset.runs.iter().chain(dataset.validation);
     let notes = logs.filter_map(|log| Some(format!("{}: {}", log.name(), log.note()?)));

@@ -10,6 +10,7 @@ use crate::{
     data::Log,
     error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
+    gains::{DriveShares, Gains},
     kinematics,
     prior::Prior,
     regression::{
@@ -47,9 +48,29 @@ pub struct Prepared {
     pub(super) points: Vec<Vec<Vec<DMatrix<f64>>>>,
     /// What there is of instruments.
     pub(super) companions: Companions,
+    /// Where the torques have been multiplied by gains, what the uncertainty of these does.
+    pub(super) drives: Option<DriveShares>,
 }
 
 impl Prepared {
+    /// With the uncertainty of gains by which the torques of the runs have been multiplied.
+    pub(super) fn with_gains(
+        mut self,
+        (model, runs): (&dyn Model, &[Log]),
+        gains: &Gains,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        let observer = Observer {
+            model,
+            columns: &self.columns,
+            base: &self.base.columns,
+            projections: &self.projections,
+            settings,
+        };
+        self.drives = Some(DriveShares::new(&observer, runs, gains)?);
+        Ok(self)
+    }
+
     /// Names of the standard parameters that have no effect on the model.
     #[must_use]
     pub fn without_effect(&self) -> Vec<String> {
@@ -147,6 +168,7 @@ pub fn prepare(
         seen,
         points,
         companions,
+        drives: None,
     })
 }
 

@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::elimination::residual;
+use super::{elimination::residual, update::update};
 
 /// Columns whose part outside the others is below this part of their norm are dependent on the
 /// data.
@@ -47,7 +47,7 @@ impl Factor {
         let step = BLOCK_RATIO * size;
         for first in (0..rows.nrows()).step_by(step) {
             let count = step.min(rows.nrows() - first);
-            self.absorb(&rows.rows(first, count).clone_owned());
+            self.absorb(rows.rows(first, count).clone_owned());
         }
     }
 
@@ -66,7 +66,7 @@ impl Factor {
     pub(crate) fn add(&mut self, other: &Self) {
         self.equations += other.equations;
         self.sums += &other.sums;
-        self.absorb(&other.r);
+        self.absorb(other.r.clone());
     }
 
     /// Adds the equations of other factors, each scaled by a weight.
@@ -77,18 +77,14 @@ impl Factor {
         for (factor, weight) in factors.iter().zip(weights) {
             merged.equations += factor.equations;
             merged.sums += &factor.sums * *weight;
-            merged.absorb(&(&factor.r * *weight));
+            merged.absorb(&factor.r * *weight);
         }
         merged
     }
 
     /// Factorises [R; block].
-    fn absorb(&mut self, block: &DMatrix<f64>) {
-        let size = self.r.ncols();
-        let mut stacked = DMatrix::zeros(size + block.nrows(), size);
-        stacked.rows_mut(0, size).copy_from(&self.r);
-        stacked.rows_mut(size, block.nrows()).copy_from(block);
-        self.r = stacked.qr().r();
+    fn absorb(&mut self, mut block: DMatrix<f64>) {
+        update(&mut self.r, &mut block);
     }
 
     /// Number of unknowns.

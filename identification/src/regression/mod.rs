@@ -22,5 +22,6 @@ pub(crate) mod projection;
 pub(crate) mod sink;
 pub(crate) mod states;
 pub(crate) mod system;
+mod update;
 
 pub(crate) use chunk::Chunk;

@@ -77,7 +77,9 @@ impl Observer<'_> {
         let mut companion = instruments.map(companion).transpose()?;
         let mut motions = Motions::new(self.model, log, self.settings)?;
         let samples = motions.samples();
-        let decimator = Decimator::new(self.settings.decimation)?;
+        let decimator = self
+            .settings
+            .decimator(self.settings.decimation, log.sampling_frequency())?;
         let (lines, n) = (info.sizes.dof, info.sizes.actuators);
         let width = row_width(self.base.len(), companion.is_some());
         let equations = decimator.kept(samples);

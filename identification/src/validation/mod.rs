@@ -19,7 +19,6 @@ use crate::{
     data::Log,
     error::Error,
     estimation::estimate::{LineError, overall, percent},
-    filters::Decimator,
     kinematics::{
         Motion, Motions,
         distribution::{least_multipliers, least_norm, product, transposed_product},
@@ -129,7 +128,9 @@ pub(crate) fn validate(
     let info = observer.model.info();
     let mut motions = Motions::new(observer.model, log, observer.settings)?;
     let samples = motions.samples();
-    let decimator = Decimator::new(observer.settings.decimation)?;
+    let decimator = observer
+        .settings
+        .decimator(observer.settings.decimation, log.sampling_frequency())?;
     let layout = Layout::new(info.sizes, candidates.len(), offers_closure(observer.model));
     let mut stream = decimator.stream(layout.width(), samples)?;
     let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();

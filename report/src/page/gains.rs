@@ -94,6 +94,6 @@ fn parameters(parameters: &[JointParameter]) -> String {
     };
     table.html()
         + &note(
-            "These deviations have a part that is the gains\u{2019}; intervals elsewhere on this page hold for the gains as found.",
+            "These deviations, and those and the intervals elsewhere on this page, have a part that is the gains\u{2019}.",
         )
 }

@@ -94,6 +94,10 @@ pub struct Excitation {
     pub described: Option<JudgedRuns>,
     /// The best of a hundred random ones, run after run.
     pub random: JudgedRuns,
+    /// The hundred: of every run the first, of every run the second, and so on. They are judged as candidates
+    /// are, at fewer samples.
+    #[serde(skip)]
+    pub hundred: Vec<Vec<CaseOfRuns>>,
     /// Those that were found.
     pub found: JudgedRuns,
     /// Names of the runs that were found.
@@ -148,6 +152,8 @@ struct Task<'a> {
 struct Chains {
     random: Vec<Trajectory>,
     found: Vec<Trajectory>,
+    /// What the first random ones of all runs tell together, the second ones, and so on.
+    hundred: Vec<Vec<DMatrix<f64>>>,
 }
 
 impl<'a> Task<'a> {
@@ -255,6 +261,13 @@ impl<'a> Task<'a> {
             let evolved = search.evolved(&series, start, &told, &mut random, &tell);
             let settled = search.settled(&series, &evolved);
             let found: Candidate = settled.ok_or_else(|| self.no_motion(robot))?;
+            let both = chains.hundred.iter().zip(&all);
+            chains.hundred = match index {
+                0 => all.iter().map(|one| one.information.clone()).collect(),
+                _ => both
+                    .map(|(sum, one)| added(sum, &one.information))
+                    .collect(),
+            };
             told_random = added(&told_random, &of_random.information);
             told = added(&told, &found.information);
             chains.random.push(of_random.trajectory.clone());
@@ -289,6 +302,8 @@ impl<'a> Task<'a> {
     fn told(&self, robot: &Robot, chains: Chains) -> Excitation {
         let names = self.frames.iter().map(|frame| frame.name.clone()).collect();
         let with = |all: Vec<Trajectory>| self.frames.iter().cloned().zip(all).collect();
+        let hundred = chains.hundred.iter();
+        let hundred = hundred.map(|told| self.question.judge(told)).collect();
         let (random, found): (Vec<_>, Vec<_>) = (with(chains.random), with(chains.found));
         let duration =
             |runs: &[(Frame, Trajectory)]| runs.iter().map(|(f, _)| f.duration).sum::<f64>();
@@ -312,6 +327,7 @@ impl<'a> Task<'a> {
             base_parameters: self.question.len(),
             duration: whole,
             described,
+            hundred,
             random: judged(&random).unwrap_or_else(nothing),
             found: judged(&found).unwrap_or_else(nothing),
             runs: names,

@@ -194,6 +194,22 @@ fn joints_stand_still_below_velocities_of_their_kind() {
 }
 
 #[test]
+fn torques_pass_the_low_pass_once() {
+    let of = |text: &str| good(&single(&format!("[identification]\n{text}"), "")).identification;
+    assert!(!of("").filter_equations && of("filter_equations = true").filter_equations);
+    assert!(of("filter_torques = true\nfilter_equations = false").filter_torques);
+    let both = errors("[identification]\nfilter_equations = true\nfilter_torques = true");
+    assert_eq!(
+        both,
+        [
+            "3:20 `filter_equations`: with `filter_torques` the torques would pass the low-pass twice"
+        ]
+    );
+    let word = errors("[identification]\nfilter_equations = 6");
+    assert!(word[0].starts_with("3:20 `filter_equations`: "), "{word:?}");
+}
+
+#[test]
 fn factors_are_numbers_expressions_or_variables() {
     let tables = "[constants]\nk = \"2 N m/A\"\n[data]\ntime = \"t\"\npositions = [\"q\"]\n\
                   torques = [\"i\"]\nposition_scale = \"1 deg\"\ntorque_gain = [\"k\"]";

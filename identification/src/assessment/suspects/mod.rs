@@ -29,13 +29,16 @@
 //! - `sections`: products of columns and residual, section by section of the time;
 //! - `pairs`: residuals of actuators that hang together;
 //! - `scores`: one pass over the runs;
+//! - `beside`: the columns of the model beside which suspects are tested;
 //! - `scaled`: equations between columns of different units;
 //! - `spread`: how far a score strays by chance;
-//! - `test`: sizes, deviations, probabilities.
+//! - `test`: sizes, deviations, probabilities; `accused`: what it says.
 //!
 //! Columns that are made of torques use torques that are freed of the residual,
 //! τ - J (Jᵀ J)^-1 ρ: measured ones hold the noise of the residual itself, which would accuse every drive.
 
+mod accused;
+mod beside;
 mod columns;
 mod nearby;
 mod pairs;
@@ -46,8 +49,9 @@ mod shapes;
 mod spread;
 mod test;
 
+pub(crate) use accused::Accused;
 pub(crate) use columns::Suspect;
 pub(crate) use pairs::Correlation;
 pub(crate) use scores::{Scores, scores};
 pub(crate) use shapes::{Reach, Shape};
-pub(crate) use test::{Accused, Group};
+pub(crate) use test::Group;

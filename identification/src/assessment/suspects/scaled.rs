@@ -7,6 +7,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 const LEAST_OUTSIDE: f64 = 1e-8;
 
 /// D A D = L Lᵀ with the diagonal matrix D that makes the diagonal 1.
+#[derive(Debug, Clone)]
 pub(super) struct Scaled {
     scales: DVector<f64>,
     factor: Cholesky<f64, Dyn>,

@@ -1,10 +1,14 @@
 //! One pass over the beginnings of the runs. What is kept does not grow with the data.
 
+use std::sync::OnceLock;
+
 use nalgebra::DMatrix;
 use overact::{Function, Model, StandardParameter};
 use rayon::prelude::*;
 
 use super::{
+    accused::Accused,
+    beside::Beside,
     columns::{Layout, Sample, Suspect, moments, rates, suspects},
     nearby::Nearby,
     pairs::{Correlation, correlations},
@@ -16,7 +20,7 @@ use crate::{
     blocks::{BLOCK, evaluate, slice},
     data::{Log, Variant},
     error::Error,
-    filters::{DECIMATION_PADDING, Decimation, Decimator},
+    filters::{DECIMATION_PADDING, Decimation},
     kinematics::{
         Motion, Motions,
         conditioning::{KeptActuators, home_scales},
@@ -56,6 +60,15 @@ pub(crate) struct Scores {
     pub(super) late: Vec<usize>,
     /// What each run tells.
     pub(super) runs: Vec<RunScores>,
+    /// What was found beside the estimate's own columns.
+    pub(super) own: Found,
+}
+
+/// What tests beside the estimate's own columns have in common, and all of them, once one was asked for.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Found {
+    pub(super) beside: OnceLock<Option<Beside>>,
+    pub(super) accused: OnceLock<Vec<Option<Accused>>>,
 }
 
 /// What a pass needs.
@@ -125,6 +138,7 @@ pub(crate) fn scores(
         selected,
         runs: scores,
         suspects,
+        own: Found::default(),
     })
 }
 
@@ -207,7 +221,9 @@ impl Pass<'_> {
     fn run(&self, log: &Log) -> Result<RunScores, Error> {
         let lines = self.model.info().sizes.dof;
         let mut motions = Motions::new(self.model, log, self.settings)?;
-        let decimator = Decimator::new(self.decimation)?;
+        let decimator = self
+            .settings
+            .decimator(self.decimation, log.sampling_frequency())?;
         let samples = motions.samples();
         let mut streams: Vec<Decimation> = (0..lines)
             .map(|_| decimator.stream(self.width(), samples))

@@ -1,6 +1,8 @@
 //! Products of columns and residual, section by section of a run's time, and their sums over cosines of
 //! the time.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector};
 
 use super::{
@@ -86,6 +88,17 @@ impl RunScores {
         let size = layout.base * layout.columns;
         let all = &self.products.cross.as_slice()[m * size..(m + 1) * size];
         DMatrixView::from_slice(all, layout.base, layout.columns)
+    }
+
+    /// Products of some columns of base parameters with some of all columns, over cosine m.
+    pub(super) fn beside(
+        &self,
+        layout: &Layout,
+        m: usize,
+        (rows, columns): (&[usize], &[usize]),
+    ) -> DMatrix<f64> {
+        let all = self.cross(layout, m);
+        DMatrix::from_fn(rows.len(), columns.len(), |i, j| all[(rows[i], columns[j])])
     }
 
     /// Products of the columns of a block with each other, over cosine m.
@@ -176,9 +189,26 @@ impl<'a> Sink<'a> {
             .enumerate()
             .map(|(line, rows)| self.line(line, (rows, count), positions))
             .collect();
+        let mut first = 0;
+        while first < count {
+            let section = self.section(first);
+            let same = (first..count).take_while(|sample| self.section(*sample) == section);
+            let part = first..first + same.count();
+            let (rows, left) = together(&taken, part.clone());
+            self.products
+                .add(self.frame.layout, section, (&rows, &left));
+            first = part.end;
+        }
+        self.equations += count * lines.len();
+        self.square += taken
+            .iter()
+            .map(|(_, residual)| residual.norm_squared())
+            .sum::<f64>();
         for sample in 0..count {
-            let n = self.constants.len();
-            let jacobian = DMatrix::from_fn(n, lines.len(), |i, line| taken[line].0[(sample, i)]);
+            let (n, constants) = (self.constants.len(), &self.constants);
+            let jacobian = DMatrix::from_fn(n, lines.len(), |i, line| {
+                taken[line].0[(sample, constants[i])]
+            });
             let residual = DVector::from_fn(lines.len(), |line, _| taken[line].1[sample]);
             self.pairs.add(self.section(sample), &jacobian, &residual);
         }
@@ -192,9 +222,9 @@ impl<'a> Sink<'a> {
         section.min(sections - 1)
     }
 
-    /// Takes the rows of a line; gives what torques of the actuators are worth in it, and its residual.
+    /// The rows of a line with all columns, weighted, and its residual.
     fn line(
-        &mut self,
+        &self,
         line: usize,
         (rows, count): (&[f64], usize),
         positions: &[f64],
@@ -209,19 +239,7 @@ impl<'a> Sink<'a> {
         let mut all = all.remove_column(layout.base);
         all.resize_horizontally_mut(layout.columns, 0.0);
         self.add_waves(&mut all, positions);
-        let mut first = 0;
-        while first < count {
-            let section = self.section(first);
-            let same = (first..count).take_while(|sample| self.section(*sample) == section);
-            let part = first..first + same.count();
-            let rows = all.rows_range(part.clone()).clone_owned();
-            let left = residual.rows_range(part.clone()).clone_owned();
-            self.products.add(layout, section, (&rows, &left));
-            first = part.end;
-        }
-        self.square += residual.norm_squared();
-        self.equations += count;
-        (all.select_columns(&self.constants), residual)
+        (all, residual)
     }
 
     /// Fills in the waves: those of a decimated position, times what a torque of its actuator is worth in
@@ -242,4 +260,22 @@ impl<'a> Sink<'a> {
             }
         }
     }
+}
+
+/// Some instants of all lines, one line below the other: rows and residual.
+fn together(
+    lines: &[(DMatrix<f64>, DVector<f64>)],
+    instants: Range<usize>,
+) -> (DMatrix<f64>, DVector<f64>) {
+    let (count, columns) = (instants.len(), lines.first().map_or(0, |own| own.0.ncols()));
+    let mut rows = DMatrix::zeros(lines.len() * count, columns);
+    let mut left = DVector::zeros(lines.len() * count);
+    for (line, (all, residual)) in lines.iter().enumerate() {
+        let place = line * count;
+        rows.rows_mut(place, count)
+            .copy_from(&all.rows_range(instants.clone()));
+        left.rows_mut(place, count)
+            .copy_from(&residual.rows_range(instants.clone()));
+    }
+    (rows, left)
 }

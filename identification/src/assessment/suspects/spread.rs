@@ -3,14 +3,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{columns::Layout, scaled::Scaled, sections::RunScores};
+use super::{beside::Beside, columns::Layout, sections::RunScores};
 
 /// Columns of a group, freed of those of the model by B and then orthonormal: z⊥ = (z - W B) Mᵀ.
 pub(super) struct Freed<'a> {
     pub(super) layout: &'a Layout,
-    /// Columns of the model, and their Gram matrix.
-    pub(super) selected: &'a [usize],
-    pub(super) gram: &'a Scaled,
+    /// Columns of the model.
+    pub(super) beside: &'a Beside,
     /// The block of the group, and the columns within it.
     pub(super) block: usize,
     pub(super) told: &'a [usize],
@@ -37,7 +36,7 @@ pub(super) struct Spread {
 
 impl Freed<'_> {
     /// What a run adds; the columns are zero in a run to which they are not `inside`.
-    pub(super) fn share(&self, run: &RunScores, inside: bool) -> Share {
+    pub(super) fn share(&self, (number, run): (usize, &RunScores), inside: bool) -> Share {
         let count = 2 * run.cosines + 1;
         let mut share = Share {
             fitted: Vec::with_capacity(count),
@@ -48,14 +47,14 @@ impl Freed<'_> {
         let columns: Vec<usize> = self.columns().collect();
         let turned = self.white.transpose();
         let (p, width) = self.solved.shape();
-        for m in 0..count {
-            let rows = run.cross(self.layout, m).select_rows(self.selected);
-            let mut fitted = -rows.select_columns(self.selected) * self.solved;
+        let selected = self.beside.selected.as_slice();
+        for (m, products) in self.beside.products[number].iter().enumerate() {
+            let mut fitted = -(products * self.solved);
             let mut own = DMatrix::zeros(width, width);
             let all = run.scores().column(m);
             let mut score = DVector::zeros(width);
             if inside {
-                let cross = rows.select_columns(&columns);
+                let cross = run.beside(self.layout, m, (selected, &columns));
                 own -= cross.tr_mul(self.solved);
                 fitted += cross;
                 let block = run.own(self.layout, self.block, m);
@@ -63,7 +62,7 @@ impl Freed<'_> {
                 score += all.select_rows(&columns);
             }
             own -= self.solved.tr_mul(&fitted);
-            score -= self.solved.tr_mul(&all.select_rows(self.selected));
+            score -= self.solved.tr_mul(&all.select_rows(selected));
             debug_assert_eq!(fitted.nrows(), p);
             share.fitted.push(fitted * &turned);
             share.own.push(self.white * own * &turned);
@@ -125,7 +124,7 @@ impl Freed<'_> {
                 (1..=count).map(|b| all[b].column(i).scale(root)).collect();
             DMatrix::from_columns(&columns)
         };
-        let (model, group) = (self.gram.white(&of(&share.fitted)), of(&share.own));
+        let (model, group) = (self.beside.gram.white(&of(&share.fitted)), of(&share.own));
         let taken = model.tr_mul(&model) + group.tr_mul(&group);
         let spectrum = |m: usize| share.own[m][(i, i)];
         DMatrix::from_fn(count, count, |a, b| {

@@ -1,19 +1,16 @@
 //! Whether a suspect is there, how large it is, and what it does to the parameters.
 
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 use super::{
+    accused::Accused,
+    beside::Beside,
     scaled::{Scaled, told},
     scores::Scores,
     spread::{Freed, Share, Spread, score},
 };
-use crate::estimation::intervals::distributions::{fisher_tail, student_quantile};
-
-/// How often a fault that is just large enough to be seen is missed.
-const MISSED: f64 = 0.1;
-
-/// Probabilities below are as good as none.
-const LEAST_PROBABILITY: f64 = 1e-30;
+use crate::estimation::intervals::distributions::fisher_tail;
 
 /// Columns that are tested together: those of a suspect, or of the payload in one run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,92 +39,52 @@ impl Group {
     }
 }
 
-/// What speaks against a group of columns.
-#[derive(Debug, Clone)]
-pub(crate) struct Accused {
-    /// δ of each column that the data can tell, by its place in the group.
-    pub(crate) sizes: Vec<(usize, f64)>,
-    /// Deviation of δ of the first one.
-    pub(crate) deviation: f64,
-    /// δ of the first one that would be missed one time in ten, at a level.
-    freedom: f64,
-    /// How probable such scores are by chance.
-    pub(crate) probability: f64,
-    /// The part of the squared residual that it explains.
-    pub(crate) explained: f64,
-    /// B δ for each base parameter of the estimate: place, and by how much it is off.
-    pub(crate) moves: Vec<(usize, f64)>,
-}
-
-impl Accused {
-    /// δ of the first column.
-    pub(crate) fn size(&self) -> f64 {
-        self.sizes.first().map_or(0.0, |(_, size)| *size)
-    }
-
-    /// The largest δ of its columns, with its sign.
-    pub(crate) fn largest(&self) -> f64 {
-        let sizes = self.sizes.iter().map(|(_, size)| *size);
-        sizes.fold(
-            0.0,
-            |most: f64, one| if one.abs() > most.abs() { one } else { most },
-        )
-    }
-
-    /// What speaks against it, in deviations: |δ| by its deviation for one column, for several what would
-    /// be as improbable for one.
-    pub(crate) fn strength(&self) -> f64 {
-        match self.sizes.len() {
-            1 => self.size().abs() / self.deviation,
-            _ => self.quantile(self.probability.max(LEAST_PROBABILITY)),
-        }
-    }
-
-    /// How probable a size of the first column is by chance, were the true one as large as `harmless`.
-    pub(crate) fn probability_beyond(&self, harmless: f64) -> f64 {
-        let beyond = (self.size().abs() - harmless).max(0.0) / self.deviation;
-        fisher_tail(beyond * beyond, 1.0, self.freedom)
-    }
-
-    /// How many deviations chance exceeds as often as `level`.
-    pub(crate) fn quantile(&self, level: f64) -> f64 {
-        student_quantile(level, self.freedom)
-    }
-
-    /// The size that these data would show nine times in ten at a level.
-    pub(crate) fn visible(&self, level: f64) -> f64 {
-        let quantile = student_quantile(level, self.freedom);
-        (quantile + student_quantile(2.0 * MISSED, self.freedom)) * self.deviation
-    }
-}
-
 impl Scores {
     /// Tests a group beside the columns `selected` of the base parameters; none where the data can't tell
     /// it from them.
     pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<Accused> {
+        if selected != self.selected {
+            return self.tested(group, &self.beside(selected)?);
+        }
+        let beside = self.own.beside.get_or_init(|| self.beside(selected));
+        let beside = beside.as_ref()?;
+        match group.run {
+            // Whoever asks for one suspect asks for the others, too.
+            None if group.block < self.suspects.len() => {
+                let all = || {
+                    let groups = (0..self.suspects.len()).into_par_iter();
+                    let one = |number| self.tested(&Group::suspect(number), beside);
+                    groups.map(one).collect()
+                };
+                let all: &Vec<Option<Accused>> = self.own.accused.get_or_init(all);
+                all.get(group.block)?.clone()
+            }
+            _ => self.tested(group, beside),
+        }
+    }
+
+    /// The columns `selected` of the base parameters with what all tests beside them share.
+    fn beside(&self, selected: &[usize]) -> Option<Beside> {
+        Beside::new(&self.layout, &self.runs, (selected, &self.late))
+    }
+
+    /// Tests a group beside columns of the base parameters.
+    fn tested(&self, group: &Group, beside: &Beside) -> Option<Accused> {
         let layout = &self.layout;
-        // Friction that is late stands behind the columns of the estimate.
-        let count = selected.len();
-        let selected: Vec<usize> = selected.iter().chain(&self.late).copied().collect();
-        let selected = selected.as_slice();
         let columns: Vec<usize> = layout.blocks[group.block].clone().collect();
         let inside = |run: usize| group.run.is_none_or(|own| own == run);
-        let mut gram = DMatrix::zeros(selected.len(), selected.len());
+        let selected = beside.selected.as_slice();
         let mut cross = DMatrix::zeros(selected.len(), columns.len());
         let mut square = DMatrix::zeros(columns.len(), columns.len());
         for (number, run) in self.runs.iter().enumerate() {
-            let rows = run.cross(layout, 0).select_rows(selected);
-            gram += rows.select_columns(selected);
             if inside(number) {
-                cross += rows.select_columns(&columns);
+                cross += run.beside(layout, 0, (selected, &columns));
                 square += run.own(layout, group.block, 0);
             }
         }
         // The estimate has no friction that is late: its parameters are off as if there were none.
-        let whole = Scaled::new(&gram.view((0, 0), (count, count)).clone_owned())?;
-        let off = whole.solve(&cross.rows(0, count).clone_owned());
-        let gram = Scaled::new(&gram)?;
-        let solved = gram.solve(&cross);
+        let off = beside.estimated(&cross);
+        let solved = beside.gram.solve(&cross);
         let outside = &square - cross.tr_mul(&solved);
         let told = told(&outside, &square);
         let solved = solved.select_columns(&told);
@@ -135,8 +92,7 @@ impl Scores {
         let white = factor.white(&DMatrix::identity(told.len(), told.len()));
         let freed = Freed {
             layout,
-            selected,
-            gram: &gram,
+            beside,
             block: group.block,
             told: &told,
             solved: &solved,
@@ -144,7 +100,7 @@ impl Scores {
         };
         let runs = self.runs.iter().enumerate();
         let shares: Vec<Share> = runs
-            .map(|(number, run)| freed.share(run, inside(number)))
+            .map(|(number, run)| freed.share((number, run), inside(number)))
             .collect();
         self.accused(&freed, &shares, &off.select_columns(&told))
     }
@@ -171,7 +127,7 @@ impl Scores {
         let variance = (first.transpose() * &covariance * first)[(0, 0)];
         let total: f64 = self.runs.iter().map(|run| run.square).sum();
         let moves = off * &sizes;
-        let selected = freed.selected.iter().copied();
+        let selected = freed.beside.selected.iter().copied();
         Some(Accused {
             deviation: variance.max(0.0).sqrt(),
             freedom,

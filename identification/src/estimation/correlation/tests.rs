@@ -72,6 +72,7 @@ pub(crate) fn settings() -> Settings {
         velocity_dead_band: 0.0,
         standstill_velocity: Vec::new(),
         filter_torques: false,
+        filter_equations: false,
         validation_samples: None,
         averaged_reversals: false,
         r_sigma: 10.0,

@@ -23,6 +23,9 @@ pub(crate) fn student_quantile(probability: f64, freedom: f64) -> f64 {
     }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
         if student_tail(middle, freedom) > probability {
             low = middle;
         } else {

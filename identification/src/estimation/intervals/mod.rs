@@ -79,6 +79,14 @@ impl Intervals {
         })
     }
 
+    /// With what else makes the estimates err, independently of their residual.
+    pub(crate) fn widened(mut self, covariance: Option<&DMatrix<f64>>) -> Self {
+        if let Some(more) = covariance {
+            self.covariance += more;
+        }
+        self
+    }
+
     /// The standard deviation of each estimate.
     pub(crate) fn deviations(&self) -> Vec<f64> {
         let variances = self.covariance.diagonal();

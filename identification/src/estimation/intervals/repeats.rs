@@ -75,9 +75,9 @@ struct Share {
 
 /// A line of a piece over frequency; real and imaginary parts.
 struct Line {
-    /// Columns, weighted, frequencies x parameters.
+    /// Columns, weighted, parameters x frequencies: what belongs to a frequency lies together.
     columns: [DMatrix<f64>; 2],
-    /// c of all parameters, frequencies x parameters.
+    /// c of all parameters, parameters x frequencies.
     influence: [DMatrix<f64>; 2],
     /// Residual, weighted.
     residual: [Vec<f64>; 2],
@@ -108,14 +108,12 @@ impl Line {
                     .copy_from_slice(&spectrum.imaginary);
             }
         }
-        let influence = [
-            &columns[0] * &context.inverse,
-            &columns[1] * &context.inverse,
-        ];
+        let columns = columns.map(|part| part.transpose());
+        let influence = columns.each_ref().map(|part| &context.inverse * part);
         let leverage = (0..bins)
             .map(|bin| {
                 let parts = columns.iter().zip(&influence);
-                let sum: f64 = parts.map(|(a, b)| a.row(bin).dot(&b.row(bin))).sum();
+                let sum: f64 = parts.map(|(a, b)| a.column(bin).dot(&b.column(bin))).sum();
                 (sum / count as f64).min(1.0)
             })
             .collect();
@@ -132,8 +130,8 @@ impl Line {
 
     /// H_jk/N of two lines at a frequency, real and imaginary part.
     fn leverage(&self, other: &Self, bin: usize, count: usize) -> [f64; 2] {
-        let [a, b] = self.columns.each_ref().map(|part| part.row(bin));
-        let [c, d] = other.influence.each_ref().map(|part| part.row(bin));
+        let [a, b] = self.columns.each_ref().map(|part| part.column(bin));
+        let [c, d] = other.influence.each_ref().map(|part| part.column(bin));
         let real = a.dot(&c) + b.dot(&d);
         let imaginary = b.dot(&c) - a.dot(&d);
         [real, imaginary].map(|part| part / count as f64)
@@ -172,7 +170,7 @@ fn shares(lines: &[Line], count: usize, p: usize) -> Vec<Share> {
         for (i, share) in shares.iter_mut().enumerate() {
             let c: Vec<[f64; 2]> = lines
                 .iter()
-                .map(|line| line.influence.each_ref().map(|part| part[(bin, i)]))
+                .map(|line| line.influence.each_ref().map(|part| part[(i, bin)]))
                 .collect();
             let mut sum = [0.0; 2];
             for ([a, b], line) in c.iter().zip(lines) {
@@ -271,7 +269,7 @@ mod tests {
     /// A line of which only residual and leverage matter.
     fn line(residual: impl Fn(f64) -> [f64; 2], leverage: impl Fn(f64) -> f64) -> Line {
         let parts: Vec<[f64; 2]> = (0..BINS).map(|bin| residual(bin as f64)).collect();
-        let nothing = || [DMatrix::zeros(BINS, 0), DMatrix::zeros(BINS, 0)];
+        let nothing = || [DMatrix::zeros(0, BINS), DMatrix::zeros(0, BINS)];
         Line {
             columns: nothing(),
             influence: nothing(),

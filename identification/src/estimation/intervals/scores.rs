@@ -42,7 +42,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::{
-    estimation::estimate::Estimation,
+    estimation::{correlation::square, estimate::Estimation},
     regression::system::{Stretch, System},
 };
 
@@ -75,7 +75,7 @@ impl Covariance {
         let noise = stretches().map(|stretch| context.noise(stretch));
         let noise = noise.reduce(|| DMatrix::zeros(p, p), |a, b| a + b);
         let inverse = &context.estimation.inverse;
-        let noise = inverse.tr_mul(&noise) * inverse;
+        let noise = inverse.transpose() * noise * inverse;
         let shares: Vec<Share> = stretches()
             .filter_map(|stretch| context.share(stretch, &noise))
             .collect();
@@ -214,9 +214,9 @@ impl<'a> Context<'a> {
         let sections = counts(stretch).map_or(0, |(_, sections)| sections);
         for section in 0..sections {
             let range = range(stretch, section, sections);
-            let scores = self.section(stretch, range).scores;
+            let scores = self.section(stretch, range, false).scores;
             let own = scores.columns(0, p);
-            sum.gemm_tr(1.0, &own, &own, 1.0);
+            sum.gemm(1.0, &own.transpose(), &own, 1.0);
         }
         sum
     }
@@ -248,9 +248,10 @@ impl<'a> Context<'a> {
             noisy: DMatrix::zeros(p * p, sections),
         };
         for section in 0..sections {
-            let Section { scores, gram } = self.section(stretch, range(stretch, section, sections));
+            let range = range(stretch, section, sections);
+            let Section { scores, gram } = self.section(stretch, range, true);
             told.scores.set_column(section, &scores.row_sum_tr());
-            let noise = scores.tr_mul(&scores);
+            let noise = square(&scores);
             let (product, noise) = (gram * &turned, noise * &turned);
             let own = scores * &turned;
             for (i, column) in own.column_iter().enumerate() {
@@ -267,8 +268,8 @@ impl<'a> Context<'a> {
         told
     }
 
-    /// The equations of a section of a stretch.
-    fn section(&self, stretch: &Stretch, range: Range<usize>) -> Section {
+    /// The equations of a section of a stretch; with G where that is `wanted`.
+    fn section(&self, stretch: &Stretch, range: Range<usize>, wanted: bool) -> Section {
         let q = self.influence().ncols();
         let mut told = Section {
             scores: DMatrix::zeros(range.len(), q),
@@ -286,7 +287,9 @@ impl<'a> Context<'a> {
             for (mut scores, column) in told.scores.column_iter_mut().zip(own.column_iter()) {
                 scores += column.component_mul(&residual);
             }
-            told.gram.gemm_tr(1.0, &own, &own, 1.0);
+            if wanted {
+                told.gram.gemm(1.0, &own.transpose(), &own, 1.0);
+            }
         }
         told
     }
@@ -314,9 +317,10 @@ impl<'a> Context<'a> {
     fn turned(&self, sections: &DMatrix<f64>, waves: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
         let p = self.selected.len();
         let sums = sections * waves;
+        let turned = self.estimation.inverse.transpose();
         let sums = sums.column_iter().map(|sum| {
             let sum = nalgebra::DMatrixView::from_slice(sum.as_slice(), p, p);
-            self.estimation.inverse.tr_mul(&sum)
+            &turned * sum
         });
         sums.collect()
     }
@@ -338,8 +342,9 @@ impl<'a> Context<'a> {
                     .collect();
                 let z = DMatrix::from_fn(p, cosines, |row, b| fitted[b][(row, i)]);
                 let y = DMatrix::from_fn(p, cosines, |row, b| noisy[b][(row, i)]);
-                let crossed = z.tr_mul(&y);
-                let taken = z.tr_mul(&(noise * &z));
+                let turned = z.transpose();
+                let crossed = &turned * &y;
+                let taken = turned * (noise * &z);
                 let c = DMatrix::from_fn(cosines, cosines, |a, b| {
                     spectrum[a.abs_diff(b)] + spectrum[a + b + 2] + taken[(a, b)]
                         - crossed[(a, b)]

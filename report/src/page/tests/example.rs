@@ -213,6 +213,7 @@ pub(super) fn settings() -> Settings {
         prior: Prior::default(),
         known: std::collections::BTreeMap::new(),
         filter_torques: false,
+        filter_equations: false,
         validation_samples: None,
         kept_actuators: vec![0],
         seed: 1,

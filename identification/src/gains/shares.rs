@@ -1,0 +1,183 @@
+//! What the uncertainty of gains does to estimates that are made with them.
+//!
+//! Torques that have been multiplied by gains g are off by the part δ_j = δg_j/g_j of themselves, drive by
+//! drive. Least squares is linear in the torques: with P_j the estimate from the torque of drive j alone, with
+//! the same columns and weights, the estimate is off by P δ, and C being the covariance of δ its covariance
+//! grows by P C Pᵀ.
+//!
+//! The gains come from what the columns of the unknown parameters leave of the torques, the estimate from what
+//! they explain, so noise that is white makes both err independently. What was known exactly is estimated once
+//! more and is an exception: of it this covariance is too large.
+
+use nalgebra::DMatrix;
+use overact::Function;
+
+use super::result::Gains;
+use crate::{
+    blocks::{BLOCK, slice},
+    data::Log,
+    error::Error,
+    kinematics::{
+        Motion, Motions,
+        conditioning::{KeptActuators, home_scales},
+    },
+    regression::{
+        Chunk,
+        chunk::projected,
+        factor::Factor,
+        observation::Observer,
+        projection::Projection,
+        sink::{LineSink, Plan, observed},
+        system::System,
+    },
+};
+
+/// What each drive contributes to the equations of each projection.
+#[derive(Debug, Clone)]
+pub(crate) struct DriveShares {
+    /// For each projection the factors of its lines: columns of the base parameters, then one for each drive.
+    projections: Vec<Vec<Factor>>,
+    /// Number of the base parameters.
+    parameters: usize,
+    /// C.
+    covariance: DMatrix<f64>,
+}
+
+impl DriveShares {
+    /// Goes through runs whose torques have been multiplied by gains.
+    ///
+    /// # Errors
+    /// As [`Motions::next`]; the runs have been gone through before.
+    pub(crate) fn new(observer: &Observer<'_>, runs: &[Log], gains: &Gains) -> Result<Self, Error> {
+        let info = observer.model.info();
+        let (parameters, drives) = (observer.base.len(), info.sizes.actuators);
+        let new = |projection: &Projection| {
+            System::new(projection.clone(), &info, parameters + drives - 1)
+        };
+        let mut systems: Vec<System> = observer.projections.iter().map(new).collect();
+        for (number, log) in runs.iter().enumerate() {
+            run(observer, (number, log), &mut systems)?;
+        }
+        Ok(Self {
+            projections: systems.into_iter().map(|own| own.lines).collect(),
+            parameters,
+            covariance: gains.relative_covariance(),
+        })
+    }
+
+    /// P C Pᵀ of an estimate of the columns `selected` with the weights of the lines; none where they are
+    /// dependent.
+    pub(crate) fn covariance(
+        &self,
+        projection: usize,
+        (selected, weights): (&[usize], &[f64]),
+    ) -> Option<DMatrix<f64>> {
+        let lines = self.projections.get(projection)?;
+        let (p, drives) = (selected.len(), self.covariance.nrows());
+        let columns: Vec<usize> = (0..drives - 1).map(|j| self.parameters + j).collect();
+        let reduced = Factor::reduced_together(lines, weights, &[selected, &columns].concat());
+        let mut right = DMatrix::zeros(p, drives);
+        let own = reduced.triangle.view((0, p), (p, drives - 1));
+        right.columns_mut(0, drives - 1).copy_from(&own);
+        right.set_column(drives - 1, &reduced.rhs.rows(0, p));
+        let triangle = reduced.triangle.view((0, 0), (p, p));
+        let shares = triangle.solve_upper_triangular(&right)?;
+        Some(&shares * &self.covariance * shares.transpose())
+    }
+}
+
+/// Adds the equations of a run.
+fn run(
+    observer: &Observer<'_>,
+    (number, log): (usize, &Log),
+    systems: &mut [System],
+) -> Result<(), Error> {
+    let (model, settings) = (observer.model, observer.settings);
+    let sizes = model.info().sizes;
+    let (r, n) = (sizes.dof, sizes.actuators);
+    let mut motions = Motions::new(model, log, settings)?;
+    let samples = motions.samples();
+    let decimator = settings.decimator(settings.decimation, log.sampling_frequency())?;
+    let plan = Plan::new(decimator.kept(samples), 0);
+    let width = observer.base.len() + n;
+    let sink = |place: usize| {
+        let limit = settings.standstill_velocity.get(place % r).copied();
+        let stream = decimator.stream(width + usize::from(limit.is_some()), samples)?;
+        Ok(LineSink::new(&plan, stream, (width - 1, false), limit))
+    };
+    let sinks = (0..r * systems.len()).map(sink);
+    let mut sinks = sinks.collect::<Result<Vec<LineSink>, Error>>()?;
+    let mut failed: Vec<Option<Error>> = systems.iter().map(|_| None).collect();
+    while let Some(motion) = motions.next()? {
+        let chunks = observer.chunks(&motion, &mut failed)?;
+        for (place, chunk) in chunks.iter().enumerate() {
+            let drives = drives(observer, &motion, place * BLOCK)?;
+            for (index, sink) in sinks.iter_mut().enumerate() {
+                let (projection, line) = (index / r, index % r);
+                if failed[projection].is_some() {
+                    continue;
+                }
+                let rows = joined(chunk, &drives[projection][line], (projection, line), n);
+                let velocities = motion.velocities.iter().copied();
+                let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
+                sink.push(&plan, (&rows, None), velocities);
+            }
+        }
+    }
+    let mut sinks = sinks.into_iter();
+    for system in systems {
+        let own: Vec<LineSink> = sinks.by_ref().take(r).collect();
+        system.extend(observed(number, &plan, own, None));
+    }
+    Ok(())
+}
+
+/// Rows of a line of a projection with what each of `n` drives contributes in the place of Y.
+fn joined(chunk: &Chunk, drives: &[f64], (projection, line): (usize, usize), n: usize) -> Vec<f64> {
+    let rows = &chunk.lines[projection][line];
+    let width = rows.len() / (drives.len() / n).max(1);
+    let mut all = Vec::with_capacity(rows.len() + drives.len());
+    for (row, own) in rows.chunks_exact(width).zip(drives.chunks_exact(n)) {
+        all.extend_from_slice(&row[..width - 1]);
+        all.extend_from_slice(own);
+    }
+    all
+}
+
+/// What each drive contributes to the lines of all projections, samples x n each, in up to [`BLOCK`] samples
+/// from number `first` of the motion on.
+fn drives(
+    observer: &Observer<'_>,
+    motion: &Motion,
+    first: usize,
+) -> Result<Vec<Vec<Vec<f64>>>, Error> {
+    let info = observer.model.info();
+    let (r, n) = (info.sizes.dof, info.sizes.actuators);
+    let count = BLOCK.min(motion.samples - first);
+    let pose = slice(&motion.pose, info.sizes.pose, first, count);
+    let torques = slice(&motion.torques, n, first, count);
+    let mut jacobians = vec![0.0; count * n * r];
+    observer
+        .model
+        .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
+        .map_err(|error| motion.outside(first + error.sample, error.error))?;
+    let platform: Vec<Vec<f64>> = (0..r)
+        .map(|line| {
+            let entries = jacobians.iter().skip(line).step_by(r);
+            entries
+                .zip(torques)
+                .map(|(share, own)| share * own)
+                .collect()
+        })
+        .collect();
+    let scales = home_scales(observer.model);
+    let lines = |projection: &Projection| match projection {
+        Projection::Platform => platform.clone(),
+        _ => {
+            let kept = projection.kept(&info).unwrap_or_else(|| (0..n).collect());
+            let mut choice = KeptActuators::new(kept, &scales);
+            projected(&platform, &mut choice, &jacobians, n * r).0
+        }
+    };
+    Ok(observer.projections.iter().map(lines).collect())
+}

@@ -1,0 +1,165 @@
+//! Whether a robot's base was tilted when its logs were made: the direction of gravity for which the model explains
+//! the torques of one run best, what that does to the prediction of another one, and the residuals as plots:
+//! `cargo run --release -p overact-robot --example tilt -- robots/dvrk_mtm.toml TRAINING TEST docs/dvrk_mtm.svg`.
+//!
+//! The description's line `gravity = [...]` is taken to say how large it is.
+
+use nalgebra::{Matrix2, Vector2};
+use overact::Model;
+use overact_identification::{
+    Identification, Log, Projection, Stage, estimate_projection, prepare,
+};
+use overact_report::{Plot, sheet};
+use overact_robot::{Identifier, Robot};
+use std::{error::Error, path::Path, process::ExitCode};
+
+/// Standard gravity, m/s².
+const GRAVITY: f64 = 9.81;
+
+/// Tilt by which the weighted residual is explored, rad.
+const STEP: f64 = 0.03;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [description, training, test, file] = &arguments[..] else {
+        eprintln!("a description, a log to identify from, another one, and the file to write");
+        return ExitCode::FAILURE;
+    };
+    match told(description, [training, test], file) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn told(description: &str, logs: [&String; 2], file: &str) -> Result<(), Box<dyn Error>> {
+    let text = std::fs::read_to_string(description)?;
+    let plain = Robot::from_text(description, &text)?;
+    let files = logs.map(|log| (Path::new(log.as_str()), false));
+    let logs = plain.read_logs(&files, &|_| {})?;
+    let tilt = best(&text, &logs[..1])?;
+    println!(
+        "tilt of gravity in the base's frame: {:.2} deg towards x, {:.2} deg towards y",
+        tilt.x.to_degrees(),
+        tilt.y.to_degrees()
+    );
+    let mut results = Vec::new();
+    for (name, tilt) in [("as described", Vector2::zeros()), ("gravity tilted", tilt)] {
+        let robot = tilted(&text, tilt)?;
+        let (training, test) = logs.split_at(1);
+        let result = Identifier::new(&robot)
+            .runs(training)
+            .validation(test)
+            .run()?;
+        for stage in [Stage::Base, Stage::Consistent] {
+            let errors = errors(&result, stage);
+            let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
+            println!("{name}, {}: {errors:.1?}, mean {mean:.2} %", stage.name());
+        }
+        results.push((name, result));
+    }
+    std::fs::write(file, sheet(&plots(&results), 2))?;
+    Ok(())
+}
+
+/// The robot with gravity turned by these angles towards x and y.
+fn tilted(text: &str, tilt: Vector2<f64>) -> Result<Robot, overact_robot::Error> {
+    let [x, y] = [tilt.x, tilt.y].map(|angle| -GRAVITY * angle.sin());
+    let z = -(GRAVITY * GRAVITY - x * x - y * y).sqrt();
+    let line = |line: &str| match line.starts_with("gravity = ") {
+        true => format!("gravity = [\"{x:.9} m/s^2\", \"{y:.9} m/s^2\", \"{z:.9} m/s^2\"]\n"),
+        false => format!("{line}\n"),
+    };
+    let text: String = text.lines().map(line).collect();
+    Robot::from_text("tilted.toml", &text)
+}
+
+/// The tilt of the smallest residual, each line by its residual without tilt: Newton's steps through
+/// differences.
+fn best(text: &str, runs: &[Log]) -> Result<Vector2<f64>, Box<dyn Error>> {
+    let residuals = |tilt: Vector2<f64>| -> Result<Vec<f64>, Box<dyn Error>> {
+        let robot = tilted(text, tilt)?;
+        let settings = robot.settings(runs[0].sampling_frequency());
+        let kind = match robot.model().info().sizes {
+            sizes if sizes.actuators > sizes.dof => Projection::Platform,
+            _ => Projection::Joints,
+        };
+        let prepared = prepare(robot.model(), runs, &[kind], &settings, &|_| {})?;
+        let base = estimate_projection(&prepared, 0, &settings, None)?.base;
+        Ok(base.lines.iter().map(|line| line.residual_norm).collect())
+    };
+    let scales = residuals(Vector2::zeros())?;
+    let value = |tilt: Vector2<f64>| -> Result<f64, Box<dyn Error>> {
+        let own = residuals(tilt)?;
+        let each = own.iter().zip(&scales).map(|(own, scale)| own / scale);
+        Ok(each.map(|part| part * part).sum())
+    };
+    let (x, y) = (Vector2::new(STEP, 0.0), Vector2::new(0.0, STEP));
+    let here = value(Vector2::zeros())?;
+    let (right, left) = (value(x)?, value(-x)?);
+    let (up, down) = (value(y)?, value(-y)?);
+    let both = value(x + y)?;
+    let square = STEP * STEP;
+    let slope = Vector2::new(right - left, up - down) / (2.0 * STEP);
+    let across = (both - right - up + here) / square;
+    let curvature = Matrix2::new(
+        (right - 2.0 * here + left) / square,
+        across,
+        across,
+        (up - 2.0 * here + down) / square,
+    );
+    let step = curvature.lu().solve(&slope).ok_or("no tilt is best")?;
+    Ok(-step)
+}
+
+/// Errors on the held-out run, percent.
+fn errors(result: &Identification, stage: Stage) -> Vec<f64> {
+    let own = result
+        .cross_validation
+        .iter()
+        .find(|one| one.stage == stage);
+    let torques = own.iter().flat_map(|one| &one.torques);
+    torques.map(|one| one.relative_error_percent).collect()
+}
+
+/// What each actuator's prediction of the held-out run is off by, and the measured torque.
+fn plots(results: &[(&str, Identification)]) -> Vec<Plot> {
+    let own = |result: &Identification| {
+        let mut all = result.figures.predictions.iter();
+        let found = all.find(|one| !one.identified && one.stage == Stage::Base);
+        found.map(|one| one.torques.clone()).unwrap_or_default()
+    };
+    let all: Vec<_> = results
+        .iter()
+        .map(|(name, own_result)| (name, own(own_result)))
+        .collect();
+    let Some((_, first)) = all.first() else {
+        return Vec::new();
+    };
+    let plot = |(joint, series): (usize, &overact_identification::Series)| {
+        let residual = all.iter().filter_map(|(name, torques)| {
+            let own = torques.get(joint)?;
+            let both = own.measured.iter().zip(&own.predicted);
+            let left: Vec<f64> = both.map(|(a, b)| a - b).collect();
+            Some((
+                format!("measured - predicted, {name}"),
+                own.time.clone(),
+                left,
+            ))
+        });
+        let measured = (
+            String::from("measured"),
+            series.time.clone(),
+            series.measured.clone(),
+        );
+        Plot {
+            title: format!("Joint {} of the test run", series.name),
+            axes: [String::from("t (s)"), String::from("N m")],
+            curves: std::iter::once(measured).chain(residual).collect(),
+            ..Plot::default()
+        }
+    };
+    first.iter().enumerate().map(plot).collect()
+}
