@@ -1,14 +1,15 @@
 //! The stages of the generator, in order.
 
-use crate::derivation::{Underivable, inventory};
+use crate::derivation::{Underivable, function_name, inventory};
 use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
 use crate::effort::Effort;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
-use crate::request::Request;
+use crate::request::{Progress, Request};
 use crate::selection::{self, Assembler, Search};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A description and the model that was made from it.
 #[derive(Debug, Clone)]
@@ -55,6 +56,15 @@ fn derived(
     effort: Effort,
     request: &Request<'_>,
 ) -> Result<RobotModel, Underivable> {
+    let tell = |done: usize, functions: usize, work: &str| {
+        (request.progress)(Progress {
+            mechanism: &mechanism,
+            done,
+            functions,
+            work,
+        });
+    };
+    tell(0, 0, "form and columns of the model");
     let (mut selection, base) = selection::select(&mechanism)?;
     let values = |given| selection::regrouped(&mechanism, &selection, &base, given);
     selection.values = request.parameters.map(values);
@@ -65,11 +75,16 @@ fn derived(
     };
     let mut wanted = inventory(&mechanism, selection.joints);
     wanted.retain(|&(function, from)| {
-        let is_told = selection.values.is_some() && function.columns().is_some();
+        let is_told = selection.values.is_some()
+            && (function.columns().is_some() || function.is_of_base_parameters());
         !is_told && (request.wanted)(&mechanism, function, from)
     });
+    let done = AtomicUsize::new(0);
     let functions = parallel::map(&wanted, |&(function, from)| {
+        let name = function_name(function, from, mechanism.platform.is_none());
+        tell(done.load(Ordering::Relaxed), wanted.len(), &name);
         let program = assembler.cheapest(function, from)?;
+        done.fetch_add(1, Ordering::Relaxed);
         Ok(CompiledFunction::new(&mechanism, function, from, program))
     });
     Ok(RobotModel {

@@ -39,11 +39,13 @@ mod model;
 mod parallel;
 mod request;
 mod selection;
+mod whole;
 
 pub use checked::{Checked, check};
 pub use compile::{Compiled, compile, compile_with, model_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use effort::Effort;
 pub use model::{CompiledFunction, RobotModel};
-pub use request::Request;
+pub use request::{Progress, Request};
 pub use selection::BaseParameter;
+pub use whole::{Iteration, WholeCost};

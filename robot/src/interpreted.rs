@@ -130,7 +130,10 @@ impl InterpretedRobot {
             | Function::IdmRedActuators(_)
             | Function::IdmRedPayloadActuators
             | Function::ProjectActuators
-            | Function::Bias
+            | Function::InverseDynamics(Columns::Base)
+            | Function::MassMatrix(Columns::Base)
+            | Function::Bias(_)
+            | Function::ForwardDynamics(Columns::Base)
             | Function::InverseDynamicsPreloaded => false,
             _ => from == plain,
         }

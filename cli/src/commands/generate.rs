@@ -3,11 +3,11 @@
 use crate::{
     effort,
     failure::{Failure, Problem},
-    note::{tell_doubts, tell_note},
+    note::{tell, tell_doubts, tell_note},
     output::{self, json, print, write},
     progress::Progress,
 };
-use overact_codegen::emission;
+use overact_codegen::{Progress as Step, Request, emission, mechanism::Mechanism};
 use overact_robot::CompiledFile;
 use serde::Serialize;
 use std::{
@@ -15,6 +15,9 @@ use std::{
     fs,
     path::{Component, Path, PathBuf},
 };
+
+/// More joints than these and generation is a matter of minutes.
+const LARGE: usize = 60;
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -123,8 +126,19 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<CompiledFile>, F
     let count = arguments.files.len();
     let bar = Progress::new("generating", as_json);
     for (at, file) in arguments.files.iter().enumerate() {
-        bar.at(at as f64 / count as f64, &file.display().to_string());
-        let request = arguments.effort.request();
+        let name = file.display().to_string();
+        let watch = |progress: Step<'_>| {
+            let whole = progress.functions.max(1) as f64;
+            let done = at as f64 + progress.done as f64 / whole;
+            bar.at(done / count as f64, &format!("{name}: {}", progress.work));
+            if progress.functions == 0 {
+                tell(&name, large(progress.mechanism).as_deref(), as_json);
+            }
+        };
+        let request = Request {
+            progress: &watch,
+            ..arguments.effort.request()
+        };
         let compiled = match &arguments.parameters {
             Some(parameters) => CompiledFile::with_parameters(file, parameters, &request),
             None => CompiledFile::read(file, &request),
@@ -143,6 +157,17 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<CompiledFile>, F
     } else {
         Err(bad.into())
     }
+}
+
+/// What is said of a robot whose functions take minutes, before they do.
+fn large(mechanism: &Mechanism) -> Option<String> {
+    let joints = mechanism.joints().len();
+    (joints > LARGE).then(|| {
+        format!(
+            "with {joints} joints this takes minutes; `--effort none` is quickest, `--effort quick` \
+             finds most of what a thorough search does"
+        )
+    })
 }
 
 /// The file of a description's module, where there is one.

@@ -64,13 +64,14 @@ fn around(
     let output = array_type(&function.program.output);
     let documentation = documentation(model, function);
     let check = boundary(model, &arguments);
-    let find_pose = (model.finds_pose(function) && needs_pose(model, function)).then(|| {
+    let find_pose = (model.finds_pose(function) && model.needs_pose(function)).then(|| {
         quote! {
             let pose = &Self::pose_from_actuators(actuators, start)?;
         }
     });
-    let find_joints =
-        needs_joints(model, function).then(|| quote!(let joints = &Self::joints(pose)?;));
+    let find_joints = model
+        .needs_joints(function)
+        .then(|| quote!(let joints = &Self::joints(pose)?;));
     let parameters = arguments.iter().map(|argument| {
         let (name, kind) = (format_ident!("{}", argument.name), array_type(argument));
         quote!(#name: &#kind)
@@ -90,7 +91,7 @@ fn around(
 /// The function from joints that has the same program: where Newton's method finds the joints of a
 /// pose, the function from the pose only calls it.
 fn twin<'m>(model: &'m RobotModel, function: &CompiledFunction) -> Option<&'m CompiledFunction> {
-    let is_pose = needs_joints(model, function) && function.from == MotionInput::Pose;
+    let is_pose = model.needs_joints(function) && function.from == MotionInput::Pose;
     is_pose
         .then(|| model.function(function.computes, MotionInput::Joints))
         .flatten()
@@ -102,29 +103,6 @@ fn call(function: &CompiledFunction) -> TokenStream {
     let inputs = function.program.inputs.iter();
     let inputs = inputs.map(|array| format_ident!("{}", array.name));
     quote!(Self::#name(#(#inputs),*))
-}
-
-/// Whether the function's program, or the search of its joints, uses the pose.
-fn needs_pose(model: &RobotModel, function: &CompiledFunction) -> bool {
-    let used = function.program.used_inputs();
-    let pose = function
-        .program
-        .inputs
-        .iter()
-        .position(|array| array.name == "pose");
-    pose.is_some_and(|at| used[at]) || needs_joints(model, function)
-}
-
-/// Whether the function's program uses joints that Newton's method has to find first.
-fn needs_joints(model: &RobotModel, function: &CompiledFunction) -> bool {
-    let inputs = &function.program.inputs;
-    let used = function.program.used_inputs();
-    let joints = inputs
-        .iter()
-        .zip(used)
-        .any(|(array, used)| array.name == "joints" && used);
-    // The joints themselves are what Newton's method gives.
-    model.finds_joints(function) && (joints || function.computes == Function::Joints)
 }
 
 /// `[f64; 3]` or `[[f64; 64]; 3]`.
@@ -210,11 +188,17 @@ fn documentation(model: &RobotModel, function: &CompiledFunction) -> Vec<String>
         lines.push(format!(" Columns: {}.", columns_constant(function)));
     }
     lines.push(String::new());
-    lines.push(format!(" {}.", function.program.cost()));
+    lines.extend(super::operations::of_function(&model.cost(function)));
+    if function.program.pieces > 0 {
+        lines.push(format!(
+            " Too large to be searched as a whole: fewer operations were searched in {} pieces.",
+            function.program.pieces
+        ));
+    }
     lines.push(String::new());
     lines.push(" # Errors".to_owned());
     let can_fail = model.finds_pose(function)
-        || needs_joints(model, function)
+        || model.needs_joints(function)
         || !function.program.guards.is_empty();
     lines.push(if can_fail {
         " An input that is not finite, a pose out of reach, or a singular configuration.".to_owned()
@@ -263,6 +247,9 @@ fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
         "torques" => "τ, forces and torques of the actuators (N, N m)".to_owned(),
         "parameters" => {
             "values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)".to_owned()
+        }
+        "base_parameters" => {
+            "values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)".to_owned()
         }
         "preload" => "coordinates of the internal torque on `null_space` (N, N m)".to_owned(),
         _ => return None,

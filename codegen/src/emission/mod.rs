@@ -23,6 +23,7 @@ mod layout;
 mod legend;
 mod model_impl;
 mod names;
+mod operations;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -75,6 +76,8 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     let names = functions.iter().flat_map(|f| f.names.iter().cloned());
     let mut documentation = vec![String::new(), sizes(model)];
     documentation.extend(source(&model.mechanism.source));
+    documentation.push(String::new());
+    documentation.extend(operations::of_robot(model));
     let legend = legend::lines(&Labels::of_robot(model), &names.collect());
     if !legend.is_empty() {
         documentation.push(String::new());
