@@ -186,6 +186,7 @@ fn inspect_says_what_a_model_is() {
             .expect("a function")
     };
     check_function(find("idm_red_platform"));
+    check_calls(&document);
     let from = find("idm_red_actuators_base_from_actuators");
     assert_eq!(
         (&from["columns"], &from["from"]),
