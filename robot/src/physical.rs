@@ -48,7 +48,10 @@ fn negative(source: &Source, one: &TrueParameter) -> Option<String> {
 
 /// What is wrong with the inertia of a body, if its own parameters are not negative.
 fn impossible(source: &Source, own: &[&TrueParameter]) -> Option<String> {
-    if own.iter().any(|one| one.symbol.is_nonnegative() && one.value < 0.0) {
+    if own
+        .iter()
+        .any(|one| one.symbol.is_nonnegative() && one.value < 0.0)
+    {
         return None;
     }
     let find = |symbol: P| own.iter().find(|one| one.symbol == symbol);
@@ -74,8 +77,12 @@ fn impossible(source: &Source, own: &[&TrueParameter]) -> Option<String> {
             let (zz, mass) = (value(P::Zz)?, value(P::M)?);
             let (mx, my) = (value(P::Mx)?, value(P::My).unwrap_or_default());
             let least = mx * mx + my * my;
-            (zz * mass < least * (1.0 - ROUNDING))
-                .then(|| format!("zz m = {:.6} is less than mx² + my² = {least:.6}", zz * mass))
+            (zz * mass < least * (1.0 - ROUNDING)).then(|| {
+                format!(
+                    "zz m = {:.6} is less than mx² + my² = {least:.6}",
+                    zz * mass
+                )
+            })
         }
     }?;
     Some(format!(
