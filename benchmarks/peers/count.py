@@ -1,5 +1,5 @@
-"""Operations by one rule for all: a sum of n terms counts n - 1, a product of n factors n - 1, a square 1;
-square roots, angles of which sine or cosine is taken, signs and negations stand apart."""
+"""Operations by one rule for all: a sum of n terms counts n - 1, a product of n factors n - 1, a product with a sign
+is one, a square 1; square roots, angles of which sine or cosine is taken, arc tangents, signs and negations stand apart."""
 
 from dataclasses import dataclass
 
@@ -13,6 +13,7 @@ class Count:
     divisions: int = 0
     square_roots: int = 0
     trigonometric_pairs: int = 0
+    arc_tangents: int = 0
     signs: int = 0
     negations: int = 0
 
@@ -26,5 +27,5 @@ class Count:
     @classmethod
     def from_json(cls, function):
         """Counts of overact's own function, as `overact inspect --json` prints them."""
-        keys = ["additions", "multiplications", "divisions", "square_roots", "trigonometric_pairs", "signs"]
-        return cls(**{key: function[key] for key in keys})
+        keys = ["additions", "multiplications", "divisions", "square_roots", "trigonometric_pairs"]
+        return cls(**{key: function[key] for key in [*keys, "arc_tangents", "signs"]})

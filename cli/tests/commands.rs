@@ -186,6 +186,7 @@ fn inspect_says_what_a_model_is() {
             .expect("a function")
     };
     check_function(find("idm_red_platform"));
+    check_calls(&document);
     let from = find("idm_red_actuators_base_from_actuators");
     assert_eq!(
         (&from["columns"], &from["from"]),
@@ -230,7 +231,9 @@ fn check_function(function: &Value) {
         "divisions",
         "square_roots",
         "trigonometric_pairs",
+        "arc_tangents",
         "signs",
+        "guards",
         "negations",
         "intermediates",
     ];
@@ -240,6 +243,27 @@ fn check_function(function: &Value) {
         .filter_map(|key| function[key].as_u64())
         .sum();
     assert_eq!(function["operations"], sum);
+    assert_eq!(function["iterations"], serde_json::json!([]));
+}
+
+/// Forward kinematics is part of what is evaluated from actuators: by iteration, or in closed form.
+fn check_calls(document: &Value) {
+    let functions = document["functions"].as_array().expect("functions");
+    let named = |name: &str| {
+        let found = functions.iter().find(|f| f["function"] == name);
+        found.unwrap_or_else(|| panic!("{name}"))
+    };
+    let function = named("idm_red_platform_from_actuators");
+    let step = &function["iterations"][0];
+    assert_eq!(step["function"], "pose_from_actuators");
+    assert!(step["within"].is_null());
+    // Each step evaluates both, and solves for the displacement.
+    let evaluated = ["actuator_positions", "inverse_jacobian"]
+        .iter()
+        .filter_map(|name| named(name)["operations"].as_u64())
+        .sum::<u64>();
+    assert!(step["operations"].as_u64() > Some(evaluated), "{step}");
+    assert!(named("joints")["arc_tangents"].as_u64() > Some(0));
 }
 
 #[test]

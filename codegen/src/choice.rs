@@ -59,10 +59,10 @@ const fn is_for_control(function: Function) -> bool {
         Function::ActuatorPositions
             | Function::InverseJacobian
             | Function::TwistFromActuators
-            | Function::InverseDynamics
+            | Function::InverseDynamics(Columns::Standard)
             | Function::InverseDynamicsPreloaded
-            | Function::MassMatrix
-            | Function::Bias
+            | Function::MassMatrix(Columns::Standard)
+            | Function::Bias(Columns::Standard)
             | Function::ProjectTorques
             | Function::NullSpace
     )
@@ -111,7 +111,10 @@ pub fn serves_model(mechanism: &Mechanism, function: Function, from: MotionInput
         | Function::IdmRedActuators(_)
         | Function::IdmRedPayloadActuators
         | Function::ProjectActuators
-        | Function::Bias
+        | Function::InverseDynamics(Columns::Base)
+        | Function::MassMatrix(Columns::Base)
+        | Function::Bias(_)
+        | Function::ForwardDynamics(Columns::Base)
         | Function::InverseDynamicsPreloaded => false,
         _ => from == plain(mechanism),
     }

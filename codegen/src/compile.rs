@@ -1,15 +1,16 @@
 //! The stages of the generator, in order.
 
 use crate::choice::Chosen;
-use crate::derivation::{Underivable, inventory};
+use crate::derivation::{Underivable, function_name, inventory};
 use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
 use crate::effort::Effort;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
-use crate::request::Request;
+use crate::request::{Progress, Request};
 use crate::selection::{self, Assembler, Search};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A description and the model that was made from it.
 #[derive(Debug, Clone)]
@@ -56,6 +57,15 @@ fn derived(
     effort: Effort,
     request: &Request<'_>,
 ) -> Result<RobotModel, Underivable> {
+    let tell = |done: usize, functions: usize, work: &str| {
+        (request.progress)(Progress {
+            mechanism: &mechanism,
+            done,
+            functions,
+            work,
+        });
+    };
+    tell(0, 0, "form and columns of the model");
     let (mut selection, base) = selection::select(&mechanism)?;
     let values = |given| selection::regrouped(&mechanism, &selection, &base, given);
     selection.values = request.parameters.map(values);
@@ -65,7 +75,10 @@ fn derived(
         search: &Search::with(effort, &mechanism),
     };
     let mut offered = inventory(&mechanism, selection.joints);
-    offered.retain(|(function, _)| selection.values.is_none() || function.columns().is_none());
+    offered.retain(|(function, _)| {
+        let is_told = function.columns().is_some() || function.is_of_base_parameters();
+        selection.values.is_none() || !is_told
+    });
     let chosen = match request.functions {
         Some(choice) => choice
             .of_robot(&mechanism, selection.joints, &offered)
@@ -75,8 +88,12 @@ fn derived(
     offered.retain(|&(function, from)| {
         chosen.functions.contains(&(function, from)) && (request.wanted)(&mechanism, function, from)
     });
+    let done = AtomicUsize::new(0);
     let functions = parallel::map(&offered, |&(function, from)| {
+        let name = function_name(function, from, mechanism.platform.is_none());
+        tell(done.load(Ordering::Relaxed), offered.len(), &name);
         let program = assembler.cheapest(function, from)?;
+        done.fetch_add(1, Ordering::Relaxed);
         Ok(CompiledFunction::new(&mechanism, function, from, program))
     });
     Ok(RobotModel {

@@ -41,6 +41,7 @@ mod model;
 mod parallel;
 mod request;
 mod selection;
+mod whole;
 mod writing;
 
 pub use checked::{Checked, check};
@@ -49,5 +50,6 @@ pub use compile::{Compiled, compile, compile_with, model_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use effort::Effort;
 pub use model::{CompiledFunction, RobotModel};
-pub use request::Request;
+pub use request::{Progress, Request};
 pub use selection::BaseParameter;
+pub use whole::{Iteration, WholeCost};

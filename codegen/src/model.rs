@@ -3,8 +3,9 @@
 use crate::derivation::{BodyParameter, JointsBy, MotionInput, Selection, function_name};
 use crate::lowering::Program;
 use crate::mechanism::{JointKind, Mechanism, StandardParameter};
-use crate::selection::BaseParameter;
+use crate::selection::{self, BaseParameter};
 use overact_core::{Columns, Function};
+use std::collections::BTreeMap;
 
 /// A function of the robot with its program.
 #[derive(Debug, Clone)]
@@ -104,6 +105,20 @@ impl RobotModel {
         function.from == MotionInput::Actuators && function.computes != Function::PoseInClosedForm
     }
 
+    /// Whether the function's program, or the search of its joints, uses the pose.
+    #[must_use]
+    pub(crate) fn needs_pose(&self, function: &CompiledFunction) -> bool {
+        uses(function, "pose") || self.needs_joints(function)
+    }
+
+    /// Whether the function's program uses joints that Newton's method has to find first.
+    #[must_use]
+    pub(crate) fn needs_joints(&self, function: &CompiledFunction) -> bool {
+        // The joints themselves are what Newton's method gives.
+        let needs = uses(function, "joints") || function.computes == Function::Joints;
+        self.finds_joints(function) && needs
+    }
+
     /// The parameters that the columns of a function stand for.
     #[must_use]
     pub fn columns_of(&self, function: Function) -> &[BodyParameter] {
@@ -130,6 +145,13 @@ impl RobotModel {
         format!("{}{suffix}", self.parameter_name(base.parameter))
     }
 
+    /// Values of the base parameters, with what is regrouped into them, followed by the payload's, of given
+    /// standard parameters by name; what is not given is zero.
+    #[must_use]
+    pub fn regrouped(&self, given: &BTreeMap<String, f64>) -> Vec<(BodyParameter, f64)> {
+        selection::regrouped(&self.mechanism, &self.selection, &self.base, given)
+    }
+
     /// SI unit of a parameter.
     #[must_use]
     pub fn parameter_unit(&self, parameter: BodyParameter) -> &str {
@@ -148,4 +170,11 @@ impl RobotModel {
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => symbol.unit(false),
         }
     }
+}
+
+/// Whether a function's program reads an input.
+fn uses(function: &CompiledFunction, input: &str) -> bool {
+    let program = &function.program;
+    let mut inputs = program.inputs.iter().zip(program.used_inputs());
+    inputs.any(|(array, used)| used && array.name == input)
 }

@@ -7,6 +7,23 @@ use crate::mechanism::Mechanism;
 use overact_core::Function;
 use std::collections::BTreeMap;
 
+/// How far the work on a model is.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct Progress<'p> {
+    /// The robot.
+    pub mechanism: &'p Mechanism,
+    /// Functions that are done.
+    pub done: usize,
+    /// Functions in all; none as long as form and columns are chosen.
+    pub functions: usize,
+    /// What is begun.
+    pub work: &'p str,
+}
+
+/// Who is told how far the work is; functions are told from several threads.
+pub(crate) type Watcher<'a> = &'a (dyn Fn(Progress<'_>) + Sync);
+
 /// Which functions of a robot a model shall have.
 pub(crate) type Wanted<'a> = &'a (dyn Fn(&Mechanism, Function, MotionInput) -> bool + Sync);
 
@@ -26,6 +43,8 @@ pub struct Request<'a> {
     /// constants, those that are missing as zero. Identification models, which tell them, are left out, and
     /// the code is no `overact::Model`.
     pub parameters: Option<&'a BTreeMap<String, f64>>,
+    /// Is told how far the work is: large robots take minutes.
+    pub progress: Watcher<'a>,
 }
 
 impl Default for Request<'_> {
@@ -36,6 +55,7 @@ impl Default for Request<'_> {
             wanted: &|_, _, _| true,
             functions: None,
             parameters: None,
+            progress: &|_| {},
         }
     }
 }

@@ -74,10 +74,10 @@ pub enum Function {
     IdmRedPayloadActuators,
     ProjectPlatform,
     ProjectActuators,
-    InverseDynamics,
-    MassMatrix,
-    Bias,
-    ForwardDynamics,
+    InverseDynamics(Columns),
+    MassMatrix(Columns),
+    Bias(Columns),
+    ForwardDynamics(Columns),
     InverseDynamicsPreloaded,
     ProjectTorques,
     NullSpace,
@@ -96,7 +96,7 @@ struct Entry {
 
 impl Function {
     /// All functions of all robots.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 33] = [
         Self::PoseInClosedForm,
         Self::Joints,
         Self::ActuatorPositions,
@@ -119,10 +119,14 @@ impl Function {
         Self::IdmRedPayloadActuators,
         Self::ProjectPlatform,
         Self::ProjectActuators,
-        Self::InverseDynamics,
-        Self::MassMatrix,
-        Self::Bias,
-        Self::ForwardDynamics,
+        Self::InverseDynamics(Columns::Standard),
+        Self::InverseDynamics(Columns::Base),
+        Self::MassMatrix(Columns::Standard),
+        Self::MassMatrix(Columns::Base),
+        Self::Bias(Columns::Standard),
+        Self::Bias(Columns::Base),
+        Self::ForwardDynamics(Columns::Standard),
+        Self::ForwardDynamics(Columns::Base),
         Self::InverseDynamicsPreloaded,
         Self::ProjectTorques,
         Self::NullSpace,
@@ -130,8 +134,8 @@ impl Function {
 
     const fn entry(self) -> Entry {
         use Input::{
-            Acceleration, ActuatorAccelerations, ActuatorVelocities, Actuators, Joints, Parameters,
-            Pose, Preload, Torques, Twist,
+            Acceleration, ActuatorAccelerations, ActuatorVelocities, Actuators, BaseParameters,
+            Joints, Parameters, Pose, Preload, Torques, Twist,
         };
         match self {
             Self::PoseInClosedForm => Entry {
@@ -294,34 +298,46 @@ impl Function {
                 columns: None,
                 condition: Condition::Platform,
             },
-            Self::InverseDynamics => Entry {
+            Self::InverseDynamics(columns) => Entry {
                 name: "inverse_dynamics",
                 summary: "Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).",
-                inputs: &[Pose, Twist, Acceleration, Parameters],
+                inputs: match columns {
+                    Columns::Standard => &[Pose, Twist, Acceleration, Parameters],
+                    Columns::Base => &[Pose, Twist, Acceleration, BaseParameters],
+                },
                 rows: Extent::Actuators,
                 columns: None,
                 condition: Condition::Any,
             },
-            Self::MassMatrix => Entry {
+            Self::MassMatrix(columns) => Entry {
                 name: "mass_matrix",
                 summary: "Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.",
-                inputs: &[Pose, Parameters],
+                inputs: match columns {
+                    Columns::Standard => &[Pose, Parameters],
+                    Columns::Base => &[Pose, BaseParameters],
+                },
                 rows: Extent::Dof,
                 columns: Some(Extent::Dof),
                 condition: Condition::Any,
             },
-            Self::Bias => Entry {
+            Self::Bias(columns) => Entry {
                 name: "bias",
                 summary: "Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.",
-                inputs: &[Pose, Twist, Parameters],
+                inputs: match columns {
+                    Columns::Standard => &[Pose, Twist, Parameters],
+                    Columns::Base => &[Pose, Twist, BaseParameters],
+                },
                 rows: Extent::Dof,
                 columns: None,
                 condition: Condition::Any,
             },
-            Self::ForwardDynamics => Entry {
+            Self::ForwardDynamics(columns) => Entry {
                 name: "forward_dynamics",
                 summary: "Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.",
-                inputs: &[Pose, Twist, Torques, Parameters],
+                inputs: match columns {
+                    Columns::Standard => &[Pose, Twist, Torques, Parameters],
+                    Columns::Base => &[Pose, Twist, Torques, BaseParameters],
+                },
                 rows: Extent::Dof,
                 columns: None,
                 condition: Condition::Any,
@@ -410,5 +426,28 @@ impl Function {
             Some(Extent::BaseParameters) => Some(Columns::Base),
             _ => None,
         }
+    }
+
+    /// Standard or base parameters, where the function takes their values.
+    #[must_use]
+    pub const fn parameters(self) -> Option<Columns> {
+        match self {
+            Self::InverseDynamics(columns)
+            | Self::MassMatrix(columns)
+            | Self::Bias(columns)
+            | Self::ForwardDynamics(columns) => Some(columns),
+            Self::InverseDynamicsPreloaded => Some(Columns::Standard),
+            _ => None,
+        }
+    }
+
+    /// Whether it is the form of a function with base parameters, be they columns or values that it takes.
+    #[must_use]
+    pub const fn is_of_base_parameters(self) -> bool {
+        let of = match self.columns() {
+            None => self.parameters(),
+            columns => columns,
+        };
+        matches!(of, Some(Columns::Base))
     }
 }

@@ -32,6 +32,7 @@ impl Sizes {
             | Input::ActuatorAccelerations
             | Input::Torques => self.actuators,
             Input::Parameters => self.parameters + self.payload_parameters,
+            Input::BaseParameters => self.base_parameters + self.payload_parameters,
             Input::Preload => self.redundancy(),
         }
     }
@@ -80,6 +81,8 @@ pub enum Input {
     Torques,
     /// Values of the standard parameters followed by the payload's, in column order.
     Parameters,
+    /// Values of the base parameters, all others regrouped into them, followed by the payload's.
+    BaseParameters,
     /// Coordinates of the internal torque on the basis of the null space (N, N m).
     Preload,
 }
@@ -98,6 +101,7 @@ impl Input {
             Self::ActuatorAccelerations => "actuator_accelerations",
             Self::Torques => "torques",
             Self::Parameters => "parameters",
+            Self::BaseParameters => "base_parameters",
             Self::Preload => "preload",
         }
     }

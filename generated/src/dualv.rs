@@ -5,6 +5,60 @@
 /// 4 legs, 12 joints, 4 actuators, 3 degrees of freedom; 64 standard parameters, 49 base parameters.
 /// Source: Briot, Krut, Gautier 2015, sections 5.1 and 5.2.
 ///
+/// # Operations
+///
+/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+///
+/// | function | once | each step |
+/// |---|---|---|
+/// | `pose_in_closed_form` | 61, 3 √, 4 sc, 1 at, 5 gd |  |
+/// | `joints` | 184, 4 √, 1 sc, 12 at, 8 gd |  |
+/// | `actuator_positions` | 80, 4 √, 1 sc, 4 at, 8 gd |  |
+/// | `inverse_jacobian` | 80, 4 √, 1 sc, 12 gd |  |
+/// | `inverse_jacobian_from_joints` | 30, 9 sc, 4 gd |  |
+/// | `jacobian` | 196, 4 √, 1 sc, 15 gd |  |
+/// | `legs_jacobian_from_joints` | 28, 8 sc |  |
+/// | `legs_platform_jacobian_from_joints` | 2, 1 sc |  |
+/// | `closure_platform_jacobian_from_joints` | 46, 9 sc, 4 gd |  |
+/// | `closure_actuator_jacobian_from_joints` | 4, 4 sc |  |
+/// | `joint_velocities` | 122, 4 √, 1 sc, 12 gd |  |
+/// | `joint_accelerations` | 214, 4 √, 1 sc, 12 gd |  |
+/// | `twist_from_actuators` | 171, 4 √, 1 sc, 15 gd |  |
+/// | `acceleration_from_actuators` | 271, 4 √, 1 sc, 15 gd |  |
+/// | `idm_red_platform` | 454, 4 √, 1 sc, 12 sg, 12 gd |  |
+/// | `idm_red_platform_from_joints` | 404, 9 sc, 12 sg, 4 gd |  |
+/// | `idm_red_platform_from_actuators` | 624, 4 √, 1 sc, 12 sg, 18 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_actuators` | 526, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `idm_red_actuators_from_joints` | 479, 9 sc, 12 sg, 7 gd |  |
+/// | `idm_red_actuators_from_actuators` | 682, 4 √, 1 sc, 12 sg, 21 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_platform_base` | 398, 4 √, 1 sc, 12 sg, 12 gd |  |
+/// | `idm_red_platform_base_from_joints` | 346, 9 sc, 12 sg, 4 gd |  |
+/// | `idm_red_platform_base_from_actuators` | 551, 4 √, 1 sc, 12 sg, 18 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_actuators_base` | 477, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `idm_red_actuators_base_from_joints` | 430, 9 sc, 12 sg, 7 gd |  |
+/// | `idm_red_actuators_base_from_actuators` | 637, 4 √, 1 sc, 12 sg, 21 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_payload` | 18, 1 sc |  |
+/// | `idm_red_payload_from_joints` | 18, 1 sc |  |
+/// | `idm_red_payload_from_actuators` | 320, 4 √, 1 sc, 18 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_payload_actuators` | 149, 3 √, 1 sc, 12 gd |  |
+/// | `project_platform` | 101, 4 √, 1 sc, 12 gd |  |
+/// | `project_actuators` | 136, 4 √, 1 sc, 15 gd |  |
+/// | `inverse_dynamics` | 585, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics_from_joints` | 523, 9 sc, 12 sg, 7 gd |  |
+/// | `inverse_dynamics_from_actuators` | 686, 4 √, 1 sc, 12 sg, 21 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `inverse_dynamics_base` | 522, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics_base_from_joints` | 448, 9 sc, 12 sg, 7 gd |  |
+/// | `inverse_dynamics_base_from_actuators` | 623, 4 √, 1 sc, 12 sg, 21 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `mass_matrix` | 325, 4 √, 1 sc, 12 gd |  |
+/// | `mass_matrix_base` | 297, 4 √, 1 sc, 12 gd |  |
+/// | `bias` | 469, 4 √, 1 sc, 12 sg, 12 gd |  |
+/// | `bias_base` | 406, 4 √, 1 sc, 12 sg, 12 gd |  |
+/// | `forward_dynamics` | 724, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `forward_dynamics_base` | 641, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 16 gd |  |
+/// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
+/// | `null_space` | 135, 5 √, 1 sc, 16 gd |  |
+///
 /// # Names
 ///
 /// | name | symbol | meaning |
@@ -42,7 +96,7 @@
 /// | `a_x_platform` | Rᵀ a | acceleration of the platform's origin in its own axes |
 /// | `a2_x_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
 /// | `v2_by_1_y_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
-/// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
+/// | `force1_y_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
 /// | `moment2_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_1_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
@@ -52,9 +106,9 @@
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
 /// | `inv_pivot_1` | 1/d_k | its reciprocal |
 /// | `l_2_1` | L | entry of L |
-/// | `normal_1_1` | (I - J J⁺) e | a vector of the null space of (J_p^inv)ᵀ, before it is made one of length 1, eq. (50) |
-/// | `norm_1` | ‖(I - J J⁺) e‖ | its length |
-/// | `inv_norm_1` | 1/‖(I - J J⁺) e‖ | the reciprocal |
+/// | `share_3_4` | J_a^-T j | what a kept actuator does against the unit torque of a projected one, eq. (50) |
+/// | `norm_4` | √(1 + c · Q c) | length of the internal torque that does one at a projected actuator |
+/// | `inv_norm_4` | 1/√(1 + c · Q c) | the reciprocal |
 /// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
 /// | `vx_by_a2` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
 /// | `g1_a1_leg4` | ∂u_i/∂q̇_a | the reduced Jacobian on a kept actuator, eq. (36) |
@@ -316,7 +370,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 61 operations (27 additions, 31 multiplications, 3 divisions), 3 square roots, 4 trigonometric pairs, 0 signs, 71 intermediates.
+    /// 61 operations (27 additions, 31 multiplications, 3 divisions), 3 square roots, 4 trigonometric pairs, 1 arc tangent, 5 guards, 1 negation, 71 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -390,7 +444,7 @@ impl DualV {
     ///
     /// Output: 12.
     ///
-    /// 184 operations (82 additions, 98 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 197 intermediates.
+    /// 184 operations (82 additions, 98 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 12 arc tangents, 8 guards, 7 negations, 197 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -543,7 +597,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 80 operations (38 additions, 38 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 88 intermediates.
+    /// 80 operations (38 additions, 38 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 4 arc tangents, 8 guards, 2 negations, 88 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -628,7 +682,7 @@ impl DualV {
     ///
     /// Output: 4 x 3.
     ///
-    /// 80 operations (30 additions, 42 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 74 intermediates.
+    /// 80 operations (30 additions, 42 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 6 negations, 74 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -726,7 +780,7 @@ impl DualV {
     ///
     /// Output: 4 x 3.
     ///
-    /// 30 operations (8 additions, 18 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 32 intermediates.
+    /// 30 operations (8 additions, 18 multiplications, 4 divisions), 9 trigonometric pairs, 4 guards, 2 negations, 32 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -785,7 +839,7 @@ impl DualV {
     ///
     /// Output: 3 x 4.
     ///
-    /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 190 intermediates.
+    /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 3 negations, 190 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -944,7 +998,7 @@ impl DualV {
     ///
     /// Output: 12 x 12.
     ///
-    /// 28 operations (12 additions, 16 multiplications, 0 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 28 intermediates.
+    /// 28 operations (12 additions, 16 multiplications, 0 divisions), 8 trigonometric pairs, 8 negations, 28 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1013,7 +1067,7 @@ impl DualV {
     ///
     /// Output: 12 x 3.
     ///
-    /// 2 operations (0 additions, 2 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 2 intermediates.
+    /// 2 operations (0 additions, 2 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 2 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1042,7 +1096,7 @@ impl DualV {
     ///
     /// Output: 4 x 3.
     ///
-    /// 46 operations (8 additions, 34 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 48 intermediates.
+    /// 46 operations (8 additions, 34 multiplications, 4 divisions), 9 trigonometric pairs, 4 guards, 2 negations, 48 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1115,7 +1169,7 @@ impl DualV {
     ///
     /// Output: 4 x 4.
     ///
-    /// 4 operations (0 additions, 4 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 4 intermediates.
+    /// 4 operations (0 additions, 4 multiplications, 0 divisions), 4 trigonometric pairs, 4 negations, 4 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1143,7 +1197,7 @@ impl DualV {
     ///
     /// Output: 12.
     ///
-    /// 122 operations (54 additions, 60 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 116 intermediates.
+    /// 122 operations (54 additions, 60 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 4 negations, 116 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1279,7 +1333,7 @@ impl DualV {
     ///
     /// Output: 12.
     ///
-    /// 214 operations (90 additions, 116 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 208 intermediates.
+    /// 214 operations (90 additions, 116 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 4 negations, 208 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1470,7 +1524,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 171 operations (67 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 174 intermediates.
+    /// 171 operations (67 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 174 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1618,7 +1672,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 271 operations (107 additions, 153 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 274 intermediates.
+    /// 271 operations (107 additions, 153 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 274 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1846,7 +1900,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 418 operations (153 additions, 252 multiplications, 13 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 288 intermediates.
+    /// 454 operations (153 additions, 288 multiplications, 13 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 50 negations, 288 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2246,7 +2300,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 368 operations (122 additions, 242 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 250 intermediates.
+    /// 404 operations (122 additions, 278 multiplications, 4 divisions), 9 trigonometric pairs, 12 signs, 4 guards, 34 negations, 250 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2572,7 +2626,8 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 588 operations (225 additions, 346 multiplications, 17 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 455 intermediates.
+    /// 624 operations (225 additions, 382 multiplications, 17 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 18 guards, 50 negations, 455 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3101,7 +3156,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 501 operations (184 additions, 308 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 401 intermediates.
+    /// 526 operations (184 additions, 333 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 48 negations, 401 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3547,7 +3602,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 454 operations (156 additions, 293 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 366 intermediates.
+    /// 479 operations (156 additions, 318 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 58 negations, 366 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3947,7 +4002,8 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 657 operations (252 additions, 393 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 557 intermediates.
+    /// 682 operations (252 additions, 418 multiplications, 12 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 48 negations, 557 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4515,7 +4571,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 362 operations (127 additions, 227 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 265 intermediates.
+    /// 398 operations (127 additions, 263 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 42 negations, 265 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4841,7 +4897,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 310 operations (96 additions, 210 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 225 intermediates.
+    /// 346 operations (96 additions, 246 multiplications, 4 divisions), 9 trigonometric pairs, 12 signs, 4 guards, 30 negations, 225 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5126,7 +5182,8 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 515 operations (194 additions, 298 multiplications, 23 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 415 intermediates.
+    /// 551 operations (194 additions, 334 multiplications, 23 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 18 guards, 42 negations, 415 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5566,7 +5623,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 452 operations (160 additions, 283 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 376 intermediates.
+    /// 477 operations (160 additions, 308 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 39 negations, 376 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6017,7 +6074,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 405 operations (132 additions, 268 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 341 intermediates.
+    /// 430 operations (132 additions, 293 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 51 negations, 341 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6424,7 +6481,8 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 612 operations (229 additions, 371 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 536 intermediates.
+    /// 637 operations (229 additions, 396 multiplications, 12 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 39 negations, 536 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6999,7 +7057,7 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 18 operations (4 additions, 14 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 16 intermediates.
+    /// 18 operations (4 additions, 14 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 16 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -7044,7 +7102,7 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 18 operations (4 additions, 14 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 16 intermediates.
+    /// 18 operations (4 additions, 14 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 16 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -7093,7 +7151,8 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 320 operations (126 additions, 183 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 319 intermediates.
+    /// 320 operations (126 additions, 183 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 18 guards, 4 negations, 319 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7373,7 +7432,7 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 149 operations (48 additions, 94 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 142 intermediates.
+    /// 149 operations (48 additions, 94 multiplications, 7 divisions), 3 square roots, 1 trigonometric pair, 12 guards, 2 negations, 142 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7523,7 +7582,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 101 operations (39 additions, 54 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 104 intermediates.
+    /// 101 operations (39 additions, 54 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 104 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7624,7 +7683,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 136 operations (47 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 139 intermediates.
+    /// 136 operations (47 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 139 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7763,7 +7822,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 573 operations (248 additions, 314 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 587 intermediates.
+    /// 585 operations (248 additions, 326 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 587 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8149,7 +8208,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 511 operations (218 additions, 286 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 12 signs, 537 intermediates.
+    /// 523 operations (218 additions, 298 multiplications, 7 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 537 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8486,7 +8545,8 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 674 operations (294 additions, 369 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 688 intermediates.
+    /// 686 operations (294 additions, 381 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 1 negation, 688 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8964,6 +9024,1152 @@ impl DualV {
             -(minus_g1_vx_leg4 * t11 + minus_g1_vy_leg4 * t10 + minus_g1_wz_leg4 * t9),
         ])
     }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
+    /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 4.
+    ///
+    /// 522 operations (221 additions, 290 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 524 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn inverse_dynamics_base(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        base_parameters: &[::core::primitive::f64; 53],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force2_x_leg1 = base_parameters[24] * minus_rate_dot_2_leg1;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_force2_y_leg1 = base_parameters[24] * rate_2_squared_leg1;
+        let force1_y_leg1 = s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1;
+        let tau_1_leg1 = base_parameters[8] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[12], rate_1_leg1)
+            + base_parameters[16];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = base_parameters[36]
+            - (base_parameters[28] * minus_qd_2_leg1
+                + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
+        let force_on_u1_leg1 = base_parameters[4] * rate_dot_1_leg1
+            + L_AB * force1_y_leg1 + tau_1_leg1 - tau_2_leg1;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let minus_moment2_z_leg1 = base_parameters[20] * minus_rate_dot_2_leg1
+            + base_parameters[24] * a2_x_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let tau_3_leg1 = base_parameters[40] * qd_3_leg1
+            + ::overact::math::signed(base_parameters[44], qd_3_leg1)
+            + base_parameters[48];
+        let force_on_u2_leg1 = tau_2_leg1 - minus_moment2_z_leg1 - tau_3_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let t2_leg2 = 0.5 * t1_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_2_squared_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let moment2_z_leg2 = base_parameters[21] * rate_dot_2_leg2
+            - base_parameters[25] * a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let tau_2_leg2 = base_parameters[29] * qd_2_leg2
+            + ::overact::math::signed(base_parameters[33], qd_2_leg2)
+            + base_parameters[37];
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let tau_3_leg2 = base_parameters[41] * qd_3_leg2
+            + ::overact::math::signed(base_parameters[45], qd_3_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let minus_force2_x_leg2 = base_parameters[25] * rate_dot_2_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let minus_force2_y_leg2 = base_parameters[25] * rate_2_squared_leg2;
+        let force1_y_leg2 = minus_s2_leg2 * minus_force2_x_leg2
+            - c2_leg2 * minus_force2_y_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t2_leg2);
+        let tau_1_leg2 = base_parameters[17]
+            - (base_parameters[9] * minus_rate_1_leg2
+                + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
+        let force_on_u1_leg2 = L_AB * force1_y_leg2
+            - base_parameters[5] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let force2_x_leg3 = base_parameters[26] * minus_rate_dot_2_leg3;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_force2_y_leg3 = base_parameters[26] * rate_2_squared_leg3;
+        let force1_y_leg3 = s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3;
+        let tau_1_leg3 = base_parameters[10] * rate_1_leg3
+            + ::overact::math::signed(base_parameters[14], rate_1_leg3)
+            + base_parameters[18];
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = base_parameters[38]
+            - (base_parameters[30] * minus_qd_2_leg3
+                + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
+        let force_on_u1_leg3 = base_parameters[6] * rate_dot_1_leg3
+            + L_AB * force1_y_leg3 + tau_1_leg3 - tau_2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let minus_moment2_z_leg3 = base_parameters[22] * minus_rate_dot_2_leg3
+            + base_parameters[26] * a2_x_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let tau_3_leg3 = base_parameters[42] * qd_3_leg3
+            + ::overact::math::signed(base_parameters[46], qd_3_leg3);
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3 - tau_3_leg3;
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let t2_leg4 = 0.5 * t1_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_2_squared_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let moment2_z_leg4 = base_parameters[23] * rate_dot_2_leg4
+            - base_parameters[27] * a2_x_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let tau_2_leg4 = base_parameters[31] * qd_2_leg4
+            + ::overact::math::signed(base_parameters[35], qd_2_leg4)
+            + base_parameters[39];
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let tau_3_leg4 = base_parameters[43] * qd_3_leg4
+            + ::overact::math::signed(base_parameters[47], qd_3_leg4);
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let minus_force2_x_leg4 = base_parameters[27] * rate_dot_2_leg4;
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let minus_force2_y_leg4 = base_parameters[27] * rate_2_squared_leg4;
+        let force1_y_leg4 = minus_s2_leg4 * minus_force2_x_leg4
+            - c2_leg4 * minus_force2_y_leg4;
+        let minus_rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t2_leg4);
+        let tau_1_leg4 = base_parameters[19]
+            - (base_parameters[11] * minus_rate_1_leg4
+                + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
+        let force_on_u1_leg4 = L_AB * force1_y_leg4
+            - base_parameters[7] * minus_rate_dot_1_leg4 + tau_1_leg4 - tau_2_leg4;
+        let mass_platform = base_parameters[3] + base_parameters[52];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let first_y_platform = base_parameters[2] + base_parameters[51];
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let first_x_platform = base_parameters[1] + base_parameters[50];
+        let force_x_platform = acceleration[0] * mass_platform
+            + inv_r_p_a_arm_x_leg1 * first_y_platform
+            - inv_r_p_a_arm_y_leg3 * first_x_platform;
+        let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
+            - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = acceleration[1] * mass_platform
+            - (inv_r_p_a_arm_x_leg1 * first_x_platform
+                + inv_r_p_a_arm_y_leg3 * first_y_platform);
+        let t1 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
+            - t1_platform * l_2_1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
+            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let inertia_zz_platform = base_parameters[0] + base_parameters[49];
+        let moment_z_platform = acceleration[1]
+            * (c_phi * first_x_platform - s_phi * first_y_platform)
+            - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
+            + acceleration[2] * inertia_zz_platform;
+        let t2 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
+            - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
+            - t1_platform * l_3_1 - l_3_2 * t1;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t3 = t2 / pivot_3;
+        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
+        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
+        ::core::result::Result::Ok([
+            g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
+            g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
+            g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
+            -(minus_g1_vx_leg4 * t5 + minus_g1_vy_leg4 * t4 + minus_g1_wz_leg4 * t3),
+        ])
+    }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
+    /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 4.
+    ///
+    /// 448 operations (187 additions, 254 multiplications, 7 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 462 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn inverse_dynamics_base_from_joints(
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        base_parameters: &[::core::primitive::f64; 53],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration), ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        // --- sines and cosines
+        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7], joints[9],
+            joints[10],
+        ]);
+        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
+        // --- leg1
+        let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+        let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+        let k1_leg1 = INV_L_AB / s2_leg1;
+        let g1_vx_leg1 = c12_leg1 * k1_leg1;
+        let p_x_leg3 = R_P * s_phi;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let p_y_leg1 = R_P * c_phi;
+        let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
+        let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
+        let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
+        let minus_g2_vx_leg1 = c1_leg1 * k1_leg1;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = s1_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1 + s12_leg1 * a_end_y_leg1
+            + L_AB * rate_2_squared_leg1;
+        let g1_vy_leg1 = s12_leg1 * k1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let v2_by_1_y_leg1 = L_AB * c2_leg1;
+        let rate_dot_1_leg1 = k1_leg1
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
+        let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
+            + L_AB * rate_1_squared_leg1;
+        let tau_1_leg1 = base_parameters[8] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[12], rate_1_leg1)
+            + base_parameters[16];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = base_parameters[36]
+            - (base_parameters[28] * minus_qd_2_leg1
+                + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
+        let force_on_u1_leg1 = base_parameters[4] * rate_dot_1_leg1
+            + base_parameters[24] * a_on_f2_leg1 + tau_1_leg1 - tau_2_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+        let minus_moment2_z_leg1 = base_parameters[20] * minus_rate_dot_2_leg1
+            + base_parameters[24] * minus_a_on_f1_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let tau_3_leg1 = base_parameters[40] * qd_3_leg1
+            + ::overact::math::signed(base_parameters[44], qd_3_leg1)
+            + base_parameters[48];
+        let force_on_u2_leg1 = tau_2_leg1 - minus_moment2_z_leg1 - tau_3_leg1;
+        // --- leg2
+        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+        let k1_leg2 = INV_L_AB / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * k1_leg2;
+        let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
+        let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
+            + minus_g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1 + s12_leg2 * a_end_y_leg1
+            + L_AB * rate_2_squared_leg2;
+        let g1_vy_leg2 = s12_leg2 * k1_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = L_AB * c2_leg2;
+        let rate_dot_1_leg2 = k1_leg2
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
+            + L_AB * rate_1_squared_leg2;
+        let tau_1_leg2 = base_parameters[9] * rate_1_leg2
+            + ::overact::math::signed(base_parameters[13], rate_1_leg2)
+            + base_parameters[17];
+        let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
+        let tau_2_leg2 = base_parameters[37]
+            - (base_parameters[29] * minus_qd_2_leg2
+                + ::overact::math::signed(base_parameters[33], minus_qd_2_leg2));
+        let force_on_u1_leg2 = base_parameters[5] * rate_dot_1_leg2
+            + base_parameters[25] * a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
+        let minus_rate_dot_2_leg2 = k1_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let minus_moment2_z_leg2 = base_parameters[21] * minus_rate_dot_2_leg2
+            + base_parameters[25] * minus_a_on_f1_leg2;
+        let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
+        let tau_3_leg2 = base_parameters[41] * qd_3_leg2
+            + ::overact::math::signed(base_parameters[45], qd_3_leg2);
+        let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2 - tau_3_leg2;
+        // --- leg3
+        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+        let k1_leg3 = INV_L_AB / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * k1_leg3;
+        let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
+        let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
+        let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = s1_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3 + s12_leg3 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg3;
+        let g1_vy_leg3 = s12_leg3 * k1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = L_AB * c2_leg3;
+        let rate_dot_1_leg3 = k1_leg3
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
+            + L_AB * rate_1_squared_leg3;
+        let tau_1_leg3 = base_parameters[10] * rate_1_leg3
+            + ::overact::math::signed(base_parameters[14], rate_1_leg3)
+            + base_parameters[18];
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = base_parameters[38]
+            - (base_parameters[30] * minus_qd_2_leg3
+                + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
+        let force_on_u1_leg3 = base_parameters[6] * rate_dot_1_leg3
+            + base_parameters[26] * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let minus_moment2_z_leg3 = base_parameters[22] * minus_rate_dot_2_leg3
+            + base_parameters[26] * minus_a_on_f1_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let tau_3_leg3 = base_parameters[42] * qd_3_leg3
+            + ::overact::math::signed(base_parameters[46], qd_3_leg3);
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3 - tau_3_leg3;
+        let t1_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
+        let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
+        let k1_leg4 = INV_L_AB / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * k1_leg4;
+        let minus_g2_vx_leg4 = c1_leg4 * k1_leg4;
+        let minus_g2_vy_leg4 = s1_leg4 * k1_leg4;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
+            + minus_g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3 + s12_leg4 * a_end_y_leg3
+            + L_AB * rate_2_squared_leg4;
+        let g1_vy_leg4 = s12_leg4 * k1_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
+        let v2_by_1_y_leg4 = L_AB * c2_leg4;
+        let rate_dot_1_leg4 = k1_leg4
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
+        let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
+            + L_AB * rate_1_squared_leg4;
+        let tau_1_leg4 = base_parameters[11] * rate_1_leg4
+            + ::overact::math::signed(base_parameters[15], rate_1_leg4)
+            + base_parameters[19];
+        let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
+        let tau_2_leg4 = base_parameters[39]
+            - (base_parameters[31] * minus_qd_2_leg4
+                + ::overact::math::signed(base_parameters[35], minus_qd_2_leg4));
+        let force_on_u1_leg4 = base_parameters[7] * rate_dot_1_leg4
+            + base_parameters[27] * a_on_f2_leg4 + tau_1_leg4 - tau_2_leg4;
+        let minus_rate_dot_2_leg4 = k1_leg4
+            * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
+        let minus_moment2_z_leg4 = base_parameters[23] * minus_rate_dot_2_leg4
+            + base_parameters[27] * minus_a_on_f1_leg4;
+        let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
+        let tau_3_leg4 = base_parameters[43] * qd_3_leg4
+            + ::overact::math::signed(base_parameters[47], qd_3_leg4);
+        let force_on_u2_leg4 = tau_2_leg4 - minus_moment2_z_leg4 - tau_3_leg4;
+        let mass_platform = base_parameters[3] + base_parameters[52];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let first_y_platform = base_parameters[2] + base_parameters[51];
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let first_x_platform = base_parameters[1] + base_parameters[50];
+        let force_x_platform = acceleration[0] * mass_platform
+            + inv_r_p_a_arm_x_leg1 * first_y_platform
+            - inv_r_p_a_arm_y_leg3 * first_x_platform;
+        let t1_platform = t1_leg3 + g1_vx_leg4 * force_on_u1_leg4
+            - minus_g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076041257,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368900079006,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g1_vy_leg2 * force_on_u1_leg2 - minus_g2_vy_leg2 * force_on_u2_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = acceleration[1] * mass_platform
+            - (inv_r_p_a_arm_x_leg1 * first_x_platform
+                + inv_r_p_a_arm_y_leg3 * first_y_platform);
+        let t1 = t2_leg3 + g1_vy_leg4 * force_on_u1_leg4
+            - minus_g2_vy_leg4 * force_on_u2_leg4 + force_y_platform
+            - t1_platform * l_2_1;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
+        let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
+        let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
+            + g1_vy_leg4 * g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
+            + g1_vx_leg4 * g1_wz_leg4;
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
+        let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t3_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g2_wz_leg2 * force_on_u2_leg2
+            - minus_g1_wz_leg2 * force_on_u1_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4 + p_y_leg1 * minus_g2_vx_leg4;
+        let inertia_zz_platform = base_parameters[0] + base_parameters[49];
+        let moment_z_platform = acceleration[1]
+            * (c_phi * first_x_platform - s_phi * first_y_platform)
+            - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
+            + acceleration[2] * inertia_zz_platform;
+        let t2 = t3_leg3 + g1_wz_leg4 * force_on_u1_leg4
+            - minus_g2_wz_leg4 * force_on_u2_leg4 + tau_3_leg4 + moment_z_platform
+            - t1_platform * l_3_1 - l_3_2 * t1;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1
+            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
+            + g1_wz_leg4 * g1_wz_leg4;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(
+            pivot_3,
+            0.30769284902009914,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t3 = t2 / pivot_3;
+        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
+        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
+        ::core::result::Result::Ok([
+            g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
+            g1_vx_leg2 * t5 + g1_vy_leg2 * t4 - minus_g1_wz_leg2 * t3,
+            g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
+            g1_vx_leg4 * t5 + g1_vy_leg4 * t4 + g1_wz_leg4 * t3,
+        ])
+    }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
+    /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
+    /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    ///
+    /// Output: 4.
+    ///
+    /// 623 operations (267 additions, 345 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 1 negation, 625 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn inverse_dynamics_base_from_actuators(
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        base_parameters: &[::core::primitive::f64; 53],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations),
+                ("base_parameters", base_parameters), ("start", start),
+            ],
+        )?;
+        let pose = &Self::pose_from_actuators(actuators, start)?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        // --- leg1
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        // --- leg2
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        // --- leg3
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
+        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let l_3_1 = s_1_3 * inv_pivot_1;
+        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
+        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_3,
+            0.3076928490286828,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_3 = 1.0 / pivot_3;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
+        let t2 = g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            + g1_vy_leg3 * actuator_velocities[2]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+        let t3 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_wz_leg1 * actuator_velocities[0]
+            + g1_wz_leg3 * actuator_velocities[2]
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+        let wz = inv_pivot_3 * t3;
+        // --- leg1
+        let v_arm_x_leg3 = p_y_leg1 * wz;
+        let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
+        let v_arm_y_leg3 = p_x_leg3 * wz;
+        let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let vy = inv_pivot_2 * t2 - l_3_2 * wz;
+        let vx = t1 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let v_end_x_leg1 = vx - v_arm_x_leg3;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = vy - v_arm_y_leg3;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t3_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_leg1;
+        // --- leg2
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED * rate_2_squared_leg2;
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let t2_leg2 = 0.5 * t1_leg2;
+        let t3_leg2 = rate_1_squared_leg2 * t2_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t3_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg3
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let v_end_x_leg3 = vx + v_arm_x_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = vy + v_arm_y_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let t3_leg3 = rate_1_squared_leg3 * t2_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t3_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            + minus_bias_rate_dot_1_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED * rate_2_squared_leg4;
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let t2_leg4 = 0.5 * t1_leg4;
+        let t3_leg4 = rate_1_squared_leg4 * t2_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t3_leg4);
+        let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
+            - bias_rate_dot_1_leg4;
+        let t4 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
+        let t5 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t4;
+        let t6 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
+            - l_3_2 * t5;
+        let dwz = inv_pivot_3 * t6;
+        let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
+        let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
+        // --- leg1
+        let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
+        let a_end_x_leg1 = dvx + a_arm_x_leg1;
+        let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
+        let a_end_y_leg1 = dvy - a_arm_y_leg3;
+        let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg1;
+        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t3_leg1);
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force2_x_leg1 = base_parameters[24] * minus_rate_dot_2_leg1;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_force2_y_leg1 = rate_2_squared_leg1 * base_parameters[24];
+        let force1_y_leg1 = s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1;
+        let tau_1_leg1 = rate_1_leg1 * base_parameters[8]
+            + ::overact::math::signed(base_parameters[12], rate_1_leg1)
+            + base_parameters[16];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = base_parameters[36]
+            - (minus_qd_2_leg1 * base_parameters[28]
+                + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
+        let force_on_u1_leg1 = base_parameters[4] * rate_dot_1_leg1
+            + L_AB * force1_y_leg1 + tau_1_leg1 - tau_2_leg1;
+        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+        let minus_moment2_z_leg1 = base_parameters[20] * minus_rate_dot_2_leg1
+            + base_parameters[24] * a2_x_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + wz;
+        let tau_3_leg1 = qd_3_leg1 * base_parameters[40]
+            + ::overact::math::signed(base_parameters[44], qd_3_leg1)
+            + base_parameters[48];
+        let force_on_u2_leg1 = tau_2_leg1 - minus_moment2_z_leg1 - tau_3_leg1;
+        // --- leg2
+        let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
+            + L_AB_SQUARED * rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
+            + l_ab_squared_rate_2_squared_leg2;
+        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let moment2_z_leg2 = base_parameters[21] * rate_dot_2_leg2
+            - base_parameters[25] * a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let tau_2_leg2 = qd_2_leg2 * base_parameters[29]
+            + ::overact::math::signed(base_parameters[33], qd_2_leg2)
+            + base_parameters[37];
+        let qd_3_leg2 = wz - rate_2_leg2;
+        let tau_3_leg2 = qd_3_leg2 * base_parameters[41]
+            + ::overact::math::signed(base_parameters[45], qd_3_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let minus_force2_x_leg2 = base_parameters[25] * rate_dot_2_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let minus_force2_y_leg2 = rate_2_squared_leg2 * base_parameters[25];
+        let force1_y_leg2 = minus_s2_leg2 * minus_force2_x_leg2
+            - c2_leg2 * minus_force2_y_leg2;
+        let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t3_leg2);
+        let tau_1_leg2 = base_parameters[17]
+            - (minus_rate_1_leg2 * base_parameters[9]
+                + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
+        let force_on_u1_leg2 = L_AB * force1_y_leg2
+            - base_parameters[5] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
+        // --- leg3
+        let a_end_x_leg3 = dvx - a_arm_x_leg1;
+        let a_end_y_leg3 = dvy + a_arm_y_leg3;
+        let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg3;
+        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t3_leg3);
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
+        let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let force2_x_leg3 = base_parameters[26] * minus_rate_dot_2_leg3;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_force2_y_leg3 = rate_2_squared_leg3 * base_parameters[26];
+        let force1_y_leg3 = s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3;
+        let tau_1_leg3 = rate_1_leg3 * base_parameters[10]
+            + ::overact::math::signed(base_parameters[14], rate_1_leg3)
+            + base_parameters[18];
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = base_parameters[38]
+            - (minus_qd_2_leg3 * base_parameters[30]
+                + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
+        let force_on_u1_leg3 = base_parameters[6] * rate_dot_1_leg3
+            + L_AB * force1_y_leg3 + tau_1_leg3 - tau_2_leg3;
+        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+        let minus_moment2_z_leg3 = base_parameters[22] * minus_rate_dot_2_leg3
+            + base_parameters[26] * a2_x_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + wz;
+        let tau_3_leg3 = qd_3_leg3 * base_parameters[42]
+            + ::overact::math::signed(base_parameters[46], qd_3_leg3);
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3 - tau_3_leg3;
+        let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
+            + L_AB_SQUARED * rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
+            + l_ab_squared_rate_2_squared_leg4;
+        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let moment2_z_leg4 = base_parameters[23] * rate_dot_2_leg4
+            - base_parameters[27] * a2_x_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let tau_2_leg4 = qd_2_leg4 * base_parameters[31]
+            + ::overact::math::signed(base_parameters[35], qd_2_leg4)
+            + base_parameters[39];
+        let qd_3_leg4 = wz - rate_2_leg4;
+        let tau_3_leg4 = qd_3_leg4 * base_parameters[43]
+            + ::overact::math::signed(base_parameters[47], qd_3_leg4);
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let minus_force2_x_leg4 = base_parameters[27] * rate_dot_2_leg4;
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let minus_force2_y_leg4 = rate_2_squared_leg4 * base_parameters[27];
+        let force1_y_leg4 = minus_s2_leg4 * minus_force2_x_leg4
+            - c2_leg4 * minus_force2_y_leg4;
+        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t3_leg4);
+        let tau_1_leg4 = base_parameters[19]
+            - (minus_rate_1_leg4 * base_parameters[11]
+                + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
+        let force_on_u1_leg4 = L_AB * force1_y_leg4
+            - base_parameters[7] * minus_rate_dot_1_leg4 + tau_1_leg4 - tau_2_leg4;
+        let mass_platform = base_parameters[3] + base_parameters[52];
+        let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
+        let first_y_platform = base_parameters[2] + base_parameters[51];
+        let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
+        let first_x_platform = base_parameters[1] + base_parameters[50];
+        let force_x_platform = dvx * mass_platform
+            + inv_r_p_a_arm_x_leg1 * first_y_platform
+            - inv_r_p_a_arm_y_leg3 * first_x_platform;
+        let t1_platform = t4_leg3 + g2_vx_leg4 * force_on_u2_leg4
+            - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
+        let t5_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = dvy * mass_platform
+            - (inv_r_p_a_arm_x_leg1 * first_x_platform
+                + inv_r_p_a_arm_y_leg3 * first_y_platform);
+        let t7 = t5_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
+            - l_2_1 * t1_platform;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t6_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
+            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let inertia_zz_platform = base_parameters[0] + base_parameters[49];
+        let moment_z_platform = dvy
+            * (c_phi * first_x_platform - s_phi * first_y_platform)
+            - dvx * (s_phi * first_x_platform + c_phi * first_y_platform)
+            + dwz * inertia_zz_platform;
+        let t8 = t6_leg3 + g2_wz_leg4 * force_on_u2_leg4
+            - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
+            - l_3_1 * t1_platform - l_3_2 * t7;
+        let t9 = inv_pivot_3 * t8;
+        let t10 = inv_pivot_2 * t7 - l_3_2 * t9;
+        let t11 = inv_pivot_1 * t1_platform - l_2_1 * t10 - l_3_1 * t9;
+        ::core::result::Result::Ok([
+            g1_vx_leg1 * t11 + g1_vy_leg1 * t10 - minus_g1_wz_leg1 * t9,
+            g1_wz_leg2 * t9 - (minus_g1_vx_leg2 * t11 + minus_g1_vy_leg2 * t10),
+            g1_vx_leg3 * t11 + g1_vy_leg3 * t10 + g1_wz_leg3 * t9,
+            -(minus_g1_vx_leg4 * t11 + minus_g1_vy_leg4 * t10 + minus_g1_wz_leg4 * t9),
+        ])
+    }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
@@ -8972,7 +10178,7 @@ impl DualV {
     ///
     /// Output: 3 x 3.
     ///
-    /// 325 operations (135 additions, 182 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 325 intermediates.
+    /// 325 operations (135 additions, 182 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 325 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -9189,6 +10395,237 @@ impl DualV {
             ],
         ])
     }
+    /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 3 x 3.
+    ///
+    /// 297 operations (119 additions, 170 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 297 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn mass_matrix_base(
+        pose: &[::core::primitive::f64; 3],
+        base_parameters: &[::core::primitive::f64; 53],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("base_parameters", base_parameters)],
+        )?;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let minus_first1_x_leg1 = s2_leg1 * base_parameters[24];
+        let minus_masses_leg1_1_2 = L_AB * minus_first1_x_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let first1_x_leg2 = minus_s2_leg2 * base_parameters[25];
+        let masses_leg2_1_2 = L_AB * first1_x_leg2;
+        let t1_leg2 = g1_vx_leg1
+            * (g1_vx_leg1 * base_parameters[4]
+                + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
+            + minus_g2_vx_leg1
+                * (g1_vx_leg1 * minus_masses_leg1_1_2
+                    + minus_g2_vx_leg1 * base_parameters[20])
+            + g2_vx_leg2
+                * (g2_vx_leg2 * base_parameters[21] - minus_g1_vx_leg2 * masses_leg2_1_2)
+            - minus_g1_vx_leg2
+                * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * base_parameters[5]);
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
+        let minus_first1_x_leg3 = s2_leg3 * base_parameters[26];
+        let minus_masses_leg3_1_2 = L_AB * minus_first1_x_leg3;
+        let t1_leg3 = t1_leg2
+            + g1_vx_leg3
+                * (g1_vx_leg3 * base_parameters[6]
+                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+            + minus_g2_vx_leg3
+                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                    + minus_g2_vx_leg3 * base_parameters[22]);
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let first1_x_leg4 = minus_s2_leg4 * base_parameters[27];
+        let masses_leg4_1_2 = L_AB * first1_x_leg4;
+        let t1_leg4 = t1_leg3
+            + g2_vx_leg4
+                * (g2_vx_leg4 * base_parameters[23] - minus_g1_vx_leg4 * masses_leg4_1_2)
+            - minus_g1_vx_leg4
+                * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * base_parameters[7]);
+        let mass_platform = base_parameters[3] + base_parameters[52];
+        // --- leg1
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let t1_leg1 = g1_vy_leg1 * base_parameters[4]
+            + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
+        let t2_leg1 = minus_masses_leg1_1_2 * g1_vy_leg1
+            + minus_g2_vy_leg1 * base_parameters[20];
+        // --- leg2
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let t2_leg2 = g2_vy_leg2 * base_parameters[21]
+            - masses_leg2_1_2 * minus_g1_vy_leg2;
+        let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2
+            - minus_g1_vy_leg2 * base_parameters[5];
+        // --- leg3
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let t2_leg3 = g1_vy_leg3 * base_parameters[6]
+            + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t3_leg3 = minus_masses_leg3_1_2 * g1_vy_leg3
+            + minus_g2_vy_leg3 * base_parameters[22];
+        let t4_leg3 = g1_vx_leg1 * t1_leg1 + minus_g2_vx_leg1 * t2_leg1
+            + g2_vx_leg2 * t2_leg2 - minus_g1_vx_leg2 * t3_leg2 + g1_vx_leg3 * t2_leg3
+            + minus_g2_vx_leg3 * t3_leg3;
+        // --- leg4
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let t2_leg4 = g2_vy_leg4 * base_parameters[23]
+            - masses_leg4_1_2 * minus_g1_vy_leg4;
+        let t3_leg4 = g2_vy_leg4 * masses_leg4_1_2
+            - minus_g1_vy_leg4 * base_parameters[7];
+        let t4_leg4 = t4_leg3 + g2_vx_leg4 * t2_leg4 - minus_g1_vx_leg4 * t3_leg4;
+        // --- leg2
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let t4_leg2 = g1_wz_leg2 * masses_leg2_1_2
+            - minus_g2_wz_leg2 * base_parameters[21];
+        let t5_leg2 = g1_wz_leg2 * base_parameters[5]
+            - minus_g2_wz_leg2 * masses_leg2_1_2;
+        // --- leg1
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let t3_leg1 = minus_g1_wz_leg1 * base_parameters[4]
+            + g2_wz_leg1 * minus_masses_leg1_1_2;
+        let t4_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
+            + g2_wz_leg1 * base_parameters[20];
+        // --- leg3
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t5_leg3 = g1_wz_leg3 * base_parameters[6]
+            + minus_g2_wz_leg3 * minus_masses_leg3_1_2;
+        let t6_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
+            + minus_g2_wz_leg3 * base_parameters[22];
+        let t7_leg3 = g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2
+            - (g1_vx_leg1 * t3_leg1 + minus_g2_vx_leg1 * t4_leg1) + g1_vx_leg3 * t5_leg3
+            + minus_g2_vx_leg3 * t6_leg3;
+        // --- leg4
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let t5_leg4 = g2_wz_leg4 * base_parameters[23]
+            - minus_g1_wz_leg4 * masses_leg4_1_2;
+        let t6_leg4 = g2_wz_leg4 * masses_leg4_1_2
+            - minus_g1_wz_leg4 * base_parameters[7];
+        let first_x_platform = base_parameters[1] + base_parameters[50];
+        let first_y_platform = base_parameters[2] + base_parameters[51];
+        let t1_platform = t7_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
+            - (s_phi * first_x_platform + c_phi * first_y_platform);
+        let t8_leg3 = g1_vy_leg1 * t1_leg1 + minus_g2_vy_leg1 * t2_leg1
+            + g2_vy_leg2 * t2_leg2 - minus_g1_vy_leg2 * t3_leg2 + g1_vy_leg3 * t2_leg3
+            + minus_g2_vy_leg3 * t3_leg3;
+        let t9_leg3 = g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t5_leg2
+            - (g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t4_leg1) + g1_vy_leg3 * t5_leg3
+            + minus_g2_vy_leg3 * t6_leg3;
+        let t2_platform = t9_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
+            + c_phi * first_x_platform - s_phi * first_y_platform;
+        let t10_leg3 = minus_g1_wz_leg1 * t3_leg1 + g2_wz_leg1 * t4_leg1
+            + g1_wz_leg2 * t5_leg2 - minus_g2_wz_leg2 * t4_leg2 + g1_wz_leg3 * t5_leg3
+            + minus_g2_wz_leg3 * t6_leg3;
+        let inertia_zz_platform = base_parameters[0] + base_parameters[49];
+        ::core::result::Result::Ok([
+            [t1_leg4 + mass_platform, t4_leg4, t1_platform],
+            [
+                t4_leg4,
+                t8_leg3 + g2_vy_leg4 * t2_leg4 - minus_g1_vy_leg4 * t3_leg4
+                    + mass_platform,
+                t2_platform,
+            ],
+            [
+                t1_platform, t2_platform,
+                t10_leg3 + g2_wz_leg4 * t5_leg4 - minus_g1_wz_leg4 * t6_leg4
+                    + inertia_zz_platform,
+            ],
+        ])
+    }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
@@ -9198,7 +10635,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 457 operations (197 additions, 252 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 472 intermediates.
+    /// 469 operations (197 additions, 264 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 472 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -9518,6 +10955,315 @@ impl DualV {
                 + tau_3_leg4,
         ])
     }
+    /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 3.
+    ///
+    /// 406 operations (170 additions, 228 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 409 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn bias_base(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        base_parameters: &[::core::primitive::f64; 53],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
+        )?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
+            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let minus_bias_rate_dot_2_leg1 = k1_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force2_x_leg1 = base_parameters[24] * minus_bias_rate_dot_2_leg1;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_force2_y_leg1 = base_parameters[24] * rate_2_squared_leg1;
+        let force1_y_leg1 = s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1
+            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+        let tau_1_leg1 = base_parameters[8] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[12], rate_1_leg1)
+            + base_parameters[16];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = base_parameters[36]
+            - (base_parameters[28] * minus_qd_2_leg1
+                + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
+        let force_on_u1_leg1 = L_AB * force1_y_leg1
+            - base_parameters[4] * minus_bias_rate_dot_1_leg1 + tau_1_leg1 - tau_2_leg1;
+        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
+        let moment2_z_leg1 = base_parameters[24] * minus_bias_a2_x_leg1
+            - base_parameters[20] * minus_bias_rate_dot_2_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let tau_3_leg1 = base_parameters[40] * qd_3_leg1
+            + ::overact::math::signed(base_parameters[44], qd_3_leg1)
+            + base_parameters[48];
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let bias_a_on_f2_leg2 = l1_x_leg2 * bias_a_end_x_leg1
+            - l1_y_leg2 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let t2_leg2 = 0.5 * t1_leg2;
+        let bias_rate_dot_2_leg2 = k1_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
+        let moment2_z_leg2 = base_parameters[21] * bias_rate_dot_2_leg2
+            + base_parameters[25] * minus_bias_a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let tau_2_leg2 = base_parameters[29] * qd_2_leg2
+            + ::overact::math::signed(base_parameters[33], qd_2_leg2)
+            + base_parameters[37];
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let tau_3_leg2 = base_parameters[41] * qd_3_leg2
+            + ::overact::math::signed(base_parameters[45], qd_3_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2
+            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let minus_force2_x_leg2 = base_parameters[25] * bias_rate_dot_2_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let minus_force2_y_leg2 = base_parameters[25] * rate_2_squared_leg2;
+        let force1_y_leg2 = minus_s2_leg2 * minus_force2_x_leg2
+            - c2_leg2 * minus_force2_y_leg2;
+        let tau_1_leg2 = base_parameters[17]
+            - (base_parameters[9] * minus_rate_1_leg2
+                + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
+        let force_on_u1_leg2 = base_parameters[5] * bias_rate_dot_1_leg2
+            + L_AB * force1_y_leg2 + tau_1_leg2 - tau_2_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
+            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let minus_bias_rate_dot_2_leg3 = k1_leg3
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let force2_x_leg3 = base_parameters[26] * minus_bias_rate_dot_2_leg3;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_force2_y_leg3 = base_parameters[26] * rate_2_squared_leg3;
+        let force1_y_leg3 = s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3
+            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
+        let tau_1_leg3 = base_parameters[10] * rate_1_leg3
+            + ::overact::math::signed(base_parameters[14], rate_1_leg3)
+            + base_parameters[18];
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = base_parameters[38]
+            - (base_parameters[30] * minus_qd_2_leg3
+                + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
+        let force_on_u1_leg3 = L_AB * force1_y_leg3
+            - base_parameters[6] * minus_bias_rate_dot_1_leg3 + tau_1_leg3 - tau_2_leg3;
+        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
+        let moment2_z_leg3 = base_parameters[26] * minus_bias_a2_x_leg3
+            - base_parameters[22] * minus_bias_rate_dot_2_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let tau_3_leg3 = base_parameters[42] * qd_3_leg3
+            + ::overact::math::signed(base_parameters[46], qd_3_leg3);
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let bias_a_on_f2_leg4 = l1_y_leg4 * bias_a_end_y_leg3
+            - l1_x_leg4 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let t2_leg4 = 0.5 * t1_leg4;
+        let bias_rate_dot_2_leg4 = k1_leg4
+            * (bias_a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_bias_a2_x_leg4 = INV_L_AB * bias_a_on_f1_leg4;
+        let moment2_z_leg4 = base_parameters[23] * bias_rate_dot_2_leg4
+            + base_parameters[27] * minus_bias_a2_x_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let tau_2_leg4 = base_parameters[31] * qd_2_leg4
+            + ::overact::math::signed(base_parameters[35], qd_2_leg4)
+            + base_parameters[39];
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let tau_3_leg4 = base_parameters[43] * qd_3_leg4
+            + ::overact::math::signed(base_parameters[47], qd_3_leg4);
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4
+            * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t2_leg4);
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let minus_force2_x_leg4 = base_parameters[27] * bias_rate_dot_2_leg4;
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let minus_force2_y_leg4 = base_parameters[27] * rate_2_squared_leg4;
+        let force1_y_leg4 = minus_s2_leg4 * minus_force2_x_leg4
+            - c2_leg4 * minus_force2_y_leg4;
+        let tau_1_leg4 = base_parameters[19]
+            - (base_parameters[11] * minus_rate_1_leg4
+                + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
+        let force_on_u1_leg4 = base_parameters[7] * bias_rate_dot_1_leg4
+            + L_AB * force1_y_leg4 + tau_1_leg4 - tau_2_leg4;
+        let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
+        let first_y_platform = base_parameters[2] + base_parameters[51];
+        let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
+        let first_x_platform = base_parameters[1] + base_parameters[50];
+        let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
+            - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
+            + inv_r_p_bias_a_end_y_leg3 * first_y_platform;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+            + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
+            - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
+            + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
+            + tau_3_leg3;
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        ::core::result::Result::Ok([
+            t3_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+                + force_x_platform,
+            t4_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+                - minus_force_y_platform,
+            t5_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+                + tau_3_leg4,
+        ])
+    }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
     /// From the platform's pose and motion.
@@ -9528,7 +11274,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 712 operations (302 additions, 399 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 727 intermediates.
+    /// 724 operations (302 additions, 411 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 727 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -9965,6 +11711,432 @@ impl DualV {
         let t6 = inv_pivot_2 * t3 - l_3_2 * t5;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t6 - l_3_1 * t5, t6, t5])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 3.
+    ///
+    /// 641 operations (267 additions, 363 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 644 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics_base(
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+        base_parameters: &[::core::primitive::f64; 53],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("torques", torques),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// 1 / l_ab
+        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        /// 1 / l_ab²
+        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+        /// 1 / r_p
+        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        /// l_ab = l_bc
+        const L_AB: ::core::primitive::f64 = 0.28;
+        /// l_ab²
+        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        /// r_p
+        const R_P: ::core::primitive::f64 = 0.11;
+        /// 2 l_ab²
+        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        // --- leg1
+        let p_x_leg3 = R_P * s_phi;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let p_y_leg1 = R_P * c_phi;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
+        let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        let k1_leg1 = 1.0 / det_leg1;
+        let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        // --- leg1
+        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let v_arm_y_leg3 = p_x_leg3 * twist[2];
+        let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let v_arm_x_leg3 = p_y_leg1 * twist[2];
+        let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
+        let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
+        let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
+        let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
+        let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
+        let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
+            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
+        let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
+        let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
+            + minus_g2_vy_leg1 * v_end_y_leg1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let minus_bias_rate_dot_2_leg1 = k1_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force2_x_leg1 = base_parameters[24] * minus_bias_rate_dot_2_leg1;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let minus_force2_y_leg1 = base_parameters[24] * rate_2_squared_leg1;
+        let force1_y_leg1 = s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1;
+        let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
+            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1
+            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+        let tau_1_leg1 = base_parameters[8] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[12], rate_1_leg1)
+            + base_parameters[16];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let tau_2_leg1 = base_parameters[36]
+            - (base_parameters[28] * minus_qd_2_leg1
+                + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
+        let force_on_u1_leg1 = L_AB * force1_y_leg1
+            - base_parameters[4] * minus_bias_rate_dot_1_leg1 + tau_1_leg1 - tau_2_leg1;
+        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
+        let moment2_z_leg1 = base_parameters[24] * minus_bias_a2_x_leg1
+            - base_parameters[20] * minus_bias_rate_dot_2_leg1;
+        let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
+        let tau_3_leg1 = base_parameters[40] * qd_3_leg1
+            + ::overact::math::signed(base_parameters[44], qd_3_leg1)
+            + base_parameters[48];
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
+        // --- leg2
+        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
+            + minus_g1_vy_leg2 * v_end_y_leg1;
+        let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let bias_a_on_f2_leg2 = l1_x_leg2 * bias_a_end_x_leg1
+            - l1_y_leg2 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg2;
+        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let t2_leg2 = 0.5 * t1_leg2;
+        let bias_rate_dot_2_leg2 = k1_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
+            - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
+        let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
+        let moment2_z_leg2 = base_parameters[21] * bias_rate_dot_2_leg2
+            + base_parameters[25] * minus_bias_a2_x_leg2;
+        let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
+        let tau_2_leg2 = base_parameters[29] * qd_2_leg2
+            + ::overact::math::signed(base_parameters[33], qd_2_leg2)
+            + base_parameters[37];
+        let qd_3_leg2 = twist[2] - rate_2_leg2;
+        let tau_3_leg2 = base_parameters[41] * qd_3_leg2
+            + ::overact::math::signed(base_parameters[45], qd_3_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2
+            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
+        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
+        let minus_force2_x_leg2 = base_parameters[25] * bias_rate_dot_2_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let minus_force2_y_leg2 = base_parameters[25] * rate_2_squared_leg2;
+        let force1_y_leg2 = minus_s2_leg2 * minus_force2_x_leg2
+            - c2_leg2 * minus_force2_y_leg2;
+        let tau_1_leg2 = base_parameters[17]
+            - (base_parameters[9] * minus_rate_1_leg2
+                + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
+        let force_on_u1_leg2 = base_parameters[5] * bias_rate_dot_1_leg2
+            + L_AB * force1_y_leg2 + tau_1_leg2 - tau_2_leg2;
+        // --- leg3
+        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
+            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
+            + minus_g2_vy_leg3 * v_end_y_leg3;
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let t2_leg3 = 0.5 * t1_leg3;
+        let minus_bias_rate_dot_2_leg3 = k1_leg3
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let force2_x_leg3 = base_parameters[26] * minus_bias_rate_dot_2_leg3;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_force2_y_leg3 = base_parameters[26] * rate_2_squared_leg3;
+        let force1_y_leg3 = s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3;
+        let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
+            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3
+            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
+        let tau_1_leg3 = base_parameters[10] * rate_1_leg3
+            + ::overact::math::signed(base_parameters[14], rate_1_leg3)
+            + base_parameters[18];
+        let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
+        let tau_2_leg3 = base_parameters[38]
+            - (base_parameters[30] * minus_qd_2_leg3
+                + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
+        let force_on_u1_leg3 = L_AB * force1_y_leg3
+            - base_parameters[6] * minus_bias_rate_dot_1_leg3 + tau_1_leg3 - tau_2_leg3;
+        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
+        let moment2_z_leg3 = base_parameters[26] * minus_bias_a2_x_leg3
+            - base_parameters[22] * minus_bias_rate_dot_2_leg3;
+        let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
+        let tau_3_leg3 = base_parameters[42] * qd_3_leg3
+            + ::overact::math::signed(base_parameters[46], qd_3_leg3);
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+            + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        // --- leg4
+        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
+            + minus_g1_vy_leg4 * v_end_y_leg3;
+        let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let bias_a_on_f2_leg4 = l1_y_leg4 * bias_a_end_y_leg3
+            - l1_x_leg4 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg4;
+        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
+        let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
+        let t2_leg4 = 0.5 * t1_leg4;
+        let bias_rate_dot_2_leg4 = k1_leg4
+            * (bias_a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
+            - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
+        let minus_bias_a2_x_leg4 = INV_L_AB * bias_a_on_f1_leg4;
+        let moment2_z_leg4 = base_parameters[23] * bias_rate_dot_2_leg4
+            + base_parameters[27] * minus_bias_a2_x_leg4;
+        let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
+        let tau_2_leg4 = base_parameters[31] * qd_2_leg4
+            + ::overact::math::signed(base_parameters[35], qd_2_leg4)
+            + base_parameters[39];
+        let qd_3_leg4 = twist[2] - rate_2_leg4;
+        let tau_3_leg4 = base_parameters[43] * qd_3_leg4
+            + ::overact::math::signed(base_parameters[47], qd_3_leg4);
+        let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4
+            * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t2_leg4);
+        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
+        let minus_force2_x_leg4 = base_parameters[27] * bias_rate_dot_2_leg4;
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let minus_force2_y_leg4 = base_parameters[27] * rate_2_squared_leg4;
+        let force1_y_leg4 = minus_s2_leg4 * minus_force2_x_leg4
+            - c2_leg4 * minus_force2_y_leg4;
+        let tau_1_leg4 = base_parameters[19]
+            - (base_parameters[11] * minus_rate_1_leg4
+                + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
+        let force_on_u1_leg4 = base_parameters[7] * bias_rate_dot_1_leg4
+            + L_AB * force1_y_leg4 + tau_1_leg4 - tau_2_leg4;
+        let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
+        let first_y_platform = base_parameters[2] + base_parameters[51];
+        let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
+        let first_x_platform = base_parameters[1] + base_parameters[50];
+        let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
+            - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
+        let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+            + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3]
+            - (t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
+                - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform);
+        let minus_masses_leg1_1_2 = INV_L_AB * (det_leg1 * base_parameters[24]);
+        let masses_leg2_1_2 = INV_L_AB * (det_leg2 * base_parameters[25]);
+        let t3_leg2 = g1_vx_leg1
+            * (g1_vx_leg1 * base_parameters[4]
+                + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
+            + minus_g2_vx_leg1
+                * (g1_vx_leg1 * minus_masses_leg1_1_2
+                    + minus_g2_vx_leg1 * base_parameters[20])
+            + g2_vx_leg2
+                * (g2_vx_leg2 * base_parameters[21] - minus_g1_vx_leg2 * masses_leg2_1_2)
+            - minus_g1_vx_leg2
+                * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * base_parameters[5]);
+        let minus_masses_leg3_1_2 = INV_L_AB * (det_leg3 * base_parameters[26]);
+        let t4_leg3 = t3_leg2
+            + g1_vx_leg3
+                * (g1_vx_leg3 * base_parameters[6]
+                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+            + minus_g2_vx_leg3
+                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                    + minus_g2_vx_leg3 * base_parameters[22]);
+        let masses_leg4_1_2 = INV_L_AB * (det_leg4 * base_parameters[27]);
+        let t3_leg4 = t4_leg3
+            + g2_vx_leg4
+                * (g2_vx_leg4 * base_parameters[23] - minus_g1_vx_leg4 * masses_leg4_1_2)
+            - minus_g1_vx_leg4
+                * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * base_parameters[7]);
+        let mass_platform = base_parameters[3] + base_parameters[52];
+        let mass_1_1 = t3_leg4 + mass_platform;
+        ::overact::guard::mass(mass_1_1)?;
+        let inv_pivot_1 = 1.0 / mass_1_1;
+        let t3_leg1 = g1_vy_leg1 * base_parameters[4]
+            + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
+        let t4_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
+            + minus_g2_vy_leg1 * base_parameters[20];
+        let t4_leg2 = g2_vy_leg2 * base_parameters[21]
+            - minus_g1_vy_leg2 * masses_leg2_1_2;
+        let t5_leg2 = g2_vy_leg2 * masses_leg2_1_2
+            - minus_g1_vy_leg2 * base_parameters[5];
+        let t5_leg3 = g1_vy_leg3 * base_parameters[6]
+            + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t6_leg3 = g1_vy_leg3 * minus_masses_leg3_1_2
+            + minus_g2_vy_leg3 * base_parameters[22];
+        let t7_leg3 = g1_vx_leg1 * t3_leg1 + minus_g2_vx_leg1 * t4_leg1
+            + g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2 + g1_vx_leg3 * t5_leg3
+            + minus_g2_vx_leg3 * t6_leg3;
+        let t4_leg4 = g2_vy_leg4 * base_parameters[23]
+            - minus_g1_vy_leg4 * masses_leg4_1_2;
+        let t5_leg4 = g2_vy_leg4 * masses_leg4_1_2
+            - minus_g1_vy_leg4 * base_parameters[7];
+        let mass_1_2 = t7_leg3 + g2_vx_leg4 * t4_leg4 - minus_g1_vx_leg4 * t5_leg4;
+        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let t8_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t4_leg1
+            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t5_leg2 + g1_vy_leg3 * t5_leg3
+            + minus_g2_vy_leg3 * t6_leg3;
+        let mass_2_2 = t8_leg3 + g2_vy_leg4 * t4_leg4 - minus_g1_vy_leg4 * t5_leg4
+            + mass_platform;
+        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+        ::overact::guard::mass(pivot_2)?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t9_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
+            + inv_r_p_bias_a_end_y_leg3 * first_y_platform;
+        let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
+            - (t9_leg3 + g2_vy_leg4 * force_on_u2_leg4
+                - minus_g1_vy_leg4 * force_on_u1_leg4 - minus_force_y_platform);
+        let t3 = t2 - t1 * l_2_1;
+        // --- leg2
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
+        let t6_leg2 = g1_wz_leg2 * masses_leg2_1_2
+            - minus_g2_wz_leg2 * base_parameters[21];
+        let t7_leg2 = g1_wz_leg2 * base_parameters[5]
+            - minus_g2_wz_leg2 * masses_leg2_1_2;
+        // --- leg1
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let t5_leg1 = minus_g1_wz_leg1 * base_parameters[4]
+            + g2_wz_leg1 * minus_masses_leg1_1_2;
+        let t6_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
+            + g2_wz_leg1 * base_parameters[20];
+        // --- leg3
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
+        let t10_leg3 = g1_wz_leg3 * base_parameters[6]
+            + minus_g2_wz_leg3 * minus_masses_leg3_1_2;
+        let t11_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
+            + minus_g2_wz_leg3 * base_parameters[22];
+        let t12_leg3 = g2_vy_leg2 * t6_leg2 - minus_g1_vy_leg2 * t7_leg2
+            - (g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t6_leg1) + g1_vy_leg3 * t10_leg3
+            + minus_g2_vy_leg3 * t11_leg3;
+        // --- leg4
+        let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
+        let t6_leg4 = g2_wz_leg4 * base_parameters[23]
+            - minus_g1_wz_leg4 * masses_leg4_1_2;
+        let t7_leg4 = g2_wz_leg4 * masses_leg4_1_2
+            - minus_g1_wz_leg4 * base_parameters[7];
+        let mass_2_3 = t12_leg3 + g2_vy_leg4 * t6_leg4 - minus_g1_vy_leg4 * t7_leg4
+            + c_phi * first_x_platform - s_phi * first_y_platform;
+        let t13_leg3 = g2_vx_leg2 * t6_leg2 - minus_g1_vx_leg2 * t7_leg2
+            - (g1_vx_leg1 * t5_leg1 + minus_g2_vx_leg1 * t6_leg1) + g1_vx_leg3 * t10_leg3
+            + minus_g2_vx_leg3 * t11_leg3;
+        let mass_1_3 = t13_leg3 + g2_vx_leg4 * t6_leg4 - minus_g1_vx_leg4 * t7_leg4
+            - (s_phi * first_x_platform + c_phi * first_y_platform);
+        let l_3_1 = mass_1_3 * inv_pivot_1;
+        let schur_2_3 = mass_2_3 - mass_1_2 * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let t14_leg3 = g2_wz_leg1 * force_on_u2_leg1
+            - minus_g1_wz_leg1 * force_on_u1_leg1 + tau_3_leg1
+            + g1_wz_leg2 * force_on_u1_leg2 - minus_g2_wz_leg2 * force_on_u2_leg2
+            + tau_3_leg2 + g1_wz_leg3 * force_on_u1_leg3
+            - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
+        let t4 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
+            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3]
+            - (t14_leg3 + g2_wz_leg4 * force_on_u2_leg4
+                - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4);
+        let t15_leg3 = minus_g1_wz_leg1 * t5_leg1 + g2_wz_leg1 * t6_leg1
+            + g1_wz_leg2 * t7_leg2 - minus_g2_wz_leg2 * t6_leg2 + g1_wz_leg3 * t10_leg3
+            + minus_g2_wz_leg3 * t11_leg3;
+        let inertia_zz_platform = base_parameters[0] + base_parameters[49];
+        let mass_3_3 = t15_leg3 + g2_wz_leg4 * t6_leg4 - minus_g1_wz_leg4 * t7_leg4
+            + inertia_zz_platform;
+        let pivot_3 = mass_3_3 - mass_1_3 * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::mass(pivot_3)?;
+        let t5 = (t4 - t1 * l_3_1 - l_3_2 * t3) / pivot_3;
+        let t6 = inv_pivot_2 * t3 - l_3_2 * t5;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t6 - l_3_1 * t5, t6, t5])
+    }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
@@ -9976,7 +12148,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 623 operations (267 additions, 344 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 638 intermediates.
+    /// 580 operations (238 additions, 332 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 12 signs, 16 guards, 583 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10275,73 +12447,40 @@ impl DualV {
             - inv_r_p_a_arm_y_leg3 * first_x_platform;
         let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
             - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
-        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        let t1 = g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3;
+        let t2 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let det_ja = g1_wz_leg3 * t2;
         ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
         ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        let half_per_det_ja = 0.5 / det_ja;
+        let vx_by_a1 = t1 * half_per_det_ja;
         let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let force_y_platform = acceleration[1] * mass_platform
             - (inv_r_p_a_arm_x_leg1 * first_x_platform
                 + inv_r_p_a_arm_y_leg3 * first_y_platform);
-        let t1 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
-            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
-            - t1_platform * l_2_1;
-        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
-        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
-        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let l_3_1 = s_1_3 * inv_pivot_1;
-        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
-        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_3 = 1.0 / pivot_3;
+        let t2_platform = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform;
+        let t3 = g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3;
+        let minus_vy_by_a1 = t3 * half_per_det_ja;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
         let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
@@ -10350,41 +12489,51 @@ impl DualV {
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
             + tau_3_leg3;
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
+        let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         let inertia_zz_platform = parameters[60] + parameters[64];
         let moment_z_platform = acceleration[1]
             * (c_phi * first_x_platform - s_phi * first_y_platform)
             - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
             + acceleration[2] * inertia_zz_platform;
-        let t2 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
-            - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
-            - t1_platform * l_3_1 - l_3_2 * t1;
-        let t3 = inv_pivot_3 * t2;
-        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
-        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
-        let g1_vy_minus_g1_vx_l_2_1_leg4 = minus_g1_vx_leg4 * l_2_1 - minus_g1_vy_leg4;
-        let t6 = inv_pivot_3
-            * (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
-                - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4);
-        let t7 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t6;
-        let t8 = minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t7 + l_3_1 * t6;
-        let minus_normal_1_1 = g1_vy_leg1 * t7 - g1_vx_leg1 * t8 - minus_g1_wz_leg1 * t6;
-        let normal_4_1 = 1.0
-            - (minus_g1_vx_leg4 * t8 - minus_g1_vy_leg4 * t7 - minus_g1_wz_leg4 * t6);
-        let norm_1 = ::overact::math::sqrt(normal_4_1);
-        ::overact::guard::platform(norm_1, 0.5, ::overact::ActuatorGroup::All)?;
-        let inv_norm_1 = 1.0 / norm_1;
-        let minus_normal_2_1 = minus_g1_vx_leg2 * t8 - minus_g1_vy_leg2 * t7
-            + g1_wz_leg2 * t6;
-        let minus_normal_3_1 = g1_vy_leg3 * t7 - g1_vx_leg3 * t8 + g1_wz_leg3 * t6;
+        let t3_platform = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
+            - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform;
+        let t4 = minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3;
+        let wz_by_a1 = t4 * half_per_det_ja;
+        let t5 = t1_platform * vx_by_a1 - t2_platform * minus_vy_by_a1
+            + t3_platform * wz_by_a1;
+        let t6 = minus_g1_vy_leg4 * half_per_det_ja;
+        let t7 = minus_g1_vx_leg4 * half_per_det_ja;
+        let t8 = minus_g1_wz_leg4 * half_per_det_ja;
+        let share_1_4 = t3 * t6 - t1 * t7 - t4 * t8;
+        let t9 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
+        let t10 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t11 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
+        let share_2_4 = t9 * t6 - t10 * t7 + t11 * t8;
+        let wz_by_a3 = t2 * half_per_det_ja;
+        let minus_share_3_4 = 2.0 * (minus_g1_wz_leg4 * wz_by_a3);
+        let norm_4 = ::overact::math::sqrt(
+            1.0 + share_1_4 * share_1_4 + share_2_4 * share_2_4
+                + minus_share_3_4 * minus_share_3_4,
+        );
+        ::overact::guard::platform(norm_4, 2.0, ::overact::ActuatorGroup::All)?;
+        let inv_norm_4 = 1.0 / norm_4;
+        let share_1_4_inv_norm_4 = share_1_4 * inv_norm_4;
+        let share_2_4_inv_norm_4 = share_2_4 * inv_norm_4;
+        let vx_by_a2 = t10 * half_per_det_ja;
+        let minus_vy_by_a2 = t9 * half_per_det_ja;
+        let minus_wz_by_a2 = t11 * half_per_det_ja;
+        let t12 = t1_platform * vx_by_a2 - t2_platform * minus_vy_by_a2
+            - t3_platform * minus_wz_by_a2;
+        let minus_share_3_4_inv_norm_4 = minus_share_3_4 * inv_norm_4;
+        let vx_by_a3 = p_y_leg1 * wz_by_a3;
+        let vy_by_a3 = p_x_leg3 * wz_by_a3;
+        let t13 = t1_platform * vx_by_a3 + t2_platform * vy_by_a3
+            + t3_platform * wz_by_a3;
+        let t14 = preload[0] + share_1_4_inv_norm_4 * t5 + share_2_4_inv_norm_4 * t12
+            - minus_share_3_4_inv_norm_4 * t13;
         ::core::result::Result::Ok([
-            g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3
-                - preload[0] * (minus_normal_1_1 * inv_norm_1),
-            g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4)
-                - preload[0] * (minus_normal_2_1 * inv_norm_1),
-            g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3
-                - preload[0] * (minus_normal_3_1 * inv_norm_1),
-            preload[0] * (normal_4_1 * inv_norm_1)
-                - (minus_g1_vx_leg4 * t5 + minus_g1_vy_leg4 * t4 + minus_g1_wz_leg4 * t3),
+            t5 - share_1_4_inv_norm_4 * t14, t12 - share_2_4_inv_norm_4 * t14,
+            t13 + minus_share_3_4_inv_norm_4 * t14, inv_norm_4 * t14,
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
@@ -10395,7 +12544,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 193 intermediates.
+    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 15 guards, 1 negation, 193 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10540,7 +12689,7 @@ impl DualV {
     ///
     /// Output: 4 x 1.
     ///
-    /// 176 operations (67 additions, 97 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 0 signs, 179 intermediates.
+    /// 135 operations (47 additions, 78 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 16 guards, 3 negations, 138 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10554,13 +12703,51 @@ impl DualV {
         const R_P: ::core::primitive::f64 = 0.11;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- leg1
+        let p_x_leg3 = R_P * s_phi;
         let p_y_leg1 = R_P * c_phi;
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let p_x_leg3 = R_P * s_phi;
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
+        // --- leg2
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        // --- leg1
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
@@ -10569,114 +12756,60 @@ impl DualV {
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
-        // --- leg2
-        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
-        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let k1_leg2 = 1.0 / det_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
-        // --- leg3
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_y_leg3 = half_d_y_leg3 + d_x_leg3 * h_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        let k1_leg3 = 1.0 / det_leg3;
-        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
-        // --- leg4
-        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
-        let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let k1_leg4 = 1.0 / det_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
+        let t1 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
+        let t2 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
+        let det_ja = g1_vx_leg3 * t1 - g1_vy_leg3 * t2;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            3.5376915986291904,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        let half_per_det_ja = 0.5 / det_ja;
+        let t3 = minus_g1_vy_leg4 * half_per_det_ja;
         let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let g1_vy_minus_g1_vx_l_2_1_leg4 = minus_g1_vx_leg4 * l_2_1 - minus_g1_vy_leg4;
-        let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
-        let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
+        let t4 = minus_g1_vx_leg4 * half_per_det_ja;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let s_2_3 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4;
-        let s_1_3 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let l_3_1 = s_1_3 * inv_pivot_1;
-        let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
-        let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
-        let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(
-            pivot_3,
-            0.3076928490286828,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t1 = (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
-            - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4) / pivot_3;
-        let t2 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t1;
-        let t3 = minus_g1_vx_leg4 * inv_pivot_1 + l_2_1 * t2 + l_3_1 * t1;
-        let minus_normal_1_1 = g1_vy_leg1 * t2 - g1_vx_leg1 * t3 - minus_g1_wz_leg1 * t1;
-        let normal_4_1 = 1.0
-            - (minus_g1_vx_leg4 * t3 - minus_g1_vy_leg4 * t2 - minus_g1_wz_leg4 * t1);
-        let norm_1 = ::overact::math::sqrt(normal_4_1);
-        ::overact::guard::platform(norm_1, 0.5, ::overact::ActuatorGroup::All)?;
-        let inv_norm_1 = 1.0 / norm_1;
-        let minus_normal_2_1 = minus_g1_vx_leg2 * t3 - minus_g1_vy_leg2 * t2
-            + g1_wz_leg2 * t1;
-        let minus_normal_3_1 = g1_vy_leg3 * t2 - g1_vx_leg3 * t3 + g1_wz_leg3 * t1;
+        let t5 = minus_g1_wz_leg4 * half_per_det_ja;
+        let share_1_4 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t3
+            - (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t4
+            - (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t5;
+        let share_2_4 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t3
+            - (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t4
+            + (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t5;
+        let share_3_4 = 2.0 * (t2 * t3 - t1 * t4);
+        let norm_4 = ::overact::math::sqrt(
+            1.0 + share_1_4 * share_1_4 + share_2_4 * share_2_4 + share_3_4 * share_3_4,
+        );
+        ::overact::guard::platform(norm_4, 2.0, ::overact::ActuatorGroup::All)?;
+        let inv_norm_4 = 1.0 / norm_4;
         ::core::result::Result::Ok([
-            [-(minus_normal_1_1 * inv_norm_1)], [-(minus_normal_2_1 * inv_norm_1)],
-            [-(minus_normal_3_1 * inv_norm_1)], [normal_4_1 * inv_norm_1],
+            [-(share_1_4 * inv_norm_4)], [-(share_2_4 * inv_norm_4)], [-(share_3_4 * inv_norm_4)],
+            [inv_norm_4],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
@@ -10887,7 +13020,7 @@ impl ::overact::Model for DualV {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::project_actuators(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::InverseDynamics => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::inverse_dynamics(
                         row.row(0)?,
@@ -10896,17 +13029,43 @@ impl ::overact::Model for DualV {
                         row.row(3)?,
                     ))
             }
-            ::overact::Function::MassMatrix => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::MassMatrix(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::Bias => {
+            ::overact::Function::MassMatrix(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix_base(row.row(0)?, row.row(1)?))
+            }
+            ::overact::Function::Bias(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
             }
-            ::overact::Function::ForwardDynamics => {
+            ::overact::Function::Bias(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias_base(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics_base(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,

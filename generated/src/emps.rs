@@ -5,6 +5,32 @@
 /// 1 legs, 1 joints, 1 actuators, 1 degrees of freedom; 5 standard parameters, 4 base parameters.
 /// Source: Janot, Gautier, Brunot, Workshop on Nonlinear System Identification Benchmarks 2019.
 ///
+/// # Operations
+///
+/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+///
+/// | function | once | each step |
+/// |---|---|---|
+/// | `joints` | 0 |  |
+/// | `actuator_positions` | 0 |  |
+/// | `inverse_jacobian` | 0 |  |
+/// | `joint_velocities` | 0 |  |
+/// | `joint_accelerations` | 0 |  |
+/// | `twist_from_actuators` | 0 |  |
+/// | `acceleration_from_actuators` | 0 |  |
+/// | `idm_red_platform` | 0, 1 sg |  |
+/// | `idm_red_platform_base` | 0, 1 sg |  |
+/// | `project_platform` | 0 |  |
+/// | `inverse_dynamics` | 8, 1 sg |  |
+/// | `inverse_dynamics_base` | 6, 1 sg |  |
+/// | `mass_matrix` | 1 |  |
+/// | `mass_matrix_base` | 0 |  |
+/// | `bias` | 4, 1 sg |  |
+/// | `bias_base` | 4, 1 sg |  |
+/// | `forward_dynamics` | 7, 1 sg, 1 gd |  |
+/// | `forward_dynamics_base` | 6, 1 sg, 1 gd |  |
+/// | `project_torques` | 0 |  |
+///
 /// # Names
 ///
 /// | name | symbol | meaning |
@@ -93,7 +119,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -110,7 +136,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -127,7 +153,7 @@ impl Emps {
     ///
     /// Output: 1 x 1.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -145,7 +171,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -167,7 +193,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -192,7 +218,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -214,7 +240,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -241,7 +267,7 @@ impl Emps {
     /// Output: 1 x 5.
     /// Columns: `PARAMETERS`.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
+    /// 0 operations, 1 sign.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -273,7 +299,7 @@ impl Emps {
     /// Output: 1 x 4.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
+    /// 0 operations, 1 sign.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -303,7 +329,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -324,7 +350,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 7 operations (4 additions, 3 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 7 intermediates.
+    /// 8 operations (4 additions, 4 multiplications, 0 divisions), 1 sign, 7 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -348,6 +374,39 @@ impl Emps {
         let force_on_u1_axis = force1_z_axis + tau_1_axis;
         ::core::result::Result::Ok([force_on_u1_axis])
     }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `joint_velocities`: velocities of the joints (m/s, rad/s)
+    /// - `joint_accelerations`: accelerations of the joints (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 1.
+    ///
+    /// 6 operations (3 additions, 3 multiplications, 0 divisions), 1 sign, 5 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn inverse_dynamics_base(
+        joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        joint_accelerations: &[::core::primitive::f64; 1],
+        base_parameters: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations), ("base_parameters", base_parameters),
+            ],
+        )?;
+        let force1_z_axis = joint_accelerations[0] * base_parameters[0];
+        let tau_1_axis = joint_velocities[0] * base_parameters[1]
+            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
+            + base_parameters[3];
+        let force_on_u1_axis = force1_z_axis + tau_1_axis;
+        ::core::result::Result::Ok([force_on_u1_axis])
+    }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the joints' positions and rates.
@@ -356,7 +415,7 @@ impl Emps {
     ///
     /// Output: 1 x 1.
     ///
-    /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 1 operation (1 addition, 0 multiplications, 0 divisions).
     ///
     /// # Errors
     /// An input that is not finite.
@@ -369,6 +428,27 @@ impl Emps {
         let masses_axis_1_1 = parameters[0] + parameters[1];
         ::core::result::Result::Ok([[masses_axis_1_1]])
     }
+    /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 1 x 1.
+    ///
+    /// 0 operations.
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn mass_matrix_base(
+        joints: &[::core::primitive::f64; 1],
+        base_parameters: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("joints", joints), ("base_parameters", base_parameters)],
+        )?;
+        ::core::result::Result::Ok([[base_parameters[0]]])
+    }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the joints' positions and rates.
@@ -378,7 +458,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 3 operations (2 additions, 1 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 3 intermediates.
+    /// 4 operations (2 additions, 2 multiplications, 0 divisions), 1 sign, 3 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -398,6 +478,35 @@ impl Emps {
             + parameters[4];
         ::core::result::Result::Ok([tau_1_axis])
     }
+    /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `joint_velocities`: velocities of the joints (m/s, rad/s)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 1.
+    ///
+    /// 4 operations (2 additions, 2 multiplications, 0 divisions), 1 sign, 3 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn bias_base(
+        joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        base_parameters: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        let tau_1_axis = joint_velocities[0] * base_parameters[1]
+            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
+            + base_parameters[3];
+        ::core::result::Result::Ok([tau_1_axis])
+    }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
     /// From the joints' positions and rates.
@@ -408,7 +517,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 6 operations (4 additions, 1 multiplications, 1 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 6 intermediates.
+    /// 7 operations (4 additions, 2 multiplications, 1 division), 1 sign, 1 guard, 6 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -432,6 +541,38 @@ impl Emps {
         ::overact::guard::mass(masses_axis_1_1)?;
         ::core::result::Result::Ok([(torques[0] - tau_1_axis) / masses_axis_1_1])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `joint_velocities`: velocities of the joints (m/s, rad/s)
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 1.
+    ///
+    /// 6 operations (3 additions, 2 multiplications, 1 division), 1 sign, 1 guard, 5 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics_base(
+        joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 1],
+        base_parameters: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities), ("torques", torques),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        ::overact::guard::mass(base_parameters[0])?;
+        let tau_1_axis = joint_velocities[0] * base_parameters[1]
+            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
+            + base_parameters[3];
+        ::core::result::Result::Ok([(torques[0] - tau_1_axis) / base_parameters[0]])
+    }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
     /// From the joints' positions and rates.
@@ -440,7 +581,7 @@ impl Emps {
     ///
     /// Output: 1.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -554,7 +695,7 @@ impl ::overact::Model for Emps {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::project_platform(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::InverseDynamics => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::inverse_dynamics(
                         row.row(0)?,
@@ -563,17 +704,43 @@ impl ::overact::Model for Emps {
                         row.row(3)?,
                     ))
             }
-            ::overact::Function::MassMatrix => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::MassMatrix(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::Bias => {
+            ::overact::Function::MassMatrix(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix_base(row.row(0)?, row.row(1)?))
+            }
+            ::overact::Function::Bias(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
             }
-            ::overact::Function::ForwardDynamics => {
+            ::overact::Function::Bias(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias_base(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics_base(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,

@@ -5,6 +5,54 @@
 /// 2 legs, 4 joints, 2 actuators, 2 degrees of freedom; 25 standard parameters, 19 base parameters.
 /// Source: Five-bar linkage; dimensions and masses assumed.
 ///
+/// # Operations
+///
+/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+///
+/// | function | once | each step |
+/// |---|---|---|
+/// | `pose_in_closed_form` | 22, 1 √, 2 sc, 2 gd |  |
+/// | `joints` | 63, 2 √, 4 at, 4 gd |  |
+/// | `actuator_positions` | 45, 2 √, 2 at, 4 gd |  |
+/// | `inverse_jacobian` | 43, 2 √, 6 gd |  |
+/// | `inverse_jacobian_from_joints` | 8, 4 sc, 2 gd |  |
+/// | `jacobian` | 69, 2 √, 8 gd |  |
+/// | `legs_jacobian_from_joints` | 14, 4 sc |  |
+/// | `legs_platform_jacobian_from_joints` | 0 |  |
+/// | `closure_platform_jacobian_from_joints` | 6, 2 sc |  |
+/// | `closure_actuator_jacobian_from_joints` | 2, 2 sc |  |
+/// | `joint_velocities` | 61, 2 √, 6 gd |  |
+/// | `joint_accelerations` | 101, 2 √, 6 gd |  |
+/// | `twist_from_actuators` | 68, 2 √, 8 gd |  |
+/// | `acceleration_from_actuators` | 102, 2 √, 8 gd |  |
+/// | `idm_red_platform` | 194, 2 √, 4 sg, 6 gd |  |
+/// | `idm_red_platform_from_joints` | 161, 4 sc, 4 sg, 2 gd |  |
+/// | `idm_red_platform_from_actuators` | 235, 3 √, 2 sc, 4 sg, 12 gd |  |
+/// | `idm_red_actuators` | 182, 2 √, 4 sg, 8 gd |  |
+/// | `idm_red_actuators_from_joints` | 155, 4 sc, 4 sg, 4 gd |  |
+/// | `idm_red_actuators_from_actuators` | 230, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `idm_red_platform_base` | 166, 2 √, 4 sg, 6 gd |  |
+/// | `idm_red_platform_base_from_joints` | 129, 4 sc, 4 sg, 2 gd |  |
+/// | `idm_red_platform_base_from_actuators` | 208, 3 √, 2 sc, 4 sg, 12 gd |  |
+/// | `idm_red_actuators_base` | 164, 2 √, 4 sg, 8 gd |  |
+/// | `idm_red_actuators_base_from_joints` | 137, 4 sc, 4 sg, 4 gd |  |
+/// | `idm_red_actuators_base_from_actuators` | 212, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `project_platform` | 49, 2 √, 6 gd |  |
+/// | `project_actuators` | 0 |  |
+/// | `inverse_dynamics` | 243, 2 √, 4 sg, 8 gd |  |
+/// | `inverse_dynamics_from_joints` | 212, 4 sc, 4 sg, 4 gd |  |
+/// | `inverse_dynamics_from_actuators` | 278, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `inverse_dynamics_base` | 213, 2 √, 4 sg, 8 gd |  |
+/// | `inverse_dynamics_base_from_joints` | 182, 4 sc, 4 sg, 4 gd |  |
+/// | `inverse_dynamics_base_from_actuators` | 248, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `mass_matrix` | 114, 2 √, 6 gd |  |
+/// | `mass_matrix_base` | 100, 2 √, 6 gd |  |
+/// | `bias` | 199, 2 √, 4 sg, 6 gd |  |
+/// | `bias_base` | 169, 2 √, 4 sg, 6 gd |  |
+/// | `forward_dynamics` | 274, 2 √, 4 sg, 8 gd |  |
+/// | `forward_dynamics_base` | 236, 2 √, 4 sg, 8 gd |  |
+/// | `project_torques` | 0 |  |
+///
 /// # Names
 ///
 /// | name | symbol | meaning |
@@ -33,6 +81,7 @@
 /// | `a_on_f1_left` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
 /// | `bias_a_on_f1_left` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
 /// | `a1_x_left` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
+/// | `v2_by_1_y_left` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `force2_x_left` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
 /// | `moment2_z_left` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_left` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
@@ -188,7 +237,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 22 operations (10 additions, 11 multiplications, 1 divisions), 1 square roots, 2 trigonometric pairs, 0 signs, 25 intermediates.
+    /// 22 operations (10 additions, 11 multiplications, 1 division), 1 square root, 2 trigonometric pairs, 2 guards, 25 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -235,7 +284,7 @@ impl FiveBar {
     ///
     /// Output: 4.
     ///
-    /// 63 operations (26 additions, 35 multiplications, 2 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 67 intermediates.
+    /// 63 operations (26 additions, 35 multiplications, 2 divisions), 2 square roots, 4 arc tangents, 4 guards, 2 negations, 67 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -302,7 +351,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 45 operations (18 additions, 25 multiplications, 2 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 48 intermediates.
+    /// 45 operations (18 additions, 25 multiplications, 2 divisions), 2 square roots, 2 arc tangents, 4 guards, 1 negation, 48 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -357,7 +406,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 43 operations (16 additions, 23 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 41 intermediates.
+    /// 43 operations (16 additions, 23 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 41 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -420,7 +469,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 8 operations (2 additions, 4 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 10 intermediates.
+    /// 8 operations (2 additions, 4 multiplications, 2 divisions), 4 trigonometric pairs, 2 guards, 10 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -457,7 +506,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 69 operations (24 additions, 39 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 67 intermediates.
+    /// 69 operations (24 additions, 39 multiplications, 6 divisions), 2 square roots, 8 guards, 1 negation, 67 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -543,7 +592,7 @@ impl FiveBar {
     ///
     /// Output: 4 x 4.
     ///
-    /// 14 operations (6 additions, 8 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 14 intermediates.
+    /// 14 operations (6 additions, 8 multiplications, 0 divisions), 4 trigonometric pairs, 4 negations, 14 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -582,7 +631,7 @@ impl FiveBar {
     ///
     /// Output: 4 x 2.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -601,7 +650,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 6 operations (2 additions, 4 multiplications, 0 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 6 intermediates.
+    /// 6 operations (2 additions, 4 multiplications, 0 divisions), 2 trigonometric pairs, 6 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -630,7 +679,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 2 operations (0 additions, 2 multiplications, 0 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 2 intermediates.
+    /// 2 operations (0 additions, 2 multiplications, 0 divisions), 2 trigonometric pairs, 2 negations, 2 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -657,7 +706,7 @@ impl FiveBar {
     ///
     /// Output: 4.
     ///
-    /// 61 operations (22 additions, 35 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 59 intermediates.
+    /// 61 operations (22 additions, 35 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 59 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -734,7 +783,7 @@ impl FiveBar {
     ///
     /// Output: 4.
     ///
-    /// 101 operations (36 additions, 61 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 99 intermediates.
+    /// 101 operations (36 additions, 61 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 99 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -837,7 +886,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 68 operations (24 additions, 38 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 68 intermediates.
+    /// 68 operations (24 additions, 38 multiplications, 6 divisions), 2 square roots, 8 guards, 68 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -922,7 +971,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 102 operations (34 additions, 62 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 102 intermediates.
+    /// 102 operations (34 additions, 62 multiplications, 6 divisions), 2 square roots, 8 guards, 102 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1040,7 +1089,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 188 operations (59 additions, 123 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 153 intermediates.
+    /// 194 operations (55 additions, 132 multiplications, 7 divisions), 2 square roots, 4 signs, 6 guards, 10 negations, 152 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1054,6 +1103,8 @@ impl FiveBar {
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// 1 / l_1²
         const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
         /// 1 / l_2
@@ -1097,9 +1148,10 @@ impl FiveBar {
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
         let minus_rate_dot_1_left = k_left
-            * (a_on_f1_left + rate_1_squared_left * t2_left);
+            * (a_on_f1_left + rate_1_squared_left * t3_left);
         let zz_1_left_on_vx = minus_g1_vx_left * minus_rate_dot_1_left;
         let zz_1_left_on_vy = minus_g1_vy_left * minus_rate_dot_1_left;
         let a1_y_left = 49.05 * l1_x_left;
@@ -1107,24 +1159,23 @@ impl FiveBar {
         let minus_a_on_f2_left = l1_x_left * acceleration[0]
             + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
         let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
         let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
         let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
         let inv_l_2_dvx = INV_L_2 * acceleration[0];
         let a1_y_plus_l_1_rate_dot_1_left = a1_y_left - L_1 * minus_rate_dot_1_left;
-        let t3_left = L_1 * a1_y_plus_l_1_rate_dot_1_left;
-        let minus_m_2_left_on_vx = minus_g1_vx_left * t3_left;
+        let t4_left = L_1 * a1_y_plus_l_1_rate_dot_1_left;
+        let minus_m_2_left_on_vx = minus_g1_vx_left * t4_left;
         let m_platform_on_vy = acceleration[1] + 9.81;
         let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
-        let minus_m_2_left_on_vy = minus_g1_vy_left * t3_left;
+        let minus_m_2_left_on_vy = minus_g1_vy_left * t4_left;
         let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
-        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
+        let c2_left = INV_HALF * t2_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
-        let gq2_vx_left = minus_g1_vx_left + g2_vx_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
-        let gq2_vy_left = minus_g1_vy_left + g2_vy_left;
+        let t5_left = ::overact::math::signed(k_left, qd_2_left);
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1151,9 +1202,10 @@ impl FiveBar {
         let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
         let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t2_right);
+            * (a_on_f1_right + rate_1_squared_right * t3_right);
         let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
         let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
         let a1_y_right = 49.05 * l1_x_right;
@@ -1161,21 +1213,20 @@ impl FiveBar {
         let minus_a_on_f2_right = l1_x_right * acceleration[0]
             + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
         let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
         let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
         let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
         let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-        let t3_right = L_1 * a1_y_plus_l_1_rate_dot_1_right;
-        let m_2_right_on_vx = g1_vx_right * t3_right;
-        let m_2_right_on_vy = g1_vy_right * t3_right;
+        let t4_right = L_1 * a1_y_plus_l_1_rate_dot_1_right;
+        let m_2_right_on_vx = g1_vx_right * t4_right;
+        let m_2_right_on_vy = g1_vy_right * t4_right;
         let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
-        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
+        let c2_right = INV_HALF * t2_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-        let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
+        let t5_right = ::overact::math::sign(minus_qd_2_right) / det_right;
         ::core::result::Result::Ok([
             [
                 zz_1_left_on_vx, -(minus_g1_vx_left * a1_y_left), minus_g1_vx_left * a1_x_left,
@@ -1189,7 +1240,7 @@ impl FiveBar {
                 -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
                     + g2_vx_left * a2_x_left),
                 -minus_m_2_left_on_vx,
-                ::overact::math::signed(gq2_vx_left, qd_2_left),
+                d_x_left * t5_left,
                 zz_1_right_on_vx,
                 g1_vx_right * a1_y_right,
                 -(g1_vx_right * a1_x_right),
@@ -1205,7 +1256,7 @@ impl FiveBar {
                 g1_vx_right * minus_inv_l_2_a_on_f2_right
                     + minus_g2_vx_right * a2_x_right,
                 m_2_right_on_vx,
-                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
+                d_x_right * t5_right,
                 acceleration[0],
             ],
             [
@@ -1220,7 +1271,7 @@ impl FiveBar {
                 -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
                     + g2_vy_left * a2_x_left),
                 -minus_m_2_left_on_vy,
-                ::overact::math::signed(gq2_vy_left, qd_2_left),
+                pose[1] * t5_left,
                 zz_1_right_on_vy,
                 g1_vy_right * a1_y_right,
                 -(g1_vy_right * a1_x_right),
@@ -1236,7 +1287,7 @@ impl FiveBar {
                 g1_vy_right * minus_inv_l_2_a_on_f2_right
                     + minus_g2_vy_right * a2_x_right,
                 m_2_right_on_vy,
-                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
+                pose[1] * t5_right,
                 m_platform_on_vy,
             ],
         ])
@@ -1252,7 +1303,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 153 operations (43 additions, 108 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 124 intermediates.
+    /// 161 operations (43 additions, 116 multiplications, 2 divisions), 4 trigonometric pairs, 4 signs, 2 guards, 4 negations, 124 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1440,7 +1491,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 202 operations (63 additions, 118 multiplications, 21 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 166 intermediates.
+    /// 235 operations (73 additions, 144 multiplications, 18 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 12 guards, 18 negations, 195 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1459,8 +1510,6 @@ impl FiveBar {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// 1 / l_1²
         const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
         /// 1 / l_2
@@ -1487,21 +1536,21 @@ impl FiveBar {
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let g2_vx_left = l1_x_left / det_left;
-        let gq2_vx_left = d_x_left / det_left;
-        let minus_g1_vx_left = gq2_vx_left - g2_vx_left;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
         let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let g2_vy_left = l1_y_left / det_left;
-        let gq2_vy_left = pose[1] / det_left;
-        let minus_g1_vy_left = gq2_vy_left - g2_vy_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
         let minus_fv_1_left_on_vx = minus_g1_vx_left * actuator_velocities[0];
         let minus_fv_1_left_on_vy = minus_g1_vy_left * actuator_velocities[0];
+        let g2_vx_left = l1_x_left * k_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
@@ -1511,11 +1560,11 @@ impl FiveBar {
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let g1_vx_right = l2_x_right / det_right;
         let minus_g2_vx_right = l1_x_right / det_right;
-        let minus_gq2_vx_right = d_x_right / det_right;
-        let g1_vx_right = minus_gq2_vx_right - minus_g2_vx_right;
         let fv_1_right_on_vx = g1_vx_right * actuator_velocities[1];
         let t1 = fv_1_right_on_vx - minus_fv_1_left_on_vx;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
@@ -1525,9 +1574,8 @@ impl FiveBar {
             ::overact::ActuatorGroup::All,
         )?;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right / det_right;
-        let minus_gq2_vy_right = pose[1] / det_right;
-        let g1_vy_right = minus_gq2_vy_right - minus_g2_vy_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right / det_right;
         let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
         let l_2_1 = s_1_2 / s_1_1;
         let fv_1_right_on_vy = g1_vy_right * actuator_velocities[1];
@@ -1550,25 +1598,25 @@ impl FiveBar {
         )?;
         let vy = (fv_1_right_on_vy - minus_fv_1_left_on_vy - t1 * l_2_1) / pivot_2;
         let vx = t1 / s_1_1 - l_2_1 * vy;
+        let minus_g2_vy_right = l1_y_right / det_right;
         let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = (bias_a_on_f1_right
-            + rate_1_squared_right * t3_right) / det_right;
+            + rate_1_squared_right * t2_right) / det_right;
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
             - bias_rate_dot_1_right;
         // --- left
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
-        let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
-            + rate_1_squared_left * t3_left) / det_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
         let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
@@ -1579,24 +1627,25 @@ impl FiveBar {
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
         let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
             + minus_bias_a_on_f2_left;
-        let rate_dot_2_left = (minus_a_on_f2_left + rate_2_squared_left * t3_left)
-            / det_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
         let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
         let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
         let inv_l_2_dvx = INV_L_2 * dvx;
         let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
             + L_1 * actuator_accelerations[0];
-        let t4_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
-        let minus_m_2_left_on_vx = minus_g1_vx_left * t4_left;
+        let t3_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
+        let minus_m_2_left_on_vx = minus_g1_vx_left * t3_left;
         let m_platform_on_vy = dvy + 9.81;
         let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
-        let minus_m_2_left_on_vy = minus_g1_vy_left * t4_left;
+        let minus_m_2_left_on_vy = minus_g1_vy_left * t3_left;
         let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
-        let c2_left = INV_HALF * t2_left;
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
         let qd_2_left = rate_2_left - actuator_velocities[0];
+        let t4_left = ::overact::math::signed(k_left, qd_2_left);
         // --- right
         let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
         let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
@@ -1606,20 +1655,21 @@ impl FiveBar {
         let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
             + minus_bias_a_on_f2_right;
         let minus_rate_dot_2_right = (minus_a_on_f2_right
-            + rate_2_squared_right * t3_right) / det_right;
+            + rate_2_squared_right * t2_right) / det_right;
         let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
         let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
         let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
             + L_1 * actuator_accelerations[1];
-        let t4_right = L_1 * bias_a1_y_plus_l_1_qdd1_right;
-        let m_2_right_on_vx = g1_vx_right * t4_right;
-        let m_2_right_on_vy = g1_vy_right * t4_right;
+        let t3_right = L_1 * bias_a1_y_plus_l_1_qdd1_right;
+        let m_2_right_on_vx = g1_vx_right * t3_right;
+        let m_2_right_on_vy = g1_vy_right * t3_right;
         let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
-        let c2_right = INV_HALF * t2_right;
+        let c2_right = t2_right * L_1_PER_HALF_SQUARED;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * bias_a1_y_plus_l_1_qdd1_right;
         let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
+        let t4_right = ::overact::math::sign(minus_qd_2_right) / det_right;
         ::core::result::Result::Ok([
             [
                 -minus_zz_1_left_on_vx, -(minus_g1_vx_left * bias_a1_y_left),
@@ -1633,7 +1683,7 @@ impl FiveBar {
                 -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
                     + g2_vx_left * a2_x_left),
                 -minus_m_2_left_on_vx,
-                ::overact::math::signed(gq2_vx_left, qd_2_left),
+                d_x_left * t4_left,
                 zz_1_right_on_vx,
                 g1_vx_right * bias_a1_y_right,
                 -(g1_vx_right * bias_a1_x_right),
@@ -1649,7 +1699,7 @@ impl FiveBar {
                 g1_vx_right * minus_inv_l_2_a_on_f2_right
                     + minus_g2_vx_right * a2_x_right,
                 m_2_right_on_vx,
-                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
+                d_x_right * t4_right,
                 dvx,
             ],
             [
@@ -1664,7 +1714,7 @@ impl FiveBar {
                 -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
                     + g2_vy_left * a2_x_left),
                 -minus_m_2_left_on_vy,
-                ::overact::math::signed(gq2_vy_left, qd_2_left),
+                pose[1] * t4_left,
                 zz_1_right_on_vy,
                 g1_vy_right * bias_a1_y_right,
                 -(g1_vy_right * bias_a1_x_right),
@@ -1680,7 +1730,7 @@ impl FiveBar {
                 g1_vy_right * minus_inv_l_2_a_on_f2_right
                     + minus_g2_vy_right * a2_x_right,
                 m_2_right_on_vy,
-                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
+                pose[1] * t4_right,
                 m_platform_on_vy,
             ],
         ])
@@ -1695,7 +1745,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 178 operations (58 additions, 115 multiplications, 5 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 156 intermediates.
+    /// 182 operations (58 additions, 119 multiplications, 5 divisions), 2 square roots, 4 signs, 8 guards, 12 negations, 156 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1904,7 +1954,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 151 operations (46 additions, 102 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 135 intermediates.
+    /// 155 operations (46 additions, 106 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 12 negations, 135 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2088,7 +2138,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 204 operations (66 additions, 131 multiplications, 7 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 186 intermediates.
+    /// 230 operations (76 additions, 146 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 8 negations, 211 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2341,7 +2391,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 160 operations (51 additions, 103 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 133 intermediates.
+    /// 166 operations (47 additions, 113 multiplications, 6 divisions), 2 square roots, 4 signs, 6 guards, 8 negations, 131 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2454,12 +2504,10 @@ impl FiveBar {
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-        let gq2_vx_left = minus_g1_vx_left + g2_vx_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
-        let gq2_vy_left = minus_g1_vy_left + g2_vy_left;
-        let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
+        let t4_left = ::overact::math::signed(k_left, qd_2_left);
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
+        let t4_right = ::overact::math::signed(k_right, minus_qd_2_right);
         ::core::result::Result::Ok([
             [
                 acceleration[0], minus_g1_vx_left * minus_rate_dot_1_left,
@@ -2473,8 +2521,8 @@ impl FiveBar {
                     + g2_vx_left * a2_x_left),
                 g1_vx_right * minus_inv_l_2_a_on_f2_right
                     + minus_g2_vx_right * a2_x_right,
-                ::overact::math::signed(gq2_vx_left, qd_2_left),
-                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
+                d_x_left * t4_left,
+                d_x_right * t4_right,
             ],
             [
                 acceleration[1] + 9.81, minus_g1_vy_left * minus_rate_dot_1_left,
@@ -2488,8 +2536,8 @@ impl FiveBar {
                     + g2_vy_left * a2_x_left),
                 g1_vy_right * minus_inv_l_2_a_on_f2_right
                     + minus_g2_vy_right * a2_x_right,
-                ::overact::math::signed(gq2_vy_left, qd_2_left),
-                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
+                pose[1] * t4_left,
+                pose[1] * t4_right,
             ],
         ])
     }
@@ -2504,7 +2552,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 121 operations (33 additions, 86 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 100 intermediates.
+    /// 129 operations (33 additions, 94 multiplications, 2 divisions), 4 trigonometric pairs, 4 signs, 2 guards, 4 negations, 100 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2641,7 +2689,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 176 operations (55 additions, 109 multiplications, 12 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 148 intermediates.
+    /// 208 operations (65 additions, 131 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 12 guards, 14 negations, 175 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2680,11 +2728,11 @@ impl FiveBar {
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
         let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
         let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_gq2_vx_right = d_x_right * k_right;
-        let g1_vx_right = minus_gq2_vx_right - minus_g2_vx_right;
         let fv_1_right_on_vx = g1_vx_right * actuator_velocities[1];
         // --- left
         let d_x_left = pose[0] + HALF;
@@ -2695,15 +2743,14 @@ impl FiveBar {
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         ::overact::guard::reach(h_squared_right, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let gq2_vx_left = d_x_left * k_left;
-        let minus_g1_vx_left = gq2_vx_left - g2_vx_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
         let minus_fv_1_left_on_vx = minus_g1_vx_left * actuator_velocities[0];
         let t1 = fv_1_right_on_vx - minus_fv_1_left_on_vx;
         let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
@@ -2713,14 +2760,11 @@ impl FiveBar {
             ::overact::ActuatorGroup::All,
         )?;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let gq2_vy_left = pose[1] * k_left;
-        let minus_g1_vy_left = gq2_vy_left - g2_vy_left;
-        // --- right
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_gq2_vy_right = pose[1] / det_right;
-        let g1_vy_right = minus_gq2_vy_right - minus_g2_vy_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
         let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
         let l_2_1 = s_1_2 / s_1_1;
         let fv_1_right_on_vy = g1_vy_right * actuator_velocities[1];
@@ -2744,6 +2788,8 @@ impl FiveBar {
         )?;
         let vy = (fv_1_right_on_vy - minus_fv_1_left_on_vy - t1 * l_2_1) / pivot_2;
         let vx = t1 / s_1_1 - l_2_1 * vy;
+        // --- right
+        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
@@ -2754,6 +2800,8 @@ impl FiveBar {
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
             - bias_rate_dot_1_right;
         // --- left
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
@@ -2794,7 +2842,9 @@ impl FiveBar {
         let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
         let qd_2_left = rate_2_left - actuator_velocities[0];
+        let t3_left = ::overact::math::signed(k_left, qd_2_left);
         let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
+        let t3_right = ::overact::math::signed(k_right, minus_qd_2_right);
         ::core::result::Result::Ok([
             [
                 dvx, -(minus_g1_vx_left * actuator_accelerations[0]),
@@ -2809,8 +2859,8 @@ impl FiveBar {
                     + g2_vx_left * a2_x_left),
                 g1_vx_right * minus_inv_l_2_a_on_f2_right
                     + minus_g2_vx_right * a2_x_right,
-                ::overact::math::signed(gq2_vx_left, qd_2_left),
-                ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right),
+                d_x_left * t3_left,
+                d_x_right * t3_right,
             ],
             [
                 dvy + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
@@ -2825,8 +2875,8 @@ impl FiveBar {
                     + g2_vy_left * a2_x_left),
                 g1_vy_right * minus_inv_l_2_a_on_f2_right
                     + minus_g2_vy_right * a2_x_right,
-                ::overact::math::signed(gq2_vy_left, qd_2_left),
-                ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right),
+                pose[1] * t3_left,
+                pose[1] * t3_right,
             ],
         ])
     }
@@ -2840,7 +2890,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 160 operations (52 additions, 103 multiplications, 5 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 144 intermediates.
+    /// 164 operations (52 additions, 107 multiplications, 5 divisions), 2 square roots, 4 signs, 8 guards, 11 negations, 144 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3008,7 +3058,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 133 operations (40 additions, 90 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 123 intermediates.
+    /// 137 operations (40 additions, 94 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 12 negations, 123 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3159,7 +3209,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 186 operations (60 additions, 119 multiplications, 7 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 174 intermediates.
+    /// 212 operations (70 additions, 134 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 8 negations, 199 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3369,7 +3419,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 49 operations (18 additions, 27 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 49 intermediates.
+    /// 49 operations (18 additions, 27 multiplications, 4 divisions), 2 square roots, 6 guards, 49 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3434,7 +3484,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -3455,7 +3505,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 239 operations (93 additions, 140 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 243 intermediates.
+    /// 243 operations (93 additions, 144 multiplications, 6 divisions), 2 square roots, 4 signs, 8 guards, 1 negation, 243 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3652,7 +3702,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 208 operations (79 additions, 125 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 4 signs, 218 intermediates.
+    /// 212 operations (79 additions, 129 multiplications, 4 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 218 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3827,7 +3877,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 252 operations (97 additions, 149 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 256 intermediates.
+    /// 278 operations (107 additions, 164 multiplications, 7 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 1 negation, 281 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4055,6 +4105,583 @@ impl FiveBar {
             -(minus_g1_vx_left * t5 + minus_g1_vy_left * t4), g1_vx_right * t5 + g1_vy_right * t4,
         ])
     }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 213 operations (79 additions, 128 multiplications, 6 divisions), 2 square roots, 4 signs, 8 guards, 1 negation, 213 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn inverse_dynamics_base(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 19],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let minus_rate_1_left = minus_g1_vx_left * twist[0]
+            + minus_g1_vy_left * twist[1];
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let c2_left = INV_HALF * t2_left;
+        let a1_x_left = 49.05 * l1_y_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a1_y_left = 49.05 * l1_x_left;
+        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_left;
+        let minus_rate_dot_1_left = k_left
+            * (a_on_f1_left + rate_1_squared_left * t3_left);
+        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+        let moment2_z_left = base_parameters[13] * rate_dot_2_left
+            - base_parameters[15] * a2_x_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let minus_force2_x_left = base_parameters[15] * rate_dot_2_left;
+        let minus_force2_y_left = base_parameters[15] * rate_2_squared_left;
+        let t4_left = base_parameters[3] * a1_y_left - base_parameters[5] * a1_x_left
+            - base_parameters[1] * minus_rate_dot_1_left
+            + L_1
+                * (minus_s2_left * minus_force2_x_left - c2_left * minus_force2_y_left);
+        let tau_1_left = base_parameters[11]
+            - (base_parameters[7] * minus_rate_1_left
+                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
+        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            base_parameters[18],
+            minus_qd_2_right,
+        );
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let rate_dot_1_right = k_right
+            * (a_on_f1_right + rate_1_squared_right * t3_right);
+        let a1_y_right = 49.05 * l1_x_right;
+        let a1_x_right = 49.05 * l1_y_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let force2_x_right = base_parameters[16] * minus_rate_dot_2_right;
+        let c2_right = INV_HALF * t2_right;
+        let minus_force2_y_right = base_parameters[16] * rate_2_squared_right;
+        let t4_right = base_parameters[2] * rate_dot_1_right
+            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right
+            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let tau_1_right = base_parameters[8] * rate_1_right
+            + ::overact::math::signed(base_parameters[10], rate_1_right)
+            + base_parameters[12];
+        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
+        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
+            + base_parameters[16] * a2_x_right;
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+        let force_x_platform = acceleration[0] * base_parameters[0];
+        let t1_platform = g2_vx_left * force_on_u2_left
+            - minus_g1_vx_left * force_on_u1_left + g1_vx_right * force_on_u1_right
+            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
+        let t1 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+            + g1_vy_right * force_on_u1_right
+            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform
+            - t1_platform * l_2_1;
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = t1 / pivot_2;
+        let t3 = t1_platform * inv_pivot_1 - l_2_1 * t2;
+        ::core::result::Result::Ok([
+            -(minus_g1_vx_left * t3 + minus_g1_vy_left * t2), g1_vx_right * t3 + g1_vy_right * t2,
+        ])
+    }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 182 operations (65 additions, 113 multiplications, 4 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 188 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn inverse_dynamics_base_from_joints(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 19],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration), ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 5.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_2
+        const L_2: ::core::primitive::f64 = 0.25;
+        // --- sines and cosines
+        let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
+        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[3],
+        ]);
+        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        // --- left
+        let c12_left = c1_left * c2_left - s1_left * s2_left;
+        let s12_left = s1_left * c2_left + c1_left * s2_left;
+        let inv_s2_left = 1.0 / s2_left;
+        let k1_left = INV_L_1 * inv_s2_left;
+        let g1_vx_left = c12_left * k1_left;
+        let g1_vy_left = s12_left * k1_left;
+        let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
+        let k2_left = INV_L_2 * inv_s2_left;
+        let minus_g2_vx_left = c1_left * k2_left;
+        let minus_g2_vy_left = s1_left * k2_left;
+        let minus_rate_2_left = minus_g2_vx_left * twist[0]
+            + minus_g2_vy_left * twist[1];
+        let minus_qd_2_left = rate_1_left + minus_rate_2_left;
+        let minus_tau_2_left = ::overact::math::signed(
+            base_parameters[17],
+            minus_qd_2_left,
+        );
+        let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
+        let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
+        let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
+            + l_2_rate_2_squared_left;
+        let rate_1_squared_left = rate_1_left * rate_1_left;
+        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
+        let rate_dot_1_left = k1_left
+            * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+        let a1_y_left = 9.81 * c1_left;
+        let a1_x_left = 9.81 * s1_left;
+        let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
+            + l_1_rate_1_squared_left;
+        let minus_rate_dot_2_left = k2_left
+            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+        let force2_x_left = base_parameters[15] * minus_rate_dot_2_left;
+        let minus_force2_y_left = base_parameters[15] * rate_2_squared_left;
+        let t1_left = base_parameters[1] * rate_dot_1_left
+            + base_parameters[3] * a1_y_left - base_parameters[5] * a1_x_left
+            + L_1 * (s2_left * force2_x_left - c2_left * minus_force2_y_left);
+        let tau_1_left = base_parameters[7] * rate_1_left
+            + ::overact::math::signed(base_parameters[9], rate_1_left)
+            + base_parameters[11];
+        let force_on_u1_left = minus_tau_2_left + t1_left + tau_1_left;
+        let a2_x_left = c2_left * (a1_x_left - l_1_rate_1_squared_left)
+            + s2_left * (a1_y_left + L_1 * rate_dot_1_left);
+        let minus_moment2_z_left = base_parameters[13] * minus_rate_dot_2_left
+            + base_parameters[15] * a2_x_left;
+        let minus_force_on_u2_left = minus_moment2_z_left + minus_tau_2_left;
+        // --- right
+        let c12_right = c1_right * c2_right - s1_right * s2_right;
+        let s12_right = s1_right * c2_right + c1_right * s2_right;
+        let inv_s2_right = 1.0 / s2_right;
+        let k1_right = INV_L_1 * inv_s2_right;
+        let g1_vx_right = c12_right * k1_right;
+        let g1_vy_right = s12_right * k1_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let k2_right = INV_L_2 * inv_s2_right;
+        let minus_g2_vx_right = c1_right * k2_right;
+        let minus_g2_vy_right = s1_right * k2_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            base_parameters[18],
+            minus_qd_2_right,
+        );
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let rate_dot_1_right = k1_right
+            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
+        let a1_y_right = 9.81 * c1_right;
+        let a1_x_right = 9.81 * s1_right;
+        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
+            + l_1_rate_1_squared_right;
+        let minus_rate_dot_2_right = k2_right
+            * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
+        let force2_x_right = base_parameters[16] * minus_rate_dot_2_right;
+        let minus_force2_y_right = base_parameters[16] * rate_2_squared_right;
+        let t1_right = base_parameters[2] * rate_dot_1_right
+            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right
+            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let tau_1_right = base_parameters[8] * rate_1_right
+            + ::overact::math::signed(base_parameters[10], rate_1_right)
+            + base_parameters[12];
+        let force_on_u1_right = minus_tau_2_right + t1_right + tau_1_right;
+        let a2_x_right = c2_right * (a1_x_right - l_1_rate_1_squared_right)
+            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
+            + base_parameters[16] * a2_x_right;
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+        let force_x_platform = acceleration[0] * base_parameters[0];
+        let t1_platform = g1_vx_left * force_on_u1_left
+            + minus_g2_vx_left * minus_force_on_u2_left + g1_vx_right * force_on_u1_right
+            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform;
+        let s_1_1 = g1_vx_left * g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(
+            s_1_1,
+            35.70772285878917,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let s_1_2 = g1_vx_left * g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
+        let t1 = g1_vy_left * force_on_u1_left
+            + minus_g2_vy_left * minus_force_on_u2_left + g1_vy_right * force_on_u1_right
+            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform
+            - t1_platform * l_2_1;
+        let s_2_2 = g1_vy_left * g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            14.32354668467552,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = t1 / pivot_2;
+        let t3 = t1_platform * inv_pivot_1 - l_2_1 * t2;
+        ::core::result::Result::Ok([
+            g1_vx_left * t3 + g1_vy_left * t2, g1_vx_right * t3 + g1_vy_right * t2,
+        ])
+    }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
+    /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
+    /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    ///
+    /// Output: 2.
+    ///
+    /// 248 operations (93 additions, 148 multiplications, 7 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 1 negation, 251 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn inverse_dynamics_base_from_actuators(
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 19],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations),
+                ("base_parameters", base_parameters), ("start", start),
+            ],
+        )?;
+        let pose = &Self::pose_from_actuators(actuators, start)?;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let g2_vx_left = l1_x_left * k_left;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let t1 = g1_vx_right * actuator_velocities[1]
+            - minus_g1_vx_left * actuator_velocities[0];
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let l_2_1 = s_1_2 * inv_pivot_1;
+        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            35.707722858788905,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            14.323546684675748,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let vy = inv_pivot_2
+            * (g1_vy_right * actuator_velocities[1]
+                - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1);
+        let vx = t1 * inv_pivot_1 - l_2_1 * vy;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        // --- left
+        let g2_vy_left = l1_y_left * k_left;
+        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
+            + minus_bias_rate_dot_1_left;
+        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
+            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
+        let dvy = inv_pivot_2
+            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
+                - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2);
+        let dvx = inv_pivot_1 * t2 - l_2_1 * dvy;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
+            + minus_bias_a_on_f2_left;
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let c2_left = INV_HALF * t2_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+        let moment2_z_left = base_parameters[13] * rate_dot_2_left
+            - base_parameters[15] * a2_x_left;
+        let qd_2_left = rate_2_left - actuator_velocities[0];
+        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let minus_force2_x_left = base_parameters[15] * rate_dot_2_left;
+        let minus_force2_y_left = rate_2_squared_left * base_parameters[15];
+        let t4_left = actuator_accelerations[0] * base_parameters[1]
+            + bias_a1_y_left * base_parameters[3] - bias_a1_x_left * base_parameters[5]
+            + L_1
+                * (minus_s2_left * minus_force2_x_left - c2_left * minus_force2_y_left);
+        let tau_1_left = actuator_velocities[0] * base_parameters[7]
+            + ::overact::math::signed(base_parameters[9], actuator_velocities[0])
+            + base_parameters[11];
+        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
+        // --- right
+        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            base_parameters[18],
+            minus_qd_2_right,
+        );
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
+            + minus_bias_a_on_f2_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let force2_x_right = base_parameters[16] * minus_rate_dot_2_right;
+        let c2_right = INV_HALF * t2_right;
+        let minus_force2_y_right = rate_2_squared_right * base_parameters[16];
+        let t4_right = actuator_accelerations[1] * base_parameters[2]
+            + bias_a1_y_right * base_parameters[4] - bias_a1_x_right * base_parameters[6]
+            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let tau_1_right = actuator_velocities[1] * base_parameters[8]
+            + ::overact::math::signed(base_parameters[10], actuator_velocities[1])
+            + base_parameters[12];
+        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
+        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
+            + base_parameters[16] * a2_x_right;
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+        let force_x_platform = dvx * base_parameters[0];
+        let t1_platform = g2_vx_left * force_on_u2_left
+            - minus_g1_vx_left * force_on_u1_left + g1_vx_right * force_on_u1_right
+            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform;
+        let force_y_platform = base_parameters[0] * (dvy + 9.81);
+        let t3 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+            + g1_vy_right * force_on_u1_right
+            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform
+            - l_2_1 * t1_platform;
+        let t4 = inv_pivot_2 * t3;
+        let t5 = inv_pivot_1 * t1_platform - l_2_1 * t4;
+        ::core::result::Result::Ok([
+            -(minus_g1_vx_left * t5 + minus_g1_vy_left * t4), g1_vx_right * t5 + g1_vy_right * t4,
+        ])
+    }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
@@ -4063,7 +4690,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 114 operations (43 additions, 67 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 113 intermediates.
+    /// 114 operations (43 additions, 67 multiplications, 4 divisions), 2 square roots, 6 guards, 113 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4165,6 +4792,114 @@ impl FiveBar {
             ],
         ])
     }
+    /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2 x 2.
+    ///
+    /// 100 operations (35 additions, 61 multiplications, 4 divisions), 2 square roots, 6 guards, 99 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn mass_matrix_base(
+        pose: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 19],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("base_parameters", base_parameters)],
+        )?;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let force1_y_by_2_left = minus_s2_left * base_parameters[15];
+        let masses_left_1_2 = L_1 * force1_y_by_2_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let minus_force1_y_by_2_right = s2_right * base_parameters[16];
+        let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
+        let t2_right = g2_vx_left
+            * (g2_vx_left * base_parameters[13] - minus_g1_vx_left * masses_left_1_2)
+            - minus_g1_vx_left
+                * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * base_parameters[1])
+            + g1_vx_right
+                * (g1_vx_right * base_parameters[2]
+                    + minus_g2_vx_right * minus_masses_right_1_2)
+            + minus_g2_vx_right
+                * (g1_vx_right * minus_masses_right_1_2
+                    + minus_g2_vx_right * base_parameters[14]);
+        // --- left
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let t2_left = g2_vy_left * base_parameters[13]
+            - masses_left_1_2 * minus_g1_vy_left;
+        let t3_left = g2_vy_left * masses_left_1_2
+            - minus_g1_vy_left * base_parameters[1];
+        // --- right
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let t3_right = g1_vy_right * base_parameters[2]
+            + minus_g2_vy_right * minus_masses_right_1_2;
+        let t4_right = minus_masses_right_1_2 * g1_vy_right
+            + minus_g2_vy_right * base_parameters[14];
+        let t5_right = g2_vx_left * t2_left - minus_g1_vx_left * t3_left
+            + g1_vx_right * t3_right + minus_g2_vx_right * t4_right;
+        ::core::result::Result::Ok([
+            [t2_right + base_parameters[0], t5_right],
+            [
+                t5_right,
+                g2_vy_left * t2_left - minus_g1_vy_left * t3_left
+                    + g1_vy_right * t3_right + minus_g2_vy_right * t4_right
+                    + base_parameters[0],
+            ],
+        ])
+    }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
@@ -4174,7 +4909,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 195 operations (75 additions, 116 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 199 intermediates.
+    /// 199 operations (75 additions, 120 multiplications, 4 divisions), 2 square roots, 4 signs, 6 guards, 199 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4333,6 +5068,163 @@ impl FiveBar {
                 + force_y_platform,
         ])
     }
+    /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 169 operations (61 additions, 104 multiplications, 4 divisions), 2 square roots, 4 signs, 6 guards, 169 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn bias_base(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 19],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
+        )?;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let k_left = 1.0 / det_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let minus_rate_1_left = minus_g1_vx_left * twist[0]
+            + minus_g1_vy_left * twist[1];
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let bias_rate_dot_2_left = k_left
+            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+        let c2_left = INV_HALF * t2_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+        let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
+            - base_parameters[15] * bias_a2_x_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let minus_force2_x_left = base_parameters[15] * bias_rate_dot_2_left;
+        let minus_force2_y_left = base_parameters[15] * rate_2_squared_left;
+        let t4_left = base_parameters[3] * bias_a1_y_left
+            - base_parameters[5] * bias_a1_x_left
+            - base_parameters[1] * minus_bias_rate_dot_1_left
+            + L_1
+                * (minus_s2_left * minus_force2_x_left - c2_left * minus_force2_y_left);
+        let tau_1_left = base_parameters[11]
+            - (base_parameters[7] * minus_rate_1_left
+                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
+        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            base_parameters[18],
+            minus_qd_2_right,
+        );
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+        let force2_x_right = base_parameters[16] * minus_bias_rate_dot_2_right;
+        let c2_right = INV_HALF * t2_right;
+        let minus_force2_y_right = base_parameters[16] * rate_2_squared_right;
+        let t4_right = base_parameters[2] * bias_rate_dot_1_right
+            + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
+            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let tau_1_right = base_parameters[8] * rate_1_right
+            + ::overact::math::signed(base_parameters[10], rate_1_right)
+            + base_parameters[12];
+        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
+        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
+        let minus_moment2_z_right = base_parameters[14] * minus_bias_rate_dot_2_right
+            + base_parameters[16] * bias_a2_x_right;
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+        let force_y_platform = 9.81 * base_parameters[0];
+        ::core::result::Result::Ok([
+            g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
+                + g1_vx_right * force_on_u1_right
+                + minus_g2_vx_right * minus_force_on_u2_right,
+            g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+                + g1_vy_right * force_on_u1_right
+                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform,
+        ])
+    }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
     /// From the platform's pose and motion.
@@ -4343,7 +5235,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 270 operations (105 additions, 159 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 4 signs, 274 intermediates.
+    /// 274 operations (105 additions, 163 multiplications, 6 divisions), 2 square roots, 4 signs, 8 guards, 274 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4539,6 +5431,207 @@ impl FiveBar {
         let t3 = (t2 - t1 * l_2_1) / pivot_2;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 236 operations (87 additions, 143 multiplications, 6 divisions), 2 square roots, 4 signs, 8 guards, 236 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics_base(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 19],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("torques", torques),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// half
+        const HALF: ::core::primitive::f64 = 0.1;
+        /// 1 / half
+        const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// l_1
+        const L_1: ::core::primitive::f64 = 0.2;
+        /// l_1 / half
+        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
+        /// l_1 / half²
+        const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        /// l_2²
+        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        /// 2 l_2
+        const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let det_right = rho_squared_right * h_right;
+        let k_right = 1.0 / det_right;
+        let g1_vx_right = l2_x_right * k_right;
+        // --- left
+        let d_x_left = pose[0] + HALF;
+        let rho_squared_left = d_x_left * d_x_left + y_squared;
+        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        let inv_rho_squared_left = 1.0 / rho_squared_left;
+        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
+        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        ::overact::guard::reach(h_squared_left, "left")?;
+        let h_left = ::overact::math::sqrt(h_squared_left);
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let det_left = rho_squared_left * h_left;
+        ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_left = 1.0 / det_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let minus_rate_1_left = minus_g1_vx_left * twist[0]
+            + minus_g1_vy_left * twist[1];
+        let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
+        let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let t2_left = rho_squared_left - 0.1025;
+        let t3_left = TWICE_L_2 * t2_left;
+        let bias_rate_dot_2_left = k_left
+            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+        let c2_left = INV_HALF * t2_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
+        let minus_bias_rate_dot_1_left = k_left
+            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+        let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
+            - base_parameters[15] * bias_a2_x_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let moment1_z_left = base_parameters[3] * bias_a1_y_left
+            - base_parameters[1] * minus_bias_rate_dot_1_left
+            - base_parameters[5] * bias_a1_x_left;
+        let tau_1_left = base_parameters[11]
+            - (base_parameters[7] * minus_rate_1_left
+                + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
+        let force1_y_by_2_left = minus_s2_left * base_parameters[15];
+        let masses_left_1_2 = L_1 * force1_y_by_2_left;
+        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
+        let minus_force2_y_left = base_parameters[15] * rate_2_squared_left;
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            + bias_rate_dot_2_left * masses_left_1_2
+            - v2_by_1_y_left * minus_force2_y_left - tau_2_left;
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let moment1_z_right = base_parameters[2] * bias_rate_dot_1_right
+            + base_parameters[4] * bias_a1_y_right
+            - base_parameters[6] * bias_a1_x_right;
+        let tau_1_right = base_parameters[8] * rate_1_right
+            + ::overact::math::signed(base_parameters[10], rate_1_right)
+            + base_parameters[12];
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let minus_force1_y_by_2_right = s2_right * base_parameters[16];
+        let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
+        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
+        let minus_force2_y_right = base_parameters[16] * rate_2_squared_right;
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            base_parameters[18],
+            minus_qd_2_right,
+        );
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            + minus_bias_rate_dot_2_right * minus_masses_right_1_2
+            - v2_by_1_y_right * minus_force2_y_right + minus_tau_2_right;
+        let c2_right = INV_HALF * t2_right;
+        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
+        let minus_moment2_z_right = base_parameters[14] * minus_bias_rate_dot_2_right
+            + base_parameters[16] * bias_a2_x_right;
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+        let t1 = g1_vx_right * torques[1] - minus_g1_vx_left * torques[0]
+            - (g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
+                + g1_vx_right * force_on_u1_right
+                + minus_g2_vx_right * minus_force_on_u2_right);
+        let t4_right = g2_vx_left
+            * (g2_vx_left * base_parameters[13] - minus_g1_vx_left * masses_left_1_2)
+            - minus_g1_vx_left
+                * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * base_parameters[1])
+            + g1_vx_right
+                * (g1_vx_right * base_parameters[2]
+                    + minus_g2_vx_right * minus_masses_right_1_2)
+            + minus_g2_vx_right
+                * (g1_vx_right * minus_masses_right_1_2
+                    + minus_g2_vx_right * base_parameters[14]);
+        let mass_1_1 = t4_right + base_parameters[0];
+        ::overact::guard::mass(mass_1_1)?;
+        let inv_pivot_1 = 1.0 / mass_1_1;
+        let t4_left = g2_vy_left * base_parameters[13]
+            - minus_g1_vy_left * masses_left_1_2;
+        let t5_left = g2_vy_left * masses_left_1_2
+            - minus_g1_vy_left * base_parameters[1];
+        let t5_right = g1_vy_right * base_parameters[2]
+            + minus_g2_vy_right * minus_masses_right_1_2;
+        let t6_right = g1_vy_right * minus_masses_right_1_2
+            + minus_g2_vy_right * base_parameters[14];
+        let mass_1_2 = g2_vx_left * t4_left - minus_g1_vx_left * t5_left
+            + g1_vx_right * t5_right + minus_g2_vx_right * t6_right;
+        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let force_y_platform = 9.81 * base_parameters[0];
+        let t2 = g1_vy_right * torques[1] - minus_g1_vy_left * torques[0]
+            - (g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
+                + g1_vy_right * force_on_u1_right
+                + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform);
+        let mass_2_2 = g2_vy_left * t4_left - minus_g1_vy_left * t5_left
+            + g1_vy_right * t5_right + minus_g2_vy_right * t6_right + base_parameters[0];
+        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+        ::overact::guard::mass(pivot_2)?;
+        let t3 = (t2 - t1 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
+    }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
     /// From the platform's pose and motion.
@@ -4547,7 +5640,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -4741,7 +5834,7 @@ impl ::overact::Model for FiveBar {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::project_actuators(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::InverseDynamics => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::inverse_dynamics(
                         row.row(0)?,
@@ -4750,17 +5843,43 @@ impl ::overact::Model for FiveBar {
                         row.row(3)?,
                     ))
             }
-            ::overact::Function::MassMatrix => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::MassMatrix(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::Bias => {
+            ::overact::Function::MassMatrix(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix_base(row.row(0)?, row.row(1)?))
+            }
+            ::overact::Function::Bias(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
             }
-            ::overact::Function::ForwardDynamics => {
+            ::overact::Function::Bias(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias_base(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics_base(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,

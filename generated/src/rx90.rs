@@ -5,6 +5,32 @@
 /// 1 legs, 6 joints, 6 actuators, 6 degrees of freedom; 73 standard parameters, 58 base parameters.
 /// Source: Khalil and Dombre 2002, Modeling, Identification and Control of Robots; dynamics invented.
 ///
+/// # Operations
+///
+/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+///
+/// | function | once | each step |
+/// |---|---|---|
+/// | `joints` | 0 |  |
+/// | `actuator_positions` | 0 |  |
+/// | `inverse_jacobian` | 0 |  |
+/// | `joint_velocities` | 0 |  |
+/// | `joint_accelerations` | 0 |  |
+/// | `twist_from_actuators` | 0 |  |
+/// | `acceleration_from_actuators` | 0 |  |
+/// | `idm_red_platform` | 623, 5 sc, 6 sg |  |
+/// | `idm_red_platform_base` | 601, 5 sc, 6 sg |  |
+/// | `project_platform` | 0 |  |
+/// | `inverse_dynamics` | 553, 5 sc, 6 sg |  |
+/// | `inverse_dynamics_base` | 526, 5 sc, 6 sg |  |
+/// | `mass_matrix` | 244, 5 sc |  |
+/// | `mass_matrix_base` | 226, 5 sc |  |
+/// | `bias` | 498, 5 sc, 6 sg |  |
+/// | `bias_base` | 473, 5 sc, 6 sg |  |
+/// | `forward_dynamics` | 895, 5 sc, 6 sg, 6 gd |  |
+/// | `forward_dynamics_base` | 860, 5 sc, 6 sg, 6 gd |  |
+/// | `project_torques` | 0 |  |
+///
 /// # Names
 ///
 /// | name | symbol | meaning |
@@ -283,7 +309,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -302,7 +328,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -321,7 +347,7 @@ impl Rx90 {
     ///
     /// Output: 6 x 6.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -343,7 +369,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -368,7 +394,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -396,7 +422,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -421,7 +447,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -451,7 +477,7 @@ impl Rx90 {
     /// Output: 6 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 623 operations (271 additions, 352 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 497 intermediates.
+    /// 623 operations (271 additions, 352 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 51 negations, 497 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -937,7 +963,7 @@ impl Rx90 {
     /// Output: 6 x 58.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 601 operations (253 additions, 348 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 496 intermediates.
+    /// 601 operations (253 additions, 348 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 27 negations, 496 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1334,7 +1360,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1357,7 +1383,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 547 operations (283 additions, 264 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 557 intermediates.
+    /// 553 operations (283 additions, 270 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 557 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1661,6 +1687,324 @@ impl Rx90 {
             force_on_u6_arm,
         ])
     }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `joint_velocities`: velocities of the joints (m/s, rad/s)
+    /// - `joint_accelerations`: accelerations of the joints (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 6.
+    ///
+    /// 526 operations (261 additions, 265 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 530 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn inverse_dynamics_base(
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        joint_accelerations: &[::core::primitive::f64; 6],
+        base_parameters: &[::core::primitive::f64; 58],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("joint_accelerations", joint_accelerations), ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        /// d3²
+        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
+        // --- sines and cosines
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
+        // --- arm
+        let d3_squared_m_4R = D3_SQUARED * base_parameters[35];
+        let t1_arm = base_parameters[27] + base_parameters[29] + d3_squared_m_4R;
+        let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
+        let w2_y_arm = c2_arm * joint_velocities[0];
+        let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
+        let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
+        let t2_arm = base_parameters[29] - t1_arm;
+        let zz_2R_plus_d3_squared_m_4R = base_parameters[4] + d3_squared_m_4R;
+        let w2_x_arm = s2_arm * joint_velocities[0];
+        let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
+        let u2_xz_arm = c2_arm * joint_accelerations[0];
+        let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
+        let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+        let w2_x_w2_y_arm = w2_x_arm * w2_y_arm;
+        let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
+        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+        let t3_arm = wd2_x_arm * t2_arm + qd2_w2_y_arm * zz_2R_plus_d3_squared_m_4R
+            - base_parameters[31] * u2_zx_arm + base_parameters[28] * u2_yx_arm
+            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm);
+        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
+        let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
+            + joint_velocities[2] * w3_y_arm;
+        let d3_squared_m_4R_minus_yy_3R = d3_squared_m_4R - base_parameters[29];
+        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+        let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
+        let zz_3R_plus_d3_squared_m_4R = base_parameters[24] + d3_squared_m_4R;
+        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
+        let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
+        let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
+            - joint_velocities[2] * w3_x_arm;
+        let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+        let w3_x_w3_y_arm = w3_x_arm * w3_y_arm;
+        let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
+        let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
+        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+        let t4_arm = wd3_x_arm * d3_squared_m_4R_minus_yy_3R
+            + w3_y_w3_z_arm * zz_3R_plus_d3_squared_m_4R
+            - base_parameters[32] * u3_zx_arm + base_parameters[33] * u3_yx_arm
+            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm);
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
+            + joint_velocities[3] * w4_x_arm;
+        let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+        let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
+        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+        let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
+        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let t5_arm = base_parameters[37] * wd4_x_arm
+            - base_parameters[36] * minus_w4_y_w4_z_arm - base_parameters[40] * u4_zx_arm
+            + base_parameters[39] * u4_yx_arm
+            + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
+        let a2_y_arm = 9.81 * c2_arm;
+        let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
+        let a2_x_arm = 9.81 * s2_arm;
+        let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+        let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
+        let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
+        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+        let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
+            + joint_velocities[4] * w5_y_arm;
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+        let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
+            - joint_velocities[4] * w5_x_arm;
+        let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+        let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
+        let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let t6_arm = base_parameters[43] * wd5_x_arm
+            + base_parameters[42] * w5_y_w5_z_arm - base_parameters[45] * u5_zx_arm
+            + base_parameters[46] * u5_yx_arm
+            + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
+        let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
+        let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
+        let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
+        let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
+        let t7_arm = D3 * (u2_zx_arm + u3_zy_arm);
+        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t7_arm;
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+        let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
+            + joint_velocities[5] * w6_x_arm;
+        let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+        let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
+        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+        let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
+        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+        let t8_arm = base_parameters[49] * wd6_x_arm
+            - base_parameters[48] * minus_w6_y_w6_z_arm - base_parameters[54] * u6_zx_arm
+            + base_parameters[52] * u6_yx_arm
+            + base_parameters[53] * (w6_y_squared_arm - w6_z_squared_arm);
+        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t7_arm;
+        let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+        let moment6_x_arm = t8_arm + base_parameters[57] * a5_y_arm;
+        let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
+        let moment6_y_arm = w6_x_w6_z_arm * (base_parameters[49] - base_parameters[48])
+            + base_parameters[54] * u6_zy_arm
+            + base_parameters[52] * (w6_z_squared_arm - w6_x_squared_arm)
+            + base_parameters[53] * minus_u6_xy_arm - base_parameters[56] * a5_y_arm;
+        let moment5_x_arm = t6_arm + base_parameters[50] * a5_z_arm
+            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+        let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
+        let t9_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
+            + base_parameters[45] * u5_zy_arm
+            + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
+            - base_parameters[47] * u5_xy_arm - base_parameters[55] * a5_z_arm;
+        let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
+        let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
+        let t10_arm = base_parameters[48] * wd6_z_arm
+            + base_parameters[49] * minus_w6_x_w6_y_arm
+            + base_parameters[54] * (w6_x_squared_arm - w6_y_squared_arm)
+            + base_parameters[52] * minus_u6_yz_arm + base_parameters[53] * u6_xz_arm;
+        let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
+        let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
+        let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
+        let moment6_z_arm = t10_arm
+            - (base_parameters[56] * minus_a6_y_arm + base_parameters[57] * a6_x_arm);
+        let moment5_y_arm = t9_arm + moment6_z_arm;
+        let moment4_x_arm = t5_arm + base_parameters[44] * a4_z_arm
+            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+        let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
+        let t11_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
+            + base_parameters[40] * u4_zy_arm
+            + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
+            + base_parameters[38] * minus_u4_xy_arm - base_parameters[51] * a4_z_arm;
+        let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
+        let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
+        let t12_arm = base_parameters[42] * wd5_z_arm
+            - base_parameters[43] * w5_x_w5_y_arm
+            + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
+            - base_parameters[46] * u5_yz_arm + base_parameters[47] * u5_xz_arm;
+        let moment5_z_arm = t12_arm + base_parameters[55] * a5_y_arm
+            - base_parameters[50] * a5_x_arm
+            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let moment4_y_arm = t11_arm - moment5_z_arm;
+        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let minus_force6_x_arm = base_parameters[56] * minus_u6_xx_arm
+            + base_parameters[57] * minus_u6_xy_arm;
+        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let force6_y_arm = base_parameters[56] * u6_yx_arm
+            - base_parameters[57] * minus_u6_yy_arm;
+        let force5_x_arm = base_parameters[50] * u5_xy_arm
+            - base_parameters[55] * minus_u5_xx_arm
+            - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
+        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let force6_z_arm = base_parameters[56] * u6_zx_arm
+            + base_parameters[57] * u6_zy_arm;
+        let force5_y_arm = base_parameters[55] * u5_yx_arm
+            - base_parameters[50] * minus_u5_yy_arm + force6_z_arm;
+        let minus_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
+            - (base_parameters[51] * minus_u4_xx_arm
+                + base_parameters[44] * minus_u4_xy_arm);
+        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let force5_z_arm = base_parameters[55] * u5_zx_arm
+            + base_parameters[50] * u5_zy_arm
+            - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
+        let force4_y_arm = base_parameters[51] * u4_yx_arm
+            - base_parameters[44] * minus_u4_yy_arm - force5_z_arm;
+        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+            + c4_arm * force4_y_arm;
+        let moment3_x_arm = t4_arm + d3_squared_m_4R * u2_zx_arm + c4_arm * moment4_x_arm
+            - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+        let a3_z_arm = D3 * u2_zx_arm;
+        let t13_arm = w3_x_w3_z_arm
+            * (d3_squared_m_4R_minus_yy_3R - zz_3R_plus_d3_squared_m_4R)
+            + base_parameters[32] * u3_zy_arm
+            + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
+            - base_parameters[34] * u3_xy_arm - base_parameters[41] * a3_z_arm;
+        let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
+        let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
+        let t14_arm = base_parameters[36] * wd4_z_arm
+            + base_parameters[37] * minus_w4_x_w4_y_arm
+            + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
+            + base_parameters[39] * minus_u4_yz_arm + base_parameters[38] * u4_xz_arm;
+        let moment4_z_arm = t14_arm
+            - (base_parameters[51] * a5_z_arm + base_parameters[44] * a4_x_arm)
+            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+        let moment3_y_arm = t13_arm + moment4_z_arm;
+        let moment2_x_arm = t3_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
+        let d3_m_4R = D3 * base_parameters[35];
+        let force3_z_arm = base_parameters[41] * u3_zx_arm + u3_zy_arm * d3_m_4R
+            - s4_force4_x_plus_c4_force4_y_arm;
+        let moment2_y_arm = qd2_w2_x_arm * (t2_arm - zz_2R_plus_d3_squared_m_4R)
+            + base_parameters[31] * u2_zy_arm
+            + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
+            - base_parameters[30] * u2_xy_arm + s3_arm * moment3_x_arm
+            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+        let moment1_z_arm = joint_accelerations[0] * (base_parameters[0] + t1_arm)
+            + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+        let tau_1_arm = joint_velocities[0] * base_parameters[1]
+            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
+            + base_parameters[3];
+        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+        let t15_arm = joint_accelerations[1] * zz_2R_plus_d3_squared_m_4R
+            - w2_x_w2_y_arm * t2_arm
+            + base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
+            + base_parameters[28] * minus_u2_yz_arm + base_parameters[30] * u2_xz_arm;
+        let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+            - s4_arm * force4_y_arm;
+        let force3_x_arm = u3_xy_arm * d3_m_4R - base_parameters[41] * minus_u3_xx_arm
+            + c4_force4_x_minus_s4_force4_y_arm;
+        let force4_z_arm = base_parameters[51] * u4_zx_arm
+            + base_parameters[44] * u4_zy_arm + s5_arm * force5_x_arm
+            + c5_arm * force5_y_arm;
+        let force3_y_arm = base_parameters[41] * u3_yx_arm - minus_u3_yy_arm * d3_m_4R
+            + force4_z_arm;
+        let t16_arm = t15_arm + a2_y_arm * (base_parameters[25] + d3_m_4R)
+            - base_parameters[26] * a2_x_arm
+            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+        let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
+        let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
+        let t17_arm = wd3_z_arm * zz_3R_plus_d3_squared_m_4R
+            - w3_x_w3_y_arm * d3_squared_m_4R_minus_yy_3R
+            + base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
+            - base_parameters[33] * u3_yz_arm + base_parameters[34] * u3_xz_arm;
+        let moment3_z_arm = t17_arm + base_parameters[41] * a3_y_arm - a3_x_arm * d3_m_4R
+            - D3 * c4_force4_x_minus_s4_force4_y_arm
+            - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+        let moment2_z_arm = t16_arm + moment3_z_arm;
+        let tau_2_arm = joint_velocities[1] * base_parameters[5]
+            + ::overact::math::signed(base_parameters[6], joint_velocities[1])
+            + base_parameters[7];
+        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+        let tau_3_arm = joint_accelerations[2] * base_parameters[8]
+            + joint_velocities[2] * base_parameters[9]
+            + ::overact::math::signed(base_parameters[10], joint_velocities[2])
+            + base_parameters[11];
+        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+        let tau_4_arm = joint_accelerations[3] * base_parameters[12]
+            + joint_velocities[3] * base_parameters[13]
+            + ::overact::math::signed(base_parameters[14], joint_velocities[3])
+            + base_parameters[15];
+        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+        let tau_5_arm = joint_accelerations[4] * base_parameters[16]
+            + joint_velocities[4] * base_parameters[17]
+            + ::overact::math::signed(base_parameters[18], joint_velocities[4])
+            + base_parameters[19];
+        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+        let tau_6_arm = joint_accelerations[5] * base_parameters[20]
+            + joint_velocities[5] * base_parameters[21]
+            + ::overact::math::signed(base_parameters[22], joint_velocities[5])
+            + base_parameters[23];
+        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+        ::core::result::Result::Ok([
+            force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
+            force_on_u6_arm,
+        ])
+    }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the joints' positions and rates.
@@ -1669,7 +2013,7 @@ impl Rx90 {
     ///
     /// Output: 6 x 6.
     ///
-    /// 244 operations (126 additions, 118 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 233 intermediates.
+    /// 244 operations (126 additions, 118 multiplications, 0 divisions), 5 trigonometric pairs, 2 negations, 233 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1844,6 +2188,187 @@ impl Rx90 {
             ],
         ])
     }
+    /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 6 x 6.
+    ///
+    /// 226 operations (110 additions, 116 multiplications, 0 divisions), 5 trigonometric pairs, 2 negations, 215 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn mass_matrix_base(
+        joints: &[::core::primitive::f64; 6],
+        base_parameters: &[::core::primitive::f64; 58],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("joints", joints), ("base_parameters", base_parameters)],
+        )?;
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        // --- sines and cosines
+        let [(s5_arm, c5_arm), (s6_arm, c6_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
+        (s2_arm, c2_arm)] = ::overact::math::sin_cos_all([
+            joints[4], joints[5], joints[2], joints[3], joints[1],
+        ]);
+        // --- arm
+        let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * base_parameters[49]
+            + c6_arm * (2.0 * base_parameters[54]);
+        let t1_arm = s6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm;
+        let inertia5_xx_arm = base_parameters[43] + base_parameters[49] - t1_arm;
+        let moment5_x_by_6_arm = c6_arm * base_parameters[52]
+            - s6_arm * base_parameters[53];
+        let inertia5_xy_arm = base_parameters[45] + moment5_x_by_6_arm;
+        let t2_arm = s5_arm * (inertia5_xx_arm - base_parameters[48])
+            + c5_arm * (2.0 * inertia5_xy_arm);
+        let t3_arm = s5_arm * t2_arm;
+        let inertia4_zz_arm = base_parameters[36] + base_parameters[48] + t3_arm;
+        let inertia3_yy_arm = base_parameters[29] + inertia4_zz_arm;
+        let inertia4_xx_arm = base_parameters[37] + inertia5_xx_arm - t3_arm;
+        let inertia5_zz_arm = base_parameters[42] + t1_arm;
+        let inertia5_xz_arm = base_parameters[46]
+            - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - base_parameters[54]);
+        let minus_moment5_z_by_6_arm = s6_arm * base_parameters[52]
+            + c6_arm * base_parameters[53];
+        let inertia5_yz_arm = base_parameters[47] - minus_moment5_z_by_6_arm;
+        let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm - s5_arm * inertia5_yz_arm;
+        let inertia4_xy_arm = base_parameters[40] - moment4_x_by_5_arm;
+        let t4_arm = s4_arm * (inertia4_xx_arm - inertia5_zz_arm)
+            + c4_arm * (2.0 * inertia4_xy_arm);
+        let t5_arm = s4_arm * t4_arm;
+        let minus_force5_z_by_6_arm = c6_arm * base_parameters[56]
+            - s6_arm * base_parameters[57];
+        let first5_x_arm = base_parameters[55] + minus_force5_z_by_6_arm;
+        let first4_z_arm = s5_arm * first5_x_arm + c5_arm * base_parameters[50];
+        let d3_m_4R = D3 * base_parameters[35];
+        let first3_y_arm = first4_z_arm + d3_m_4R;
+        let t6_arm = D3 * (first4_z_arm + first3_y_arm);
+        let inertia3_xx_arm = inertia4_xx_arm - t5_arm + t6_arm;
+        let inertia4_xz_arm = base_parameters[39] + c5_arm * t2_arm - inertia5_xy_arm;
+        let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm + c5_arm * inertia5_yz_arm;
+        let inertia4_yz_arm = base_parameters[38] - moment4_z_by_5_arm;
+        let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * base_parameters[50];
+        let first4_x_arm = base_parameters[51] + force4_z_by_5_arm;
+        let minus_first5_z_arm = s6_arm * base_parameters[56]
+            + c6_arm * base_parameters[57];
+        let first4_y_arm = base_parameters[44] + minus_first5_z_arm;
+        let minus_force3_z_by_4_arm = c4_arm * first4_x_arm - s4_arm * first4_y_arm;
+        let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
+        let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm - s4_arm * inertia4_yz_arm
+            - minus_d3_force3_z_by_4_arm;
+        let inertia3_xy_arm = base_parameters[32] + moment3_x_by_4_arm;
+        let t7_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
+            + c3_arm * (2.0 * inertia3_xy_arm);
+        let t8_arm = s3_arm * t7_arm;
+        let first3_x_arm = base_parameters[41] + minus_force3_z_by_4_arm;
+        let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
+        let t9_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + d3_m_4R);
+        let inertia2_yy_arm = base_parameters[27] + inertia3_yy_arm + t8_arm + t9_arm;
+        let inertia2_xx_arm = inertia3_xx_arm - t8_arm;
+        let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
+        let inertia2_xy_arm = base_parameters[31] + c3_arm * t7_arm - inertia3_xy_arm
+            - D3 * minus_force2_x_by_3_arm;
+        let inertia1_zz_arm = base_parameters[0] + inertia2_yy_arm
+            + s2_arm
+                * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
+                    + c2_arm * (2.0 * inertia2_xy_arm));
+        let inertia3_xz_arm = base_parameters[33] - (c4_arm * t4_arm - inertia4_xy_arm);
+        let minus_first3_z_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
+        let minus_d3_first3_z_arm = D3 * minus_first3_z_arm;
+        let moment3_z_by_4_arm = minus_d3_first3_z_arm
+            - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
+        let inertia3_yz_arm = base_parameters[34] + moment3_z_by_4_arm;
+        let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm - s3_arm * inertia3_yz_arm;
+        let inertia2_xz_arm = base_parameters[28] + moment2_x_by_3_arm
+            + minus_d3_first3_z_arm;
+        let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm + c3_arm * inertia3_yz_arm;
+        let inertia2_yz_arm = base_parameters[30] + moment2_y_by_3_arm;
+        let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm + c2_arm * inertia2_yz_arm;
+        let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
+            + c2_arm * moment2_y_by_3_arm;
+        let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm - s3_arm * inertia4_zz_arm;
+        let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm + c3_arm * inertia4_zz_arm
+            + minus_d3_force3_z_by_4_arm;
+        let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
+            + c2_arm * moment2_y_by_4_arm;
+        let force3_z_by_5_arm = s4_arm * first4_z_arm;
+        let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
+        let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm + s4_arm * inertia5_zz_arm
+            + d3_force3_z_by_5_arm;
+        let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
+            - s3_arm * moment4_z_by_5_arm;
+        let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
+            + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
+        let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
+            + c2_arm * moment2_y_by_5_arm;
+        let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
+            - s5_arm * base_parameters[48];
+        let minus_force4_x_by_6_arm = c5_arm * minus_first5_z_arm;
+        let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
+            - s4_arm * minus_force4_x_by_6_arm;
+        let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
+        let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
+            - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
+        let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
+            + c5_arm * base_parameters[48];
+        let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
+            - s3_arm * moment4_z_by_6_arm;
+        let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
+            + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
+        let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
+            + c2_arm * moment2_y_by_6_arm;
+        let inertia3_zz_arm = base_parameters[24] + inertia5_zz_arm + t5_arm + t6_arm;
+        let inertia2_zz_arm = base_parameters[4] + inertia3_zz_arm + t9_arm;
+        let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
+        let moment2_z_by_4_arm = moment3_z_by_4_arm - s3_arm * minus_d3_first3_z_arm;
+        let minus_force3_x_by_5_arm = c4_arm * first4_z_arm;
+        let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
+            - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
+        let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
+            - s3_arm * minus_force3_x_by_5_arm;
+        let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
+        let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
+            + s4_arm * minus_force5_z_by_6_arm;
+        let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
+            - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
+        let minus_force4_z_by_6_arm = s5_arm * minus_first5_z_arm;
+        let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
+            + c3_arm * minus_force4_z_by_6_arm;
+        let moment2_z_by_6_arm = moment3_z_by_6_arm - D3 * minus_force2_y_by_6_arm;
+        let masses_arm_3_3 = inertia3_zz_arm + base_parameters[8];
+        let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
+        let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
+        let masses_arm_6_6 = base_parameters[48] + base_parameters[20];
+        ::core::result::Result::Ok([
+            [
+                inertia1_zz_arm, minus_inertia1_yz_arm, moment1_z_by_3_arm, moment1_z_by_4_arm,
+                moment1_z_by_5_arm, moment1_z_by_6_arm,
+            ],
+            [
+                minus_inertia1_yz_arm, inertia2_zz_arm, moment2_z_by_3_arm, moment2_z_by_4_arm,
+                moment2_z_by_5_arm, moment2_z_by_6_arm,
+            ],
+            [
+                moment1_z_by_3_arm, moment2_z_by_3_arm, masses_arm_3_3, moment3_z_by_4_arm,
+                moment3_z_by_5_arm, moment3_z_by_6_arm,
+            ],
+            [
+                moment1_z_by_4_arm, moment2_z_by_4_arm, moment3_z_by_4_arm, masses_arm_4_4,
+                moment4_z_by_5_arm, moment4_z_by_6_arm,
+            ],
+            [
+                moment1_z_by_5_arm, moment2_z_by_5_arm, moment3_z_by_5_arm, moment4_z_by_5_arm,
+                masses_arm_5_5, -minus_moment5_z_by_6_arm,
+            ],
+            [
+                moment1_z_by_6_arm, moment2_z_by_6_arm, moment3_z_by_6_arm, moment4_z_by_6_arm,
+                -minus_moment5_z_by_6_arm, masses_arm_6_6,
+            ],
+        ])
+    }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the joints' positions and rates.
@@ -1853,7 +2378,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 492 operations (247 additions, 245 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 502 intermediates.
+    /// 498 operations (247 additions, 251 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 502 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -2141,6 +2666,307 @@ impl Rx90 {
             force_on_u6_arm,
         ])
     }
+    /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `joint_velocities`: velocities of the joints (m/s, rad/s)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 6.
+    ///
+    /// 473 operations (225 additions, 248 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 477 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite.
+    pub fn bias_base(
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        base_parameters: &[::core::primitive::f64; 58],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        /// d3²
+        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
+        /// 2 d3
+        const TWICE_D3: ::core::primitive::f64 = 0.9;
+        // --- sines and cosines
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
+        // --- arm
+        let w2_y_arm = c2_arm * joint_velocities[0];
+        let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+        let d3_squared_m_4R = D3_SQUARED * base_parameters[35];
+        let yy_2R_plus_d3_squared_m_4R = base_parameters[27] + d3_squared_m_4R;
+        let zz_2R_plus_d3_squared_m_4R = base_parameters[4] + d3_squared_m_4R;
+        let w2_x_arm = s2_arm * joint_velocities[0];
+        let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
+        let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+        let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+        let t1_arm = bias_wd2_x_arm * zz_2R_plus_d3_squared_m_4R
+            - bias_wd2_x_arm * yy_2R_plus_d3_squared_m_4R
+            - base_parameters[31] * bias_u2_zx_arm + base_parameters[28] * bias_u2_xy_arm
+            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm);
+        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
+        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+        let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
+        let d3_squared_m_4R_minus_yy_3R = d3_squared_m_4R - base_parameters[29];
+        let zz_3R_plus_d3_squared_m_4R = base_parameters[24] + d3_squared_m_4R;
+        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
+        let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
+        let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+        let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+        let t2_arm = bias_wd3_x_arm * d3_squared_m_4R_minus_yy_3R
+            + bias_wd3_x_arm * zz_3R_plus_d3_squared_m_4R
+            - base_parameters[32] * bias_u3_zx_arm + base_parameters[33] * bias_u3_xy_arm
+            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm);
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
+        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let t3_arm = base_parameters[37] * bias_wd4_x_arm
+            - base_parameters[36] * minus_w4_y_w4_z_arm
+            - base_parameters[40] * bias_u4_zx_arm
+            - base_parameters[39] * minus_bias_u4_yx_arm
+            + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
+        let bias_a2_y_arm = 9.81 * c2_arm;
+        let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
+        let bias_a2_x_arm = 9.81 * s2_arm;
+        let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+        let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
+        let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
+            - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+        let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
+            + joint_velocities[4] * w5_y_arm;
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+        let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
+            + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
+        let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let t4_arm = base_parameters[43] * bias_wd5_x_arm
+            + base_parameters[42] * w5_y_w5_z_arm - base_parameters[45] * bias_u5_zx_arm
+            + base_parameters[46] * bias_u5_yx_arm
+            + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
+        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
+        let t5_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t5_arm;
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+        let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
+            + joint_velocities[5] * w6_x_arm;
+        let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+        let t6_arm = base_parameters[49] * bias_wd6_x_arm
+            - base_parameters[48] * minus_w6_y_w6_z_arm
+            - base_parameters[54] * bias_u6_zx_arm
+            - base_parameters[52] * minus_bias_u6_yx_arm
+            + base_parameters[53] * (w6_y_squared_arm - w6_z_squared_arm);
+        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t5_arm;
+        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+        let moment6_x_arm = t6_arm + base_parameters[57] * bias_a5_y_arm;
+        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+        let moment6_y_arm = w6_x_w6_z_arm * (base_parameters[49] - base_parameters[48])
+            + base_parameters[54] * bias_u6_zy_arm
+            + base_parameters[52] * (w6_z_squared_arm - w6_x_squared_arm)
+            - base_parameters[53] * bias_u6_xy_arm - base_parameters[56] * bias_a5_y_arm;
+        let moment5_x_arm = t4_arm + base_parameters[50] * bias_a5_z_arm
+            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+        let t7_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
+            + base_parameters[45] * bias_u5_zy_arm
+            + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
+            - base_parameters[47] * bias_u5_xy_arm - base_parameters[55] * bias_a5_z_arm;
+        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+        let t8_arm = base_parameters[49] * minus_w6_x_w6_y_arm
+            - base_parameters[48] * minus_bias_wd5_y_arm
+            + base_parameters[54] * (w6_x_squared_arm - w6_y_squared_arm)
+            + base_parameters[52] * minus_bias_u6_yz_arm
+            + base_parameters[53] * bias_u6_xz_arm;
+        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
+        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+        let moment6_z_arm = t8_arm
+            - (base_parameters[56] * minus_bias_a6_y_arm
+                + base_parameters[57] * bias_a6_x_arm);
+        let moment5_y_arm = t7_arm + moment6_z_arm;
+        let moment4_x_arm = t3_arm + base_parameters[44] * bias_a4_z_arm
+            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+        let t9_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
+            + base_parameters[40] * bias_u4_zy_arm
+            + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
+            - base_parameters[38] * bias_u4_xy_arm - base_parameters[51] * bias_a4_z_arm;
+        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+        let t10_arm = base_parameters[42] * bias_wd5_z_arm
+            - base_parameters[43] * w5_x_w5_y_arm
+            + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
+            - base_parameters[46] * bias_u5_yz_arm
+            + base_parameters[47] * bias_u5_xz_arm;
+        let moment5_z_arm = t10_arm + base_parameters[55] * bias_a5_y_arm
+            - base_parameters[50] * bias_a5_x_arm
+            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let moment4_y_arm = t9_arm - moment5_z_arm;
+        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let force6_x_arm = base_parameters[57] * bias_u6_xy_arm
+            - base_parameters[56] * minus_bias_u6_xx_arm;
+        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let minus_force6_y_arm = base_parameters[56] * minus_bias_u6_yx_arm
+            + base_parameters[57] * minus_bias_u6_yy_arm;
+        let force5_x_arm = base_parameters[50] * bias_u5_xy_arm
+            - base_parameters[55] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+            + s6_arm * minus_force6_y_arm;
+        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let force6_z_arm = base_parameters[56] * bias_u6_zx_arm
+            + base_parameters[57] * bias_u6_zy_arm;
+        let force5_y_arm = base_parameters[55] * bias_u5_yx_arm
+            - base_parameters[50] * minus_bias_u5_yy_arm + force6_z_arm;
+        let force4_x_arm = base_parameters[44] * bias_u4_xy_arm
+            - base_parameters[51] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+            - s5_arm * force5_y_arm;
+        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let force5_z_arm = base_parameters[55] * bias_u5_zx_arm
+            + base_parameters[50] * bias_u5_zy_arm
+            - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
+        let minus_force4_y_arm = base_parameters[51] * minus_bias_u4_yx_arm
+            + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
+        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+            - c4_arm * minus_force4_y_arm;
+        let moment3_x_arm = t2_arm + d3_squared_m_4R * bias_u2_zx_arm
+            + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
+            - D3 * s4_force4_x_plus_c4_force4_y_arm;
+        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+        let t11_arm = minus_bias_wd3_y_arm
+            * (d3_squared_m_4R_minus_yy_3R - zz_3R_plus_d3_squared_m_4R)
+            + base_parameters[32] * bias_u3_zy_arm
+            + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
+            - base_parameters[34] * bias_u3_xy_arm - base_parameters[41] * bias_a3_z_arm;
+        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+        let t12_arm = base_parameters[37] * minus_w4_x_w4_y_arm
+            - base_parameters[36] * minus_bias_wd3_y_arm
+            + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
+            + base_parameters[39] * minus_bias_u4_yz_arm
+            + base_parameters[38] * bias_u4_xz_arm;
+        let moment4_z_arm = t12_arm
+            - (base_parameters[51] * bias_a5_z_arm + base_parameters[44] * bias_a4_x_arm)
+            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+        let moment3_y_arm = t11_arm + moment4_z_arm;
+        let moment2_x_arm = t1_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let d3_m_4R = D3 * base_parameters[35];
+        let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
+            + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
+        let moment2_y_arm = base_parameters[31] * bias_u2_zy_arm
+            - minus_bias_wd2_y_arm
+                * (yy_2R_plus_d3_squared_m_4R + zz_2R_plus_d3_squared_m_4R)
+            + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
+            - base_parameters[30] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+        let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+        let tau_1_arm = joint_velocities[0] * base_parameters[1]
+            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
+            + base_parameters[3];
+        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+            + s4_arm * minus_force4_y_arm;
+        let force3_x_arm = bias_u3_xy_arm * d3_m_4R
+            - base_parameters[41] * minus_bias_u3_xx_arm
+            + c4_force4_x_minus_s4_force4_y_arm;
+        let force4_z_arm = base_parameters[51] * bias_u4_zx_arm
+            + base_parameters[44] * bias_u4_zy_arm + s5_arm * force5_x_arm
+            + c5_arm * force5_y_arm;
+        let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
+            - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
+        let t13_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
+            + bias_u2_xy_arm * yy_2R_plus_d3_squared_m_4R
+            + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
+            - base_parameters[26] * bias_a2_x_arm
+            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+        let t14_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
+            - bias_u3_xy_arm * d3_squared_m_4R_minus_yy_3R
+            + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
+            - D3 * c4_force4_x_minus_s4_force4_y_arm;
+        let moment3_z_arm = t14_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+        let moment2_z_arm = t13_arm + moment3_z_arm;
+        let tau_2_arm = joint_velocities[1] * base_parameters[5]
+            + ::overact::math::signed(base_parameters[6], joint_velocities[1])
+            + base_parameters[7];
+        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+        let tau_3_arm = joint_velocities[2] * base_parameters[9]
+            + ::overact::math::signed(base_parameters[10], joint_velocities[2])
+            + base_parameters[11];
+        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+        let tau_4_arm = joint_velocities[3] * base_parameters[13]
+            + ::overact::math::signed(base_parameters[14], joint_velocities[3])
+            + base_parameters[15];
+        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+        let tau_5_arm = joint_velocities[4] * base_parameters[17]
+            + ::overact::math::signed(base_parameters[18], joint_velocities[4])
+            + base_parameters[19];
+        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+        let tau_6_arm = joint_velocities[5] * base_parameters[21]
+            + ::overact::math::signed(base_parameters[22], joint_velocities[5])
+            + base_parameters[23];
+        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+        ::core::result::Result::Ok([
+            force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
+            force_on_u6_arm,
+        ])
+    }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
     /// From the joints' positions and rates.
@@ -2151,7 +2977,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 889 operations (438 additions, 445 multiplications, 6 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 899 intermediates.
+    /// 895 operations (438 additions, 451 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 6 guards, 899 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2633,6 +3459,499 @@ impl Rx90 {
             - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
         ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the joints' positions and rates.
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `joint_velocities`: velocities of the joints (m/s, rad/s)
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 6.
+    ///
+    /// 860 operations (406 additions, 448 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 6 guards, 864 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics_base(
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        torques: &[::core::primitive::f64; 6],
+        base_parameters: &[::core::primitive::f64; 58],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("joints", joints), ("joint_velocities", joint_velocities), ("torques", torques),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// d3 = rl4
+        const D3: ::core::primitive::f64 = 0.45;
+        /// d3²
+        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
+        /// 2 d3
+        const TWICE_D3: ::core::primitive::f64 = 0.9;
+        // --- sines and cosines
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
+        // --- arm
+        let w2_y_arm = c2_arm * joint_velocities[0];
+        let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+        let d3_squared_m_4R = D3_SQUARED * base_parameters[35];
+        let yy_2R_plus_d3_squared_m_4R = base_parameters[27] + d3_squared_m_4R;
+        let zz_2R_plus_d3_squared_m_4R = base_parameters[4] + d3_squared_m_4R;
+        let w2_x_arm = s2_arm * joint_velocities[0];
+        let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
+        let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+        let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+        let w2_y_squared_arm = w2_y_arm * w2_y_arm;
+        let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+        let t1_arm = bias_wd2_x_arm * zz_2R_plus_d3_squared_m_4R
+            - bias_wd2_x_arm * yy_2R_plus_d3_squared_m_4R
+            - base_parameters[31] * bias_u2_zx_arm + base_parameters[28] * bias_u2_xy_arm
+            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm);
+        let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
+        let w3_z_arm = joint_velocities[1] + joint_velocities[2];
+        let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
+        let d3_squared_m_4R_minus_yy_3R = d3_squared_m_4R - base_parameters[29];
+        let zz_3R_plus_d3_squared_m_4R = base_parameters[24] + d3_squared_m_4R;
+        let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
+        let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
+        let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+        let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+        let w3_y_squared_arm = w3_y_arm * w3_y_arm;
+        let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+        let t2_arm = bias_wd3_x_arm * d3_squared_m_4R_minus_yy_3R
+            + bias_wd3_x_arm * zz_3R_plus_d3_squared_m_4R
+            - base_parameters[32] * bias_u3_zx_arm + base_parameters[33] * bias_u3_xy_arm
+            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm);
+        let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
+        let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
+            - joint_velocities[3] * minus_w4_y_arm;
+        let w4_z_arm = w3_y_arm + joint_velocities[3];
+        let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+        let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
+        let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
+        let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm + joint_velocities[3] * w4_x_arm;
+        let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+        let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
+        let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let t3_arm = base_parameters[37] * bias_wd4_x_arm
+            - base_parameters[36] * minus_w4_y_w4_z_arm
+            - base_parameters[40] * bias_u4_zx_arm
+            - base_parameters[39] * minus_bias_u4_yx_arm
+            + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
+        let bias_a2_y_arm = 9.81 * c2_arm;
+        let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm + D3 * bias_u2_xy_arm;
+        let bias_a2_x_arm = 9.81 * s2_arm;
+        let minus_bias_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
+        let bias_a2_x_plus_d3_bias_u2_xx_arm = bias_a2_x_arm - D3 * minus_bias_u2_xx_arm;
+        let bias_a3_y_arm = c3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm
+            - s3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+        let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
+        let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
+            + joint_velocities[4] * w5_y_arm;
+        let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
+        let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+        let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
+        let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
+        let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
+            + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
+        let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+        let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
+        let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+        let t4_arm = base_parameters[43] * bias_wd5_x_arm
+            + base_parameters[42] * w5_y_w5_z_arm - base_parameters[45] * bias_u5_zx_arm
+            + base_parameters[46] * bias_u5_yx_arm
+            + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
+        let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
+            + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
+        let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
+        let t5_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t5_arm;
+        let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
+        let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
+            - joint_velocities[5] * minus_w6_y_arm;
+        let w6_z_arm = w5_y_arm + joint_velocities[5];
+        let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+        let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
+        let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
+        let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm + c6_arm * bias_wd5_z_arm
+            + joint_velocities[5] * w6_x_arm;
+        let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+        let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
+        let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+        let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+        let t6_arm = base_parameters[49] * bias_wd6_x_arm
+            - base_parameters[48] * minus_w6_y_w6_z_arm
+            - base_parameters[54] * bias_u6_zx_arm
+            - base_parameters[52] * minus_bias_u6_yx_arm
+            + base_parameters[53] * (w6_y_squared_arm - w6_z_squared_arm);
+        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t5_arm;
+        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+        let moment6_x_arm = t6_arm + base_parameters[57] * bias_a5_y_arm;
+        let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
+        let moment6_y_arm = w6_x_w6_z_arm * (base_parameters[49] - base_parameters[48])
+            + base_parameters[54] * bias_u6_zy_arm
+            + base_parameters[52] * (w6_z_squared_arm - w6_x_squared_arm)
+            - base_parameters[53] * bias_u6_xy_arm - base_parameters[56] * bias_a5_y_arm;
+        let moment5_x_arm = t4_arm + base_parameters[50] * bias_a5_z_arm
+            + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+        let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+        let t7_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
+            + base_parameters[45] * bias_u5_zy_arm
+            + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
+            - base_parameters[47] * bias_u5_xy_arm - base_parameters[55] * bias_a5_z_arm;
+        let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
+        let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
+        let t8_arm = base_parameters[49] * minus_w6_x_w6_y_arm
+            - base_parameters[48] * minus_bias_wd5_y_arm
+            + base_parameters[54] * (w6_x_squared_arm - w6_y_squared_arm)
+            + base_parameters[52] * minus_bias_u6_yz_arm
+            + base_parameters[53] * bias_u6_xz_arm;
+        let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
+        let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
+        let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
+        let moment6_z_arm = t8_arm
+            - (base_parameters[56] * minus_bias_a6_y_arm
+                + base_parameters[57] * bias_a6_x_arm);
+        let moment5_y_arm = t7_arm + moment6_z_arm;
+        let moment4_x_arm = t3_arm + base_parameters[44] * bias_a4_z_arm
+            + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+        let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+        let t9_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
+            + base_parameters[40] * bias_u4_zy_arm
+            + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
+            - base_parameters[38] * bias_u4_xy_arm - base_parameters[51] * bias_a4_z_arm;
+        let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
+        let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
+        let t10_arm = base_parameters[42] * bias_wd5_z_arm
+            - base_parameters[43] * w5_x_w5_y_arm
+            + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
+            - base_parameters[46] * bias_u5_yz_arm
+            + base_parameters[47] * bias_u5_xz_arm;
+        let moment5_z_arm = t10_arm + base_parameters[55] * bias_a5_y_arm
+            - base_parameters[50] * bias_a5_x_arm
+            - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
+        let moment4_y_arm = t9_arm - moment5_z_arm;
+        let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
+        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let force6_x_arm = base_parameters[57] * bias_u6_xy_arm
+            - base_parameters[56] * minus_bias_u6_xx_arm;
+        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let minus_force6_y_arm = base_parameters[56] * minus_bias_u6_yx_arm
+            + base_parameters[57] * minus_bias_u6_yy_arm;
+        let force5_x_arm = base_parameters[50] * bias_u5_xy_arm
+            - base_parameters[55] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+            + s6_arm * minus_force6_y_arm;
+        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let force6_z_arm = base_parameters[56] * bias_u6_zx_arm
+            + base_parameters[57] * bias_u6_zy_arm;
+        let force5_y_arm = base_parameters[55] * bias_u5_yx_arm
+            - base_parameters[50] * minus_bias_u5_yy_arm + force6_z_arm;
+        let force4_x_arm = base_parameters[44] * bias_u4_xy_arm
+            - base_parameters[51] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+            - s5_arm * force5_y_arm;
+        let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let force5_z_arm = base_parameters[55] * bias_u5_zx_arm
+            + base_parameters[50] * bias_u5_zy_arm
+            - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
+        let minus_force4_y_arm = base_parameters[51] * minus_bias_u4_yx_arm
+            + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
+        let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
+            - c4_arm * minus_force4_y_arm;
+        let moment3_x_arm = t2_arm + d3_squared_m_4R * bias_u2_zx_arm
+            + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
+            - D3 * s4_force4_x_plus_c4_force4_y_arm;
+        let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+        let t11_arm = minus_bias_wd3_y_arm
+            * (d3_squared_m_4R_minus_yy_3R - zz_3R_plus_d3_squared_m_4R)
+            + base_parameters[32] * bias_u3_zy_arm
+            + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
+            - base_parameters[34] * bias_u3_xy_arm - base_parameters[41] * bias_a3_z_arm;
+        let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
+        let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
+        let t12_arm = base_parameters[37] * minus_w4_x_w4_y_arm
+            - base_parameters[36] * minus_bias_wd3_y_arm
+            + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
+            + base_parameters[39] * minus_bias_u4_yz_arm
+            + base_parameters[38] * bias_u4_xz_arm;
+        let moment4_z_arm = t12_arm
+            - (base_parameters[51] * bias_a5_z_arm + base_parameters[44] * bias_a4_x_arm)
+            + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
+        let moment3_y_arm = t11_arm + moment4_z_arm;
+        let moment2_x_arm = t1_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+        let w2_x_squared_arm = w2_x_arm * w2_x_arm;
+        let d3_m_4R = D3 * base_parameters[35];
+        let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
+            + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
+        let moment2_y_arm = base_parameters[31] * bias_u2_zy_arm
+            - minus_bias_wd2_y_arm
+                * (yy_2R_plus_d3_squared_m_4R + zz_2R_plus_d3_squared_m_4R)
+            + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
+            - base_parameters[30] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+        let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+        let tau_1_arm = joint_velocities[0] * base_parameters[1]
+            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
+            + base_parameters[3];
+        let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+        let tau1_minus_force_on_u1_arm = torques[0] - force_on_u1_arm;
+        let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * base_parameters[49]
+            + c6_arm * (2.0 * base_parameters[54]);
+        let t13_arm = s6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm;
+        let inertia5_xx_arm = base_parameters[43] + base_parameters[49] - t13_arm;
+        let moment5_x_by_6_arm = c6_arm * base_parameters[52]
+            - s6_arm * base_parameters[53];
+        let inertia5_xy_arm = base_parameters[45] + moment5_x_by_6_arm;
+        let t14_arm = s5_arm * (inertia5_xx_arm - base_parameters[48])
+            + c5_arm * (2.0 * inertia5_xy_arm);
+        let t15_arm = s5_arm * t14_arm;
+        let inertia4_zz_arm = base_parameters[36] + base_parameters[48] + t15_arm;
+        let inertia3_yy_arm = base_parameters[29] + inertia4_zz_arm;
+        let inertia4_xx_arm = base_parameters[37] + inertia5_xx_arm - t15_arm;
+        let inertia5_zz_arm = base_parameters[42] + t13_arm;
+        let inertia5_xz_arm = base_parameters[46]
+            - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - base_parameters[54]);
+        let minus_moment5_z_by_6_arm = s6_arm * base_parameters[52]
+            + c6_arm * base_parameters[53];
+        let inertia5_yz_arm = base_parameters[47] - minus_moment5_z_by_6_arm;
+        let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm - s5_arm * inertia5_yz_arm;
+        let inertia4_xy_arm = base_parameters[40] - moment4_x_by_5_arm;
+        let t16_arm = s4_arm * (inertia4_xx_arm - inertia5_zz_arm)
+            + c4_arm * (2.0 * inertia4_xy_arm);
+        let t17_arm = s4_arm * t16_arm;
+        let minus_force5_z_by_6_arm = c6_arm * base_parameters[56]
+            - s6_arm * base_parameters[57];
+        let first5_x_arm = base_parameters[55] + minus_force5_z_by_6_arm;
+        let first4_z_arm = s5_arm * first5_x_arm + c5_arm * base_parameters[50];
+        let first3_y_arm = first4_z_arm + d3_m_4R;
+        let t18_arm = D3 * (first4_z_arm + first3_y_arm);
+        let inertia3_xx_arm = inertia4_xx_arm - t17_arm + t18_arm;
+        let inertia4_xz_arm = base_parameters[39] + c5_arm * t14_arm - inertia5_xy_arm;
+        let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm + c5_arm * inertia5_yz_arm;
+        let inertia4_yz_arm = base_parameters[38] - moment4_z_by_5_arm;
+        let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * base_parameters[50];
+        let first4_x_arm = base_parameters[51] + force4_z_by_5_arm;
+        let minus_first5_z_arm = s6_arm * base_parameters[56]
+            + c6_arm * base_parameters[57];
+        let first4_y_arm = base_parameters[44] + minus_first5_z_arm;
+        let minus_force3_z_by_4_arm = c4_arm * first4_x_arm - s4_arm * first4_y_arm;
+        let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
+        let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm - s4_arm * inertia4_yz_arm
+            - minus_d3_force3_z_by_4_arm;
+        let inertia3_xy_arm = base_parameters[32] + moment3_x_by_4_arm;
+        let t19_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
+            + c3_arm * (2.0 * inertia3_xy_arm);
+        let t20_arm = s3_arm * t19_arm;
+        let first3_x_arm = base_parameters[41] + minus_force3_z_by_4_arm;
+        let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
+        let t21_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + d3_m_4R);
+        let inertia2_yy_arm = base_parameters[27] + inertia3_yy_arm + t20_arm + t21_arm;
+        let inertia2_xx_arm = inertia3_xx_arm - t20_arm;
+        let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
+        let inertia2_xy_arm = base_parameters[31] + c3_arm * t19_arm - inertia3_xy_arm
+            - D3 * minus_force2_x_by_3_arm;
+        let inertia1_zz_arm = base_parameters[0] + inertia2_yy_arm
+            + s2_arm
+                * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
+                    + c2_arm * (2.0 * inertia2_xy_arm));
+        ::overact::guard::mass(inertia1_zz_arm)?;
+        let inv_pivot_1 = 1.0 / inertia1_zz_arm;
+        let inertia3_xz_arm = base_parameters[33] - (c4_arm * t16_arm - inertia4_xy_arm);
+        let minus_first3_z_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
+        let minus_d3_first3_z_arm = D3 * minus_first3_z_arm;
+        let moment3_z_by_4_arm = minus_d3_first3_z_arm
+            - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
+        let inertia3_yz_arm = base_parameters[34] + moment3_z_by_4_arm;
+        let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm - s3_arm * inertia3_yz_arm;
+        let inertia2_xz_arm = base_parameters[28] + moment2_x_by_3_arm
+            + minus_d3_first3_z_arm;
+        let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm + c3_arm * inertia3_yz_arm;
+        let inertia2_yz_arm = base_parameters[30] + moment2_y_by_3_arm;
+        let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm + c2_arm * inertia2_yz_arm;
+        let l_2_1 = minus_inertia1_yz_arm * inv_pivot_1;
+        let inertia3_zz_arm = base_parameters[24] + inertia5_zz_arm + t17_arm + t18_arm;
+        let inertia2_zz_arm = base_parameters[4] + inertia3_zz_arm + t21_arm;
+        let pivot_2 = inertia2_zz_arm - minus_inertia1_yz_arm * l_2_1;
+        ::overact::guard::mass(pivot_2)?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
+        let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
+            + s4_arm * minus_force4_y_arm;
+        let force3_x_arm = bias_u3_xy_arm * d3_m_4R
+            - base_parameters[41] * minus_bias_u3_xx_arm
+            + c4_force4_x_minus_s4_force4_y_arm;
+        let force4_z_arm = base_parameters[51] * bias_u4_zx_arm
+            + base_parameters[44] * bias_u4_zy_arm + s5_arm * force5_x_arm
+            + c5_arm * force5_y_arm;
+        let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
+            - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
+        let t22_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
+            + bias_u2_xy_arm * yy_2R_plus_d3_squared_m_4R
+            + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
+            - base_parameters[26] * bias_a2_x_arm
+            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+        let t23_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
+            - bias_u3_xy_arm * d3_squared_m_4R_minus_yy_3R
+            + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
+            - D3 * c4_force4_x_minus_s4_force4_y_arm;
+        let moment3_z_arm = t23_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+        let moment2_z_arm = t22_arm + moment3_z_arm;
+        let tau_2_arm = joint_velocities[1] * base_parameters[5]
+            + ::overact::math::signed(base_parameters[6], joint_velocities[1])
+            + base_parameters[7];
+        let force_on_u2_arm = moment2_z_arm + tau_2_arm;
+        let t1 = torques[1] - force_on_u2_arm - tau1_minus_force_on_u1_arm * l_2_1;
+        let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
+        let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
+            + c2_arm * moment2_y_by_3_arm;
+        let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
+        let schur_2_3 = moment2_z_by_3_arm - minus_inertia1_yz_arm * l_3_1;
+        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let masses_arm_3_3 = inertia3_zz_arm + base_parameters[8];
+        let pivot_3 = masses_arm_3_3 - moment1_z_by_3_arm * l_3_1 - schur_2_3 * l_3_2;
+        ::overact::guard::mass(pivot_3)?;
+        let inv_pivot_3 = 1.0 / pivot_3;
+        let tau_3_arm = joint_velocities[2] * base_parameters[9]
+            + ::overact::math::signed(base_parameters[10], joint_velocities[2])
+            + base_parameters[11];
+        let force_on_u3_arm = moment3_z_arm + tau_3_arm;
+        let t2 = torques[2] - force_on_u3_arm - tau1_minus_force_on_u1_arm * l_3_1
+            - l_3_2 * t1;
+        let moment2_x_by_4_arm = c3_arm * moment3_x_by_4_arm - s3_arm * inertia4_zz_arm;
+        let moment2_y_by_4_arm = s3_arm * moment3_x_by_4_arm + c3_arm * inertia4_zz_arm
+            + minus_d3_force3_z_by_4_arm;
+        let moment1_z_by_4_arm = s2_arm * moment2_x_by_4_arm
+            + c2_arm * moment2_y_by_4_arm;
+        let l_4_1 = moment1_z_by_4_arm * inv_pivot_1;
+        let moment2_z_by_4_arm = moment3_z_by_4_arm - s3_arm * minus_d3_first3_z_arm;
+        let schur_2_4 = moment2_z_by_4_arm - minus_inertia1_yz_arm * l_4_1;
+        let l_4_2 = schur_2_4 * inv_pivot_2;
+        let schur_3_4 = moment3_z_by_4_arm - moment1_z_by_3_arm * l_4_1
+            - schur_2_3 * l_4_2;
+        let l_4_3 = schur_3_4 * inv_pivot_3;
+        let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
+        let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1 - schur_2_4 * l_4_2
+            - schur_3_4 * l_4_3;
+        ::overact::guard::mass(pivot_4)?;
+        let inv_pivot_4 = 1.0 / pivot_4;
+        let tau_4_arm = joint_velocities[3] * base_parameters[13]
+            + ::overact::math::signed(base_parameters[14], joint_velocities[3])
+            + base_parameters[15];
+        let force_on_u4_arm = moment4_z_arm + tau_4_arm;
+        let t3 = torques[3] - force_on_u4_arm - tau1_minus_force_on_u1_arm * l_4_1
+            - l_4_2 * t1 - l_4_3 * t2;
+        let force3_z_by_5_arm = s4_arm * first4_z_arm;
+        let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
+        let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm + s4_arm * inertia5_zz_arm
+            + d3_force3_z_by_5_arm;
+        let moment2_x_by_5_arm = c3_arm * moment3_x_by_5_arm
+            - s3_arm * moment4_z_by_5_arm;
+        let moment2_y_by_5_arm = s3_arm * moment3_x_by_5_arm
+            + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
+        let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
+            + c2_arm * moment2_y_by_5_arm;
+        let l_5_1 = moment1_z_by_5_arm * inv_pivot_1;
+        let minus_force3_x_by_5_arm = c4_arm * first4_z_arm;
+        let moment3_z_by_5_arm = D3 * minus_force3_x_by_5_arm
+            - (s4_arm * moment4_x_by_5_arm - c4_arm * inertia5_zz_arm);
+        let force2_y_by_5_arm = c3_arm * force4_z_by_5_arm
+            - s3_arm * minus_force3_x_by_5_arm;
+        let moment2_z_by_5_arm = moment3_z_by_5_arm + D3 * force2_y_by_5_arm;
+        let schur_2_5 = moment2_z_by_5_arm - minus_inertia1_yz_arm * l_5_1;
+        let l_5_2 = schur_2_5 * inv_pivot_2;
+        let schur_3_5 = moment3_z_by_5_arm - moment1_z_by_3_arm * l_5_1
+            - schur_2_3 * l_5_2;
+        let l_5_3 = schur_3_5 * inv_pivot_3;
+        let schur_4_5 = moment4_z_by_5_arm - moment1_z_by_4_arm * l_5_1
+            - schur_2_4 * l_5_2 - schur_3_4 * l_5_3;
+        let l_5_4 = schur_4_5 * inv_pivot_4;
+        let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
+        let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1 - schur_2_5 * l_5_2
+            - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
+        ::overact::guard::mass(pivot_5)?;
+        let inv_pivot_5 = 1.0 / pivot_5;
+        let tau_5_arm = joint_velocities[4] * base_parameters[17]
+            + ::overact::math::signed(base_parameters[18], joint_velocities[4])
+            + base_parameters[19];
+        let force_on_u5_arm = moment5_z_arm + tau_5_arm;
+        let t4 = torques[4] - force_on_u5_arm - tau1_minus_force_on_u1_arm * l_5_1
+            - l_5_2 * t1 - l_5_3 * t2 - l_5_4 * t3;
+        let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
+            - s5_arm * base_parameters[48];
+        let minus_force4_x_by_6_arm = c5_arm * minus_first5_z_arm;
+        let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
+            - s4_arm * minus_force4_x_by_6_arm;
+        let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
+        let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
+            - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
+        let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
+            + c5_arm * base_parameters[48];
+        let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
+            - s3_arm * moment4_z_by_6_arm;
+        let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
+            + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
+        let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
+            + c2_arm * moment2_y_by_6_arm;
+        let l_6_1 = moment1_z_by_6_arm * inv_pivot_1;
+        let minus_force3_x_by_6_arm = c4_arm * minus_force4_x_by_6_arm
+            + s4_arm * minus_force5_z_by_6_arm;
+        let moment3_z_by_6_arm = D3 * minus_force3_x_by_6_arm
+            - (s4_arm * moment4_x_by_6_arm + c4_arm * minus_moment5_z_by_6_arm);
+        let minus_force4_z_by_6_arm = s5_arm * minus_first5_z_arm;
+        let minus_force2_y_by_6_arm = s3_arm * minus_force3_x_by_6_arm
+            + c3_arm * minus_force4_z_by_6_arm;
+        let moment2_z_by_6_arm = moment3_z_by_6_arm - D3 * minus_force2_y_by_6_arm;
+        let schur_2_6 = moment2_z_by_6_arm - minus_inertia1_yz_arm * l_6_1;
+        let l_6_2 = schur_2_6 * inv_pivot_2;
+        let schur_3_6 = moment3_z_by_6_arm - moment1_z_by_3_arm * l_6_1
+            - schur_2_3 * l_6_2;
+        let l_6_3 = schur_3_6 * inv_pivot_3;
+        let schur_4_6 = moment4_z_by_6_arm - moment1_z_by_4_arm * l_6_1
+            - schur_2_4 * l_6_2 - schur_3_4 * l_6_3;
+        let l_6_4 = schur_4_6 * inv_pivot_4;
+        let minus_schur_5_6 = minus_moment5_z_by_6_arm + moment1_z_by_5_arm * l_6_1
+            + schur_2_5 * l_6_2 + schur_3_5 * l_6_3 + schur_4_5 * l_6_4;
+        let minus_l_6_5 = minus_schur_5_6 * inv_pivot_5;
+        let tau_6_arm = joint_velocities[5] * base_parameters[21]
+            + ::overact::math::signed(base_parameters[22], joint_velocities[5])
+            + base_parameters[23];
+        let force_on_u6_arm = moment6_z_arm + tau_6_arm;
+        let t5 = torques[5] - force_on_u6_arm - tau1_minus_force_on_u1_arm * l_6_1
+            - l_6_2 * t1 - l_6_3 * t2 - l_6_4 * t3 + minus_l_6_5 * t4;
+        let masses_arm_6_6 = base_parameters[48] + base_parameters[20];
+        let pivot_6 = masses_arm_6_6 - moment1_z_by_6_arm * l_6_1 - schur_2_6 * l_6_2
+            - schur_3_6 * l_6_3 - schur_4_6 * l_6_4 - minus_schur_5_6 * minus_l_6_5;
+        ::overact::guard::mass(pivot_6)?;
+        let t6 = t5 / pivot_6;
+        let t7 = inv_pivot_5 * t4 + minus_l_6_5 * t6;
+        let t8 = inv_pivot_4 * t3 - l_5_4 * t7 - l_6_4 * t6;
+        let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
+        let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7 - l_6_2 * t6;
+        let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10 - l_3_1 * t9
+            - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
+        ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
+    }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
     /// From the joints' positions and rates.
@@ -2641,7 +3960,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -2757,7 +4076,7 @@ impl ::overact::Model for Rx90 {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::project_platform(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::InverseDynamics => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::inverse_dynamics(
                         row.row(0)?,
@@ -2766,17 +4085,43 @@ impl ::overact::Model for Rx90 {
                         row.row(3)?,
                     ))
             }
-            ::overact::Function::MassMatrix => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::MassMatrix(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::Bias => {
+            ::overact::Function::MassMatrix(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix_base(row.row(0)?, row.row(1)?))
+            }
+            ::overact::Function::Bias(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
             }
-            ::overact::Function::ForwardDynamics => {
+            ::overact::Function::Bias(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias_base(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics_base(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,

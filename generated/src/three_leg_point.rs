@@ -5,6 +5,56 @@
 /// 3 legs, 6 joints, 3 actuators, 2 degrees of freedom; 31 standard parameters, 22 base parameters.
 /// Source: After Kock and Schumacher 1998; dimensions and masses assumed.
 ///
+/// # Operations
+///
+/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+///
+/// | function | once | each step |
+/// |---|---|---|
+/// | `pose_in_closed_form` | 29, 1 √, 2 sc, 2 gd |  |
+/// | `joints` | 94, 3 √, 6 at, 6 gd |  |
+/// | `actuator_positions` | 67, 3 √, 3 at, 6 gd |  |
+/// | `inverse_jacobian` | 70, 3 √, 9 gd |  |
+/// | `inverse_jacobian_from_joints` | 24, 6 sc, 3 gd |  |
+/// | `jacobian` | 108, 3 √, 11 gd |  |
+/// | `legs_jacobian_from_joints` | 45, 6 sc |  |
+/// | `legs_platform_jacobian_from_joints` | 0 |  |
+/// | `closure_platform_jacobian_from_joints` | 21, 3 sc |  |
+/// | `closure_actuator_jacobian_from_joints` | 3, 3 sc |  |
+/// | `joint_velocities` | 115, 3 √, 9 gd |  |
+/// | `joint_accelerations` | 175, 3 √, 9 gd |  |
+/// | `twist_from_actuators` | 105, 3 √, 11 gd |  |
+/// | `acceleration_from_actuators` | 174, 3 √, 11 gd |  |
+/// | `idm_red_platform` | 244, 3 √, 6 sg, 9 gd |  |
+/// | `idm_red_platform_from_joints` | 212, 6 sc, 6 sg, 3 gd |  |
+/// | `idm_red_platform_from_actuators` | 305, 3 √, 6 sg, 13 gd | 189, 6 √, 3 at, 17 gd |
+/// | `idm_red_actuators` | 267, 3 √, 6 sg, 11 gd |  |
+/// | `idm_red_actuators_from_joints` | 229, 6 sc, 6 sg, 5 gd |  |
+/// | `idm_red_actuators_from_actuators` | 328, 3 √, 6 sg, 15 gd | 189, 6 √, 3 at, 17 gd |
+/// | `idm_red_platform_base` | 218, 3 √, 6 sg, 9 gd |  |
+/// | `idm_red_platform_base_from_joints` | 187, 6 sc, 6 sg, 3 gd |  |
+/// | `idm_red_platform_base_from_actuators` | 279, 3 √, 6 sg, 13 gd | 189, 6 √, 3 at, 17 gd |
+/// | `idm_red_actuators_base` | 245, 3 √, 6 sg, 11 gd |  |
+/// | `idm_red_actuators_base_from_joints` | 207, 6 sc, 6 sg, 5 gd |  |
+/// | `idm_red_actuators_base_from_actuators` | 306, 3 √, 6 sg, 15 gd | 189, 6 √, 3 at, 17 gd |
+/// | `project_platform` | 80, 3 √, 9 gd |  |
+/// | `project_actuators` | 88, 3 √, 11 gd |  |
+/// | `inverse_dynamics` | 339, 3 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics_from_joints` | 291, 6 sc, 6 sg, 5 gd |  |
+/// | `inverse_dynamics_from_actuators` | 381, 3 √, 6 sg, 15 gd | 189, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_base` | 284, 3 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics_base_from_joints` | 237, 6 sc, 6 sg, 5 gd |  |
+/// | `inverse_dynamics_base_from_actuators` | 326, 3 √, 6 sg, 15 gd | 189, 6 √, 3 at, 17 gd |
+/// | `mass_matrix` | 195, 3 √, 9 gd |  |
+/// | `mass_matrix_base` | 174, 3 √, 9 gd |  |
+/// | `bias` | 263, 3 √, 6 sg, 9 gd |  |
+/// | `bias_base` | 221, 3 √, 6 sg, 9 gd |  |
+/// | `forward_dynamics` | 377, 3 √, 6 sg, 11 gd |  |
+/// | `forward_dynamics_base` | 316, 3 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics_preloaded` | 343, 4 √, 6 sg, 12 gd |  |
+/// | `project_torques` | 114, 3 √, 11 gd |  |
+/// | `null_space` | 89, 4 √, 12 gd |  |
+///
 /// # Names
 ///
 /// | name | symbol | meaning |
@@ -34,7 +84,7 @@
 /// | `bias_a_on_f1_leg3` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
 /// | `a2_y_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
 /// | `v2_by_1_x_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
-/// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
+/// | `force1_y_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
 /// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
@@ -42,9 +92,9 @@
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
 /// | `inv_pivot_1` | 1/d_k | its reciprocal |
 /// | `l_2_1` | L | entry of L |
-/// | `normal_1_1` | (I - J J⁺) e | a vector of the null space of (J_p^inv)ᵀ, before it is made one of length 1, eq. (50) |
-/// | `norm_1` | ‖(I - J J⁺) e‖ | its length |
-/// | `inv_norm_1` | 1/‖(I - J J⁺) e‖ | the reciprocal |
+/// | `share_1_3` | J_a^-T j | what a kept actuator does against the unit torque of a projected one, eq. (50) |
+/// | `norm_3` | √(1 + c · Q c) | length of the internal torque that does one at a projected actuator |
+/// | `inv_norm_3` | 1/√(1 + c · Q c) | the reciprocal |
 /// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
 /// | `vx_by_a1` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
 /// | `g1_a1_leg3` | ∂u_i/∂q̇_a | the reduced Jacobian on a kept actuator, eq. (36) |
@@ -202,7 +252,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 29 operations (13 additions, 15 multiplications, 1 divisions), 1 square roots, 2 trigonometric pairs, 0 signs, 32 intermediates.
+    /// 29 operations (13 additions, 15 multiplications, 1 division), 1 square root, 2 trigonometric pairs, 2 guards, 32 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -248,7 +298,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6.
     ///
-    /// 94 operations (41 additions, 50 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 100 intermediates.
+    /// 94 operations (41 additions, 50 multiplications, 3 divisions), 3 square roots, 6 arc tangents, 6 guards, 3 negations, 100 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -337,7 +387,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 67 operations (29 additions, 35 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 73 intermediates.
+    /// 67 operations (29 additions, 35 multiplications, 3 divisions), 3 square roots, 3 arc tangents, 6 guards, 3 negations, 73 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -406,7 +456,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3 x 2.
     ///
-    /// 70 operations (24 additions, 40 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 67 intermediates.
+    /// 70 operations (24 additions, 40 multiplications, 6 divisions), 3 square roots, 9 guards, 3 negations, 67 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -490,7 +540,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3 x 2.
     ///
-    /// 24 operations (7 additions, 14 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 27 intermediates.
+    /// 24 operations (7 additions, 14 multiplications, 3 divisions), 6 trigonometric pairs, 3 guards, 3 negations, 27 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -537,7 +587,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2 x 3.
     ///
-    /// 108 operations (37 additions, 63 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 105 intermediates.
+    /// 108 operations (37 additions, 63 multiplications, 8 divisions), 3 square roots, 11 guards, 105 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -648,7 +698,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6 x 6.
     ///
-    /// 45 operations (17 additions, 28 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 45 intermediates.
+    /// 45 operations (17 additions, 28 multiplications, 0 divisions), 6 trigonometric pairs, 4 negations, 45 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -700,7 +750,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6 x 2.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 0 operations.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -721,7 +771,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3 x 2.
     ///
-    /// 21 operations (7 additions, 14 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 21 intermediates.
+    /// 21 operations (7 additions, 14 multiplications, 0 divisions), 3 trigonometric pairs, 3 negations, 21 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -756,7 +806,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3 x 3.
     ///
-    /// 3 operations (0 additions, 3 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 3 intermediates.
+    /// 3 operations (0 additions, 3 multiplications, 0 divisions), 3 trigonometric pairs, 3 negations, 3 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -784,7 +834,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6.
     ///
-    /// 115 operations (43 additions, 66 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 112 intermediates.
+    /// 115 operations (43 additions, 66 multiplications, 6 divisions), 3 square roots, 9 guards, 1 negation, 112 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -897,7 +947,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6.
     ///
-    /// 175 operations (64 additions, 105 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 172 intermediates.
+    /// 175 operations (64 additions, 105 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 172 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1050,7 +1100,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 105 operations (37 additions, 60 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 106 intermediates.
+    /// 105 operations (37 additions, 60 multiplications, 8 divisions), 3 square roots, 11 guards, 106 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1161,7 +1211,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 174 operations (62 additions, 104 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 175 intermediates.
+    /// 174 operations (62 additions, 104 multiplications, 8 divisions), 3 square roots, 11 guards, 175 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1328,7 +1378,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 235 operations (84 additions, 145 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 198 intermediates.
+    /// 244 operations (78 additions, 160 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 26 negations, 195 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1393,12 +1443,11 @@ impl ThreeLegPoint {
         let inv_l_1_dvy = INV_L_1 * acceleration[1];
         let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
         let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let gq2_vx_leg1 = minus_g1_vx_leg1 - minus_g2_vx_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
+        let t2_leg1 = ::overact::math::signed(k_leg1, minus_qd_2_leg1);
+        let t1_leg3 = pose[1] * 0.8660254037844386;
         // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
+        let d_y_leg2 = half_x - t1_leg3;
         let t1_leg2 = pose[0] + 0.3031088913245535;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t2_leg2 = 0.5 * y_plus_half_radius;
@@ -1420,10 +1469,11 @@ impl ThreeLegPoint {
             - 2.0833333333333335 * minus_l2_x_leg2;
         let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
             - minus_fk1_x_leg2 * acceleration[0];
-        let t1_leg3 = INV_L_1 * y_plus_half_radius;
-        let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
+        let t2_leg3 = INV_L_1 * y_plus_half_radius;
+        let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
         let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = INV_L_1 * t1_leg2 - minus_fk1_x_leg2;
+        let t3_leg2 = INV_L_1 * t1_leg2;
+        let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
             + minus_g2_vx_leg2 * twist[0];
@@ -1443,13 +1493,12 @@ impl ThreeLegPoint {
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
         let zz_2_leg2_on_vy = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
         let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-        let qd_2_leg2 = -minus_qd_2_leg2;
-        let gq2_vy_leg2 = minus_g1_vy_leg2 - minus_g2_vy_leg2;
+        let t4_leg2 = ::overact::math::signed(k_leg2, -minus_qd_2_leg2);
         // --- leg3
-        let t2_leg3 = pose[0] - 0.3031088913245535;
-        let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+        let t3_leg3 = pose[0] - 0.3031088913245535;
+        let d_x_leg3 = 0.8660254037844386 * t3_leg3 - t2_leg2;
+        let d_y_leg3 = half_x + t1_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -1466,9 +1515,10 @@ impl ThreeLegPoint {
             - 3.608439182435161 * l2_y_leg3;
         let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
             - minus_fk1_y_leg3 * acceleration[1];
-        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
         let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = INV_L_1 * t2_leg3 - fk1_x_leg3;
+        let t4_leg3 = INV_L_1 * t3_leg3;
+        let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
             + minus_g2_vx_leg3 * twist[0];
@@ -1488,10 +1538,8 @@ impl ThreeLegPoint {
             * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
         let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
         let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let qd_2_leg3 = -minus_qd_2_leg3;
-        let gq2_vy_leg3 = minus_g1_vy_leg3 - minus_g2_vy_leg3;
+        let t5_leg3 = ::overact::math::signed(k_leg3, -minus_qd_2_leg3);
         ::core::result::Result::Ok([
             [
                 zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
@@ -1500,7 +1548,7 @@ impl ThreeLegPoint {
                 -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
                     + minus_g2_vx_leg1 * minus_a2_x_leg1),
                 L_1_SQUARED * zz_1_leg1_on_vx,
-                -::overact::math::signed(gq2_vx_leg1, minus_qd_2_leg1),
+                pose[0] * t2_leg1,
                 -minus_zz_1_leg2_on_vx,
                 -minus_zz_1_leg2_on_vx,
                 g1_vx_leg2 * rate_1_leg2,
@@ -1510,7 +1558,7 @@ impl ThreeLegPoint {
                 inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx),
                 g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
                 -(L_1_SQUARED * minus_zz_1_leg2_on_vx),
-                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
+                -(t3_leg2 * t4_leg2),
                 zz_1_leg3_on_vx,
                 zz_1_leg3_on_vx,
                 g1_vx_leg3 * rate_1_leg3,
@@ -1520,7 +1568,7 @@ impl ThreeLegPoint {
                 inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
                 minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
                 L_1_SQUARED * zz_1_leg3_on_vx,
-                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
+                -(t4_leg3 * t5_leg3),
                 acceleration[0],
             ],
             [
@@ -1528,19 +1576,17 @@ impl ThreeLegPoint {
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
                 inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
                 g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
-                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1), zz_1_leg2_on_vy,
+                -(L_1_SQUARED * minus_zz_1_leg1_on_vy), d_x_leg1 * t2_leg1, zz_1_leg2_on_vy,
                 zz_1_leg2_on_vy, -(minus_g1_vy_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
                 zz_2_leg2_on_vy, inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy + zz_2_leg2_on_vy),
                 -(minus_g2_vy_leg2 * a_on_f1_leg2 + minus_g1_vy_leg2 * a_on_f2_leg2),
-                L_1_SQUARED * zz_1_leg2_on_vy, ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
-                -minus_zz_1_leg3_on_vy, -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
+                L_1_SQUARED * zz_1_leg2_on_vy, -(t2_leg3 * t4_leg2), -minus_zz_1_leg3_on_vy,
+                -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
                 zz_2_leg3_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
                 minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
-                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3), acceleration[1],
+                -(L_1_SQUARED * minus_zz_1_leg3_on_vy), -(t2_leg3 * t5_leg3), acceleration[1],
             ],
         ])
     }
@@ -1555,7 +1601,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 200 operations (65 additions, 132 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 12 signs, 170 intermediates.
+    /// 212 operations (65 additions, 144 multiplications, 3 divisions), 6 trigonometric pairs, 6 signs, 3 guards, 24 negations, 170 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1739,7 +1785,8 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 296 operations (111 additions, 174 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 256 intermediates.
+    /// 305 operations (105 additions, 188 multiplications, 12 divisions), 3 square roots, 6 signs, 13 guards, 19 negations, 254 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1787,8 +1834,7 @@ impl ThreeLegPoint {
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t2_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
-        let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
-        let d_y_leg2 = pose[0] - d_y_leg3;
+        let d_y_leg2 = half_x - pose[1] * 0.8660254037844386;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
@@ -1816,6 +1862,7 @@ impl ThreeLegPoint {
         // --- leg3
         let t2_leg3 = pose[0] - 0.3031088913245535;
         let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
+        let d_y_leg3 = pose[0] - d_y_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -1865,7 +1912,8 @@ impl ThreeLegPoint {
         let vy = (g1_vy_leg1 * actuator_velocities[0]
             + g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
-        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+        let t3_leg2 = t1_leg2 * INV_L_1;
+        let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let vx = t1 / s_1_1 + minus_l_2_1 * vy;
         // --- leg2
@@ -1896,7 +1944,8 @@ impl ThreeLegPoint {
         // --- leg3
         let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
         let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = t2_leg3 * INV_L_1 - fk1_x_leg3;
+        let t3_leg3 = t2_leg3 * INV_L_1;
+        let minus_fk2_x_leg3 = t3_leg3 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
@@ -1932,9 +1981,8 @@ impl ThreeLegPoint {
         let inv_l_1_dvy = INV_L_1 * dvy;
         let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
         let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let gq2_vx_leg1 = minus_g1_vx_leg1 - minus_g2_vx_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t3_leg1 = ::overact::math::sign(minus_qd_2_leg1) / det_leg1;
         // --- leg2
         let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
         let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
@@ -1948,9 +1996,8 @@ impl ThreeLegPoint {
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let zz_2_leg2_on_vx = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
         let minus_zz_2_leg2_on_vy = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let gq2_vy_leg2 = g2_vy_leg2 - g1_vy_leg2;
+        let t4_leg2 = ::overact::math::signed(k_leg2, qd_2_leg2);
         // --- leg3
         let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
         let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
@@ -1964,10 +2011,8 @@ impl ThreeLegPoint {
             * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
         let zz_2_leg3_on_vx = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
         let zz_2_leg3_on_vy = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
         let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let qd_2_leg3 = -minus_qd_2_leg3;
-        let gq2_vy_leg3 = minus_g1_vy_leg3 - minus_g2_vy_leg3;
+        let t4_leg3 = ::overact::math::signed(k_leg3, -minus_qd_2_leg3);
         ::core::result::Result::Ok([
             [
                 zz_1_leg1_on_vx, zz_1_leg1_on_vx, -(minus_g1_vx_leg1 * rate_1_leg1),
@@ -1976,7 +2021,7 @@ impl ThreeLegPoint {
                 -(minus_g1_vx_leg1 * inv_l_1_a_on_f2_leg1
                     + minus_g2_vx_leg1 * minus_a2_x_leg1),
                 L_1_SQUARED * zz_1_leg1_on_vx,
-                -::overact::math::signed(gq2_vx_leg1, minus_qd_2_leg1),
+                pose[0] * t3_leg1,
                 zz_1_leg2_on_vx,
                 zz_1_leg2_on_vx,
                 g1_vx_leg2 * rate_1_leg2,
@@ -1986,7 +2031,7 @@ impl ThreeLegPoint {
                 inv_l_1_dvx - L_1 * (zz_2_leg2_on_vx + zz_1_leg2_on_vx),
                 g1_vx_leg2 * a_on_f2_leg2 + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
                 L_1_SQUARED * zz_1_leg2_on_vx,
-                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
+                -(t3_leg2 * t4_leg2),
                 zz_1_leg3_on_vx,
                 zz_1_leg3_on_vx,
                 g1_vx_leg3 * rate_1_leg3,
@@ -1996,7 +2041,7 @@ impl ThreeLegPoint {
                 inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx),
                 minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
                 L_1_SQUARED * zz_1_leg3_on_vx,
-                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
+                -(t3_leg3 * t4_leg3),
                 dvx,
             ],
             [
@@ -2004,20 +2049,18 @@ impl ThreeLegPoint {
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, zz_2_leg1_on_vy,
                 inv_l_1_dvy - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy),
                 g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
-                -(L_1_SQUARED * minus_zz_1_leg1_on_vy),
-                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1), zz_1_leg2_on_vy,
+                -(L_1_SQUARED * minus_zz_1_leg1_on_vy), d_x_leg1 * t3_leg1, zz_1_leg2_on_vy,
                 zz_1_leg2_on_vy, g1_vy_leg2 * rate_1_leg2,
                 ::overact::math::signed(g1_vy_leg2, rate_1_leg2), g1_vy_leg2,
                 -minus_zz_2_leg2_on_vy,
                 inv_l_1_dvy - L_1 * (zz_1_leg2_on_vy - minus_zz_2_leg2_on_vy),
                 g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
-                L_1_SQUARED * zz_1_leg2_on_vy, ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
-                -minus_zz_1_leg3_on_vy, -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
+                L_1_SQUARED * zz_1_leg2_on_vy, -(t1_leg3 * t4_leg2), -minus_zz_1_leg3_on_vy,
+                -minus_zz_1_leg3_on_vy, -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
                 zz_2_leg3_on_vy, inv_l_1_dvy - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy),
                 minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                -(L_1_SQUARED * minus_zz_1_leg3_on_vy),
-                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3), dvy,
+                -(L_1_SQUARED * minus_zz_1_leg3_on_vy), -(t1_leg3 * t4_leg3), dvy,
             ],
         ])
     }
@@ -2031,7 +2074,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 259 operations (91 additions, 160 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 228 intermediates.
+    /// 267 operations (91 additions, 168 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 20 negations, 228 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2262,7 +2305,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 221 operations (70 additions, 147 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 10 signs, 199 intermediates.
+    /// 229 operations (70 additions, 155 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 16 negations, 199 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2455,7 +2498,8 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 320 operations (116 additions, 194 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 289 intermediates.
+    /// 328 operations (116 additions, 202 multiplications, 10 divisions), 3 square roots, 6 signs, 15 guards, 20 negations, 289 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2752,7 +2796,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 209 operations (72 additions, 131 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 184 intermediates.
+    /// 218 operations (66 additions, 145 multiplications, 7 divisions), 3 square roots, 6 signs, 9 guards, 20 negations, 182 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2832,7 +2876,8 @@ impl ThreeLegPoint {
         let t2_leg3 = y_plus_half_radius * INV_L_1;
         let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
         let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+        let t3_leg2 = t1_leg2 * INV_L_1;
+        let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
             + minus_g2_vx_leg2 * twist[0];
@@ -2866,7 +2911,8 @@ impl ThreeLegPoint {
             - minus_fk1_y_leg3 * acceleration[1];
         let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
         let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = t3_leg3 * INV_L_1 - fk1_x_leg3;
+        let t4_leg3 = t3_leg3 * INV_L_1;
+        let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
             + minus_g2_vx_leg3 * twist[0];
@@ -2893,17 +2939,12 @@ impl ThreeLegPoint {
         // --- leg1
         let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
         let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let gq2_vx_leg1 = minus_g1_vx_leg1 - minus_g2_vx_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t2_leg1 = ::overact::math::sign(minus_qd_2_leg1) / det_leg1;
         let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-        let qd_2_leg2 = -minus_qd_2_leg2;
-        let gq2_vy_leg2 = minus_g1_vy_leg2 - minus_g2_vy_leg2;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t4_leg2 = ::overact::math::signed(k_leg2, -minus_qd_2_leg2);
         let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let qd_2_leg3 = -minus_qd_2_leg3;
-        let gq2_vy_leg3 = minus_g1_vy_leg3 - minus_g2_vy_leg3;
+        let t5_leg3 = ::overact::math::signed(k_leg3, -minus_qd_2_leg3);
         ::core::result::Result::Ok([
             [
                 acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
@@ -2918,9 +2959,9 @@ impl ThreeLegPoint {
                     + minus_g2_vx_leg1 * minus_a2_x_leg1),
                 g1_vx_leg2 * a_on_f2_leg2 - minus_g2_vx_leg2 * a_on_f1_leg2,
                 minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
-                -::overact::math::signed(gq2_vx_leg1, minus_qd_2_leg1),
-                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
-                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
+                pose[0] * t2_leg1,
+                -(t3_leg2 * t4_leg2),
+                -(t4_leg3 * t5_leg3),
             ],
             [
                 acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
@@ -2934,9 +2975,7 @@ impl ThreeLegPoint {
                 g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
                 -(minus_g2_vy_leg2 * a_on_f1_leg2 + minus_g1_vy_leg2 * a_on_f2_leg2),
                 minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1),
-                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
-                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3),
+                d_x_leg1 * t2_leg1, -(t2_leg3 * t4_leg2), -(t2_leg3 * t5_leg3),
             ],
         ])
     }
@@ -2951,7 +2990,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 175 operations (53 additions, 119 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 12 signs, 157 intermediates.
+    /// 187 operations (53 additions, 131 multiplications, 3 divisions), 6 trigonometric pairs, 6 signs, 3 guards, 18 negations, 157 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3109,7 +3148,8 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 270 operations (99 additions, 160 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 242 intermediates.
+    /// 279 operations (93 additions, 174 multiplications, 12 divisions), 3 square roots, 6 signs, 13 guards, 15 negations, 240 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3236,7 +3276,8 @@ impl ThreeLegPoint {
         let vy = (g1_vy_leg1 * actuator_velocities[0]
             + g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
-        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
+        let t3_leg2 = t1_leg2 * INV_L_1;
+        let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let vx = t1 / s_1_1 + minus_l_2_1 * vy;
         // --- leg2
@@ -3267,7 +3308,8 @@ impl ThreeLegPoint {
         // --- leg3
         let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t2_leg3;
         let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = t3_leg3 * INV_L_1 - fk1_x_leg3;
+        let t4_leg3 = t3_leg3 * INV_L_1;
+        let minus_fk2_x_leg3 = t4_leg3 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
@@ -3313,16 +3355,12 @@ impl ThreeLegPoint {
         // --- leg1
         let inv_l_1_a_on_f2_leg1 = INV_L_1 * a_on_f2_leg1;
         let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let gq2_vx_leg1 = minus_g1_vx_leg1 - minus_g2_vx_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t3_leg1 = ::overact::math::sign(minus_qd_2_leg1) / det_leg1;
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let gq2_vy_leg2 = g2_vy_leg2 - g1_vy_leg2;
-        let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t4_leg2 = ::overact::math::signed(k_leg2, qd_2_leg2);
         let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-        let qd_2_leg3 = -minus_qd_2_leg3;
-        let gq2_vy_leg3 = minus_g1_vy_leg3 - minus_g2_vy_leg3;
+        let t5_leg3 = ::overact::math::signed(k_leg3, -minus_qd_2_leg3);
         ::core::result::Result::Ok([
             [
                 dvx, minus_g1_vx_leg1 * minus_rate_dot_1_leg1, g1_vx_leg2 * rate_dot_1_leg2,
@@ -3337,9 +3375,9 @@ impl ThreeLegPoint {
                     + minus_g2_vx_leg1 * minus_a2_x_leg1),
                 g1_vx_leg2 * a_on_f2_leg2 + minus_g2_vx_leg2 * minus_a_on_f1_leg2,
                 minus_g2_vx_leg3 * a_on_f1_leg3 + g1_vx_leg3 * minus_a_on_f2_leg3,
-                -::overact::math::signed(gq2_vx_leg1, minus_qd_2_leg1),
-                -::overact::math::signed(minus_gq2_vx_leg2, qd_2_leg2),
-                -::overact::math::signed(minus_gq2_vx_leg3, qd_2_leg3),
+                pose[0] * t3_leg1,
+                -(t3_leg2 * t4_leg2),
+                -(t4_leg3 * t5_leg3),
             ],
             [
                 dvy, -(g1_vy_leg1 * minus_rate_dot_1_leg1), g1_vy_leg2 * rate_dot_1_leg2,
@@ -3353,9 +3391,7 @@ impl ThreeLegPoint {
                 g1_vy_leg1 * inv_l_1_a_on_f2_leg1 - minus_g2_vy_leg1 * minus_a2_x_leg1,
                 g1_vy_leg2 * a_on_f2_leg2 - g2_vy_leg2 * minus_a_on_f1_leg2,
                 minus_g2_vy_leg3 * a_on_f1_leg3 - minus_g1_vy_leg3 * minus_a_on_f2_leg3,
-                ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1),
-                ::overact::math::signed(gq2_vy_leg2, qd_2_leg2),
-                ::overact::math::signed(gq2_vy_leg3, qd_2_leg3),
+                d_x_leg1 * t3_leg1, -(t2_leg3 * t4_leg2), -(t2_leg3 * t5_leg3),
             ],
         ])
     }
@@ -3369,7 +3405,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 237 operations (81 additions, 148 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 216 intermediates.
+    /// 245 operations (81 additions, 156 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 13 negations, 216 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3579,7 +3615,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 199 operations (60 additions, 135 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 10 signs, 187 intermediates.
+    /// 207 operations (60 additions, 143 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 10 negations, 187 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3747,7 +3783,8 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 298 operations (106 additions, 182 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 277 intermediates.
+    /// 306 operations (106 additions, 190 multiplications, 10 divisions), 3 square roots, 6 signs, 15 guards, 13 negations, 277 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4019,7 +4056,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 80 operations (28 additions, 46 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 81 intermediates.
+    /// 80 operations (28 additions, 46 multiplications, 6 divisions), 3 square roots, 9 guards, 81 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4107,7 +4144,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 88 operations (29 additions, 52 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 89 intermediates.
+    /// 88 operations (29 additions, 52 multiplications, 7 divisions), 3 square roots, 11 guards, 89 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4211,7 +4248,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 333 operations (133 additions, 192 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 339 intermediates.
+    /// 339 operations (133 additions, 198 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 339 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4461,7 +4498,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 285 operations (107 additions, 173 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 6 signs, 300 intermediates.
+    /// 291 operations (107 additions, 179 multiplications, 5 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 300 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4667,7 +4704,8 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 375 operations (151 additions, 216 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 381 intermediates.
+    /// 381 operations (151 additions, 222 multiplications, 8 divisions), 3 square roots, 6 signs, 15 guards, 381 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4964,6 +5002,709 @@ impl ThreeLegPoint {
             g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
         ])
     }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 3.
+    ///
+    /// 284 operations (110 additions, 166 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 284 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn inverse_dynamics_base(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 22],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("acceleration", acceleration),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+            + minus_g2_vy_leg1 * twist[1];
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+        let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force2_x_leg1 = base_parameters[16] * minus_rate_dot_2_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
+        let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(
+            base_parameters[19],
+            minus_qd_2_leg1,
+        );
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 - v2_by_1_y_leg1 * minus_force2_y_leg1
+            + minus_tau_2_leg1;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let moment2_z_leg1 = base_parameters[16] * minus_a2_x_leg1
+            - base_parameters[13] * minus_rate_dot_2_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
+            - base_parameters[14] * minus_rate_dot_2_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
+            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
+            + base_parameters[11];
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let moment2_z_leg3 = base_parameters[15] * rate_dot_2_leg3
+            - base_parameters[18] * a_on_f1_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
+        let tau_1_leg3 = base_parameters[6] * rate_1_leg3
+            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
+            + base_parameters[12];
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            - a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
+        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let force_y_platform = acceleration[1] * base_parameters[0];
+        let t2 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let force_x_platform = acceleration[0] * base_parameters[0];
+        let t3 = t2 + force_x_platform;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
+        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
+        ::core::result::Result::Ok([
+            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
+            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
+        ])
+    }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 3.
+    ///
+    /// 237 operations (86 additions, 146 multiplications, 5 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 246 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn inverse_dynamics_base_from_joints(
+        pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 22],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("joints", joints), ("twist", twist),
+                ("acceleration", acceleration), ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        // --- sines and cosines
+        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
+        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
+        // --- leg1
+        let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
+        let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
+        let k_leg1 = INV_L_1 / s2_leg1;
+        let g1_vy_leg1 = c12_leg1 * k_leg1;
+        let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        let minus_atip_x_leg1 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1];
+        let g2_vx_leg1 = s1_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
+        let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
+        let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
+        let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let v2_by_1_y_leg1 = L_1 * c2_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * v2_by_1_y_leg1);
+        let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
+        let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
+            + L_1 * rate_1_squared_leg1;
+        let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
+        let tau_2_leg1 = ::overact::math::signed(base_parameters[19], qd_2_leg1);
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + base_parameters[16] * a_on_f2_leg1 - tau_2_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+        let moment2_z_leg1 = base_parameters[16] * a_on_f1_leg1
+            - base_parameters[13] * minus_rate_dot_2_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
+        // --- leg2
+        let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let k_leg2 = INV_L_1 / s2_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+        let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let v2_by_1_y_leg2 = L_1 * c2_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
+            - base_parameters[14] * minus_rate_dot_2_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
+            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
+            + base_parameters[11];
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
+        // --- leg3
+        let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let k_leg3 = INV_L_1 / s2_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+        let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let v2_by_1_y_leg3 = L_1 * c2_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
+        let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let moment2_z_leg3 = base_parameters[15] * rate_dot_2_leg3
+            - base_parameters[18] * a_on_f1_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let rate_dot_1_leg3 = k_leg3
+            * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
+        let tau_1_leg3 = base_parameters[6] * rate_1_leg3
+            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
+            + base_parameters[12];
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            - a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
+        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let force_y_platform = acceleration[1] * base_parameters[0];
+        let t2 = g2_vx_leg1 * force_on_u2_leg1 - minus_g1_vx_leg1 * force_on_u1_leg1
+            + g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let force_x_platform = acceleration[0] * base_parameters[0];
+        let t3 = t2 + force_x_platform;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848631333,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848631322,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
+        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
+        ::core::result::Result::Ok([
+            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
+            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
+        ])
+    }
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    ///
+    /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
+    /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
+    /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    ///
+    /// Output: 3.
+    ///
+    /// 326 operations (128 additions, 190 multiplications, 8 divisions), 3 square roots, 6 signs, 15 guards, 326 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn inverse_dynamics_base_from_actuators(
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        base_parameters: &[::core::primitive::f64; 22],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("actuators", actuators), ("actuator_velocities", actuator_velocities),
+                ("actuator_accelerations", actuator_accelerations),
+                ("base_parameters", base_parameters), ("start", start),
+            ],
+        )?;
+        let pose = &Self::pose_from_actuators(actuators, start)?;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            pivot_2,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_2 = 1.0 / pivot_2;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
+            - minus_g1_vx_leg1 * actuator_velocities[0]
+            + g1_vx_leg3 * actuator_velocities[2];
+        let vy = inv_pivot_2
+            * (g1_vy_leg1 * actuator_velocities[0]
+                - minus_g1_vy_leg2 * actuator_velocities[1]
+                - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1);
+        let vx = t1 * inv_pivot_1 + minus_l_2_1 * vy;
+        let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
+        let tau_1_leg1 = rate_1_leg1 * base_parameters[4]
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        // --- leg2
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_v2_by_1_y_leg2);
+        let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
+            - bias_rate_dot_1_leg2;
+        // --- leg1
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
+        let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
+            - bias_rate_dot_1_leg1;
+        // --- leg3
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
+            - bias_rate_dot_1_leg3;
+        let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
+        let dvy = inv_pivot_2
+            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
+        let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
+        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
+        let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
+        // --- leg1
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let force2_x_leg1 = base_parameters[16] * minus_rate_dot_2_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
+        let minus_force2_y_leg1 = rate_2_squared_leg1 * base_parameters[16];
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(
+            base_parameters[19],
+            minus_qd_2_leg1,
+        );
+        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 - v2_by_1_y_leg1 * minus_force2_y_leg1
+            + minus_tau_2_leg1;
+        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
+        let moment2_z_leg1 = base_parameters[16] * minus_a2_x_leg1
+            - base_parameters[13] * minus_rate_dot_2_leg1;
+        let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
+        // --- leg2
+        let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
+            - base_parameters[14] * minus_rate_dot_2_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let tau_1_leg2 = rate_1_leg2 * base_parameters[5]
+            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
+            + base_parameters[11];
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
+        let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
+        // --- leg3
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
+            - minus_bias_a_on_f2_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+        let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+        let moment2_z_leg3 = base_parameters[15] * rate_dot_2_leg3
+            - base_parameters[18] * a_on_f1_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
+        let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
+        let tau_1_leg3 = rate_1_leg3 * base_parameters[6]
+            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
+            + base_parameters[12];
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            - a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
+        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let force_y_platform = dvy * base_parameters[0];
+        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+            - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
+            + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let force_x_platform = dvx * base_parameters[0];
+        let t5 = t4 + force_x_platform;
+        let t6 = inv_pivot_2 * (t3 + force_y_platform + minus_l_2_1 * t5);
+        let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
+        ::core::result::Result::Ok([
+            g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
+            g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
+        ])
+    }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
@@ -4972,7 +5713,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2 x 2.
     ///
-    /// 195 operations (75 additions, 114 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 195 intermediates.
+    /// 195 operations (75 additions, 114 multiplications, 6 divisions), 3 square roots, 9 guards, 195 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5116,6 +5857,161 @@ impl ThreeLegPoint {
             [t2_leg3 + parameters[30], t5_leg3], [t5_leg3, t6_leg3 + parameters[30]],
         ])
     }
+    /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2 x 2.
+    ///
+    /// 174 operations (63 additions, 105 multiplications, 6 divisions), 3 square roots, 9 guards, 174 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn mass_matrix_base(
+        pose: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 22],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("base_parameters", base_parameters)],
+        )?;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1²
+        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
+        let minus_first1_x_leg1 = s2_leg1 * base_parameters[16];
+        let minus_masses_leg1_1_2 = L_1 * minus_first1_x_leg1;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
+        let minus_first1_x_leg2 = s2_leg2 * base_parameters[17];
+        let minus_masses_leg2_1_2 = L_1 * minus_first1_x_leg2;
+        let t2_leg2 = minus_g2_vx_leg1
+            * (minus_g2_vx_leg1 * base_parameters[13]
+                - minus_g1_vx_leg1 * minus_masses_leg1_1_2)
+            - minus_g1_vx_leg1
+                * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
+                    - minus_g1_vx_leg1 * base_parameters[1])
+            + g1_vx_leg2
+                * (g1_vx_leg2 * base_parameters[2]
+                    + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
+            + minus_g2_vx_leg2
+                * (g1_vx_leg2 * minus_masses_leg2_1_2
+                    + minus_g2_vx_leg2 * base_parameters[14]);
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
+        let minus_first1_x_leg3 = s2_leg3 * base_parameters[18];
+        let minus_masses_leg3_1_2 = L_1 * minus_first1_x_leg3;
+        let t2_leg3 = t2_leg2
+            + g1_vx_leg3
+                * (g1_vx_leg3 * base_parameters[3]
+                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+            + minus_g2_vx_leg3
+                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                    + minus_g2_vx_leg3 * base_parameters[15]);
+        // --- leg1
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let t1_leg1 = minus_masses_leg1_1_2 * g1_vy_leg1
+            + minus_g2_vy_leg1 * base_parameters[13];
+        let t2_leg1 = g1_vy_leg1 * base_parameters[1]
+            + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
+        // --- leg2
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let t3_leg2 = minus_g1_vy_leg2 * base_parameters[2]
+            + g2_vy_leg2 * minus_masses_leg2_1_2;
+        let t4_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
+            + g2_vy_leg2 * base_parameters[14];
+        // --- leg3
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
+            + g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t4_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+            + g2_vy_leg3 * base_parameters[15];
+        let t5_leg3 = minus_g2_vx_leg1 * t1_leg1 - minus_g1_vx_leg1 * t2_leg1
+            - (g1_vx_leg2 * t3_leg2 + minus_g2_vx_leg2 * t4_leg2)
+            - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
+        let t6_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t1_leg1
+            + minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg2 * t4_leg2
+            + minus_g1_vy_leg3 * t3_leg3 + g2_vy_leg3 * t4_leg3;
+        ::core::result::Result::Ok([
+            [t2_leg3 + base_parameters[0], t5_leg3], [t5_leg3, t6_leg3 + base_parameters[0]],
+        ])
+    }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
@@ -5125,7 +6021,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 257 operations (101 additions, 150 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 264 intermediates.
+    /// 263 operations (101 additions, 156 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 264 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5324,6 +6220,198 @@ impl ThreeLegPoint {
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
         ::core::result::Result::Ok([t4_leg3, t5_leg3])
     }
+    /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 221 operations (84 additions, 131 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 222 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn bias_base(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        base_parameters: &[::core::primitive::f64; 22],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[("pose", pose), ("twist", twist), ("base_parameters", base_parameters)],
+        )?;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+            + minus_g2_vy_leg1 * twist[1];
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let t2_leg1 = 0.5 * t1_leg1;
+        let minus_bias_rate_dot_2_leg1 = k_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+        let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
+        let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
+            + L_1 * minus_force2_y_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(
+            base_parameters[19],
+            minus_qd_2_leg1,
+        );
+        let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1
+            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+        let moment1_z_leg1 = base_parameters[1] * bias_rate_dot_1_leg1;
+        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
+        let force2_x_leg1 = base_parameters[16] * minus_bias_rate_dot_2_leg1;
+        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
+        let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
+            + v2_by_1_x_leg1 * force2_x_leg1 - v2_by_1_y_leg1 * minus_force2_y_leg1
+            + minus_tau_2_leg1;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let moment1_z_leg2 = base_parameters[2] * bias_rate_dot_1_leg2;
+        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
+            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
+            + base_parameters[11];
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
+        let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
+            + base_parameters[17] * bias_a_on_f2_leg2 - tau_2_leg2;
+        let minus_bias_rate_dot_2_leg2 = k_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let minus_moment2_z_leg2 = base_parameters[14] * minus_bias_rate_dot_2_leg2
+            + minus_bias_a_on_f1_leg2 * base_parameters[17];
+        let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let moment1_z_leg3 = base_parameters[3] * bias_rate_dot_1_leg3;
+        let tau_1_leg3 = base_parameters[6] * rate_1_leg3
+            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
+            + base_parameters[12];
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
+        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
+            + base_parameters[18] * minus_bias_a_on_f2_leg3 - tau_2_leg3;
+        let minus_bias_rate_dot_2_leg3 = k_leg3
+            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let minus_moment2_z_leg3 = base_parameters[15] * minus_bias_rate_dot_2_leg3
+            + bias_a_on_f1_leg3 * base_parameters[18];
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+        let t1 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
+            - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
+            - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
+            - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let t2 = g1_vy_leg1 * force_on_u1_leg1
+            + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
+            - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
+            - minus_g1_vy_leg3 * force_on_u1_leg3;
+        ::core::result::Result::Ok([t1, t2])
+    }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
     /// From the platform's pose and motion.
@@ -5334,7 +6422,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 371 operations (145 additions, 218 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 378 intermediates.
+    /// 377 operations (145 additions, 224 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 378 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5598,6 +6686,251 @@ impl ThreeLegPoint {
             - minus_g1_vy_leg3 * torques[2] - t9_leg3 - t1 * l_2_1) / pivot_2;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
     }
+    /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
+    /// - `torques`: τ, forces and torques of the actuators (N, N m)
+    /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    ///
+    /// Output: 2.
+    ///
+    /// 316 operations (121 additions, 187 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 317 intermediates.
+    ///
+    /// # Errors
+    /// An input that is not finite, a pose out of reach, or a singular configuration.
+    pub fn forward_dynamics_base(
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 3],
+        base_parameters: &[::core::primitive::f64; 22],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
+        ::overact::guard::finite(
+            &[
+                ("pose", pose), ("twist", twist), ("torques", torques),
+                ("base_parameters", base_parameters),
+            ],
+        )?;
+        /// radius / 2
+        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        /// 1 / l_1
+        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        /// l_1 = l_2
+        const L_1: ::core::primitive::f64 = 0.24;
+        /// l_1²
+        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        /// radius
+        const RADIUS: ::core::primitive::f64 = 0.35;
+        /// 2 l_1²
+        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        // --- leg2
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
+        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        // --- leg1
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
+            + minus_g2_vy_leg1 * twist[1];
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let minus_bias_rate_dot_2_leg1 = k_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
+        let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
+            + L_1 * minus_force2_y_leg1;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(
+            base_parameters[19],
+            minus_qd_2_leg1,
+        );
+        let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1
+            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+        let force1_y_leg1 = rate_1_squared_leg1 * base_parameters[16];
+        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        let force_on_u1_leg1 = minus_tau_2_leg1
+            + base_parameters[1] * bias_rate_dot_1_leg1 + L_1 * force1_y_leg1
+            + tau_1_leg1;
+        // --- leg2
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let tau_1_leg2 = base_parameters[5] * rate_1_leg2
+            + ::overact::math::signed(base_parameters[8], rate_1_leg2)
+            + base_parameters[11];
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
+        let force_on_u1_leg2 = base_parameters[2] * bias_rate_dot_1_leg2
+            + base_parameters[17] * bias_a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
+        let minus_bias_rate_dot_2_leg2 = k_leg2
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let minus_moment2_z_leg2 = base_parameters[14] * minus_bias_rate_dot_2_leg2
+            + minus_bias_a_on_f1_leg2 * base_parameters[17];
+        let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
+        // --- leg3
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
+            + 2.0833333333333335 * l1_y_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let tau_1_leg3 = base_parameters[6] * rate_1_leg3
+            + ::overact::math::signed(base_parameters[9], rate_1_leg3)
+            + base_parameters[12];
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
+        let force_on_u1_leg3 = base_parameters[3] * bias_rate_dot_1_leg3
+            + base_parameters[18] * minus_bias_a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let minus_bias_rate_dot_2_leg3 = k_leg3
+            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+        let minus_moment2_z_leg3 = base_parameters[15] * minus_bias_rate_dot_2_leg3
+            + bias_a_on_f1_leg3 * base_parameters[18];
+        let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+        let t2_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
+            - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
+            - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
+            - minus_g2_vx_leg3 * force_on_u2_leg3;
+        let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
+            + g1_vx_leg3 * torques[2] - t2_leg3;
+        let minus_masses_leg1_1_2 = INV_L_1 * (det_leg1 * base_parameters[16]);
+        let minus_masses_leg2_1_2 = INV_L_1 * (det_leg2 * base_parameters[17]);
+        let t2_leg2 = minus_g2_vx_leg1
+            * (minus_g2_vx_leg1 * base_parameters[13]
+                - minus_g1_vx_leg1 * minus_masses_leg1_1_2)
+            - minus_g1_vx_leg1
+                * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
+                    - minus_g1_vx_leg1 * base_parameters[1])
+            + g1_vx_leg2
+                * (g1_vx_leg2 * base_parameters[2]
+                    + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
+            + minus_g2_vx_leg2
+                * (g1_vx_leg2 * minus_masses_leg2_1_2
+                    + minus_g2_vx_leg2 * base_parameters[14]);
+        let minus_masses_leg3_1_2 = INV_L_1 * (det_leg3 * base_parameters[18]);
+        let t3_leg3 = t2_leg2
+            + g1_vx_leg3
+                * (g1_vx_leg3 * base_parameters[3]
+                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+            + minus_g2_vx_leg3
+                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                    + minus_g2_vx_leg3 * base_parameters[15]);
+        let mass_1_1 = t3_leg3 + base_parameters[0];
+        ::overact::guard::mass(mass_1_1)?;
+        let inv_pivot_1 = 1.0 / mass_1_1;
+        let t2_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
+            + minus_g2_vy_leg1 * base_parameters[13];
+        let t3_leg1 = g1_vy_leg1 * base_parameters[1]
+            + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
+        let t3_leg2 = minus_g1_vy_leg2 * base_parameters[2]
+            + g2_vy_leg2 * minus_masses_leg2_1_2;
+        let t4_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
+            + g2_vy_leg2 * base_parameters[14];
+        let t4_leg3 = minus_g1_vy_leg3 * base_parameters[3]
+            + g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t5_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
+            + g2_vy_leg3 * base_parameters[15];
+        let mass_1_2 = minus_g2_vx_leg1 * t2_leg1 - minus_g1_vx_leg1 * t3_leg1
+            - (g1_vx_leg2 * t3_leg2 + minus_g2_vx_leg2 * t4_leg2)
+            - (g1_vx_leg3 * t4_leg3 + minus_g2_vx_leg3 * t5_leg3);
+        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let t6_leg3 = g1_vy_leg1 * force_on_u1_leg1
+            + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
+            - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
+            - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let t7_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
+            + minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg2 * t4_leg2
+            + minus_g1_vy_leg3 * t4_leg3 + g2_vy_leg3 * t5_leg3;
+        let mass_2_2 = t7_leg3 + base_parameters[0];
+        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+        ::overact::guard::mass(pivot_2)?;
+        let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            - minus_g1_vy_leg3 * torques[2] - t6_leg3 - t1 * l_2_1) / pivot_2;
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
+    }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
@@ -5609,7 +6942,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 360 operations (142 additions, 209 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 367 intermediates.
+    /// 343 operations (132 additions, 203 multiplications, 8 divisions), 4 square roots, 6 signs, 12 guards, 2 negations, 344 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5638,48 +6971,30 @@ impl ThreeLegPoint {
         const RADIUS: ::core::primitive::f64 = 0.35;
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t1_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
+        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
+        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -5688,47 +7003,101 @@ impl ThreeLegPoint {
         let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
             - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
+        let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
+        let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        let inv_det_ja = 1.0 / det_ja;
+        let t1 = minus_g1_vy_leg3 * inv_det_ja;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
+        let t2 = g1_vx_leg3 * inv_det_ja;
+        let share_1_3 = g1_vx_leg2 * t1 - minus_g1_vy_leg2 * t2;
+        let share_2_3 = minus_g1_vx_leg1 * t1 - g1_vy_leg1 * t2;
+        let norm_3 = ::overact::math::sqrt(
+            1.0 + share_1_3 * share_1_3 + share_2_3 * share_2_3,
+        );
         ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
+            norm_3,
+            1.7320508075688772,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
+        let inv_norm_3 = 1.0 / norm_3;
+        let share_1_3_inv_norm_3 = share_1_3 * inv_norm_3;
+        // --- leg2
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            - minus_fk1_x_leg2 * acceleration[0];
+        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
+            + 2.0833333333333335 * l1_x_leg2;
+        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
+        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
+        let tau_1_leg2 = parameters[12] * rate_1_leg2
+            - parameters[11] * minus_rate_dot_1_leg2
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
+        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
+        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
+            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let minus_rate_dot_2_leg2 = k_leg2
+            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
+            - parameters[16] * rate_2_squared_leg2 - parameters[18] * a_on_f1_leg2;
+        let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
+            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
+        let force2_y_leg2 = parameters[18] * a2_y_leg2
+            - (parameters[16] * minus_rate_dot_2_leg2
+                + parameters[17] * rate_2_squared_leg2);
+        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
+            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
+            - tau_2_leg2;
+        let moment2_z_leg2 = parameters[16] * a2_y_leg2
+            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
+        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
         // --- leg1
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
         let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
@@ -5769,114 +7138,64 @@ impl ThreeLegPoint {
         let moment2_z_leg1 = parameters[6] * a2_y_leg1
             - parameters[5] * minus_rate_dot_2_leg1 + parameters[7] * minus_a2_x_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-        // --- leg2
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let v2_by_1_x_leg2 = INV_L_1 * det_leg2;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
-        let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
-            - minus_fk1_x_leg2 * acceleration[0];
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
-        let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
-            - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-        let minus_rate_dot_2_leg2 = k_leg2
-            * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let moment2_z_leg2 = parameters[16] * a2_y_leg2
-            - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let tau_1_leg2 = parameters[12] * rate_1_leg2
-            - parameters[11] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
-        let minus_moment1_z_leg2 = parameters[10] * minus_rate_dot_1_leg2;
-        let force2_x_leg2 = parameters[17] * minus_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2 - parameters[18] * a_on_f1_leg2;
-        let force2_y_leg2 = parameters[18] * a2_y_leg2
-            - (parameters[16] * minus_rate_dot_2_leg2
-                + parameters[17] * rate_2_squared_leg2);
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
-            - tau_2_leg2;
         // --- leg3
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            - minus_fk1_y_leg3 * acceleration[1];
         let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
             + 2.0833333333333335 * l1_y_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
-            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
         let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
-        let rate_dot_2_leg3 = k_leg3
-            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
         let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
         let rate_dot_1_leg3 = k_leg3
             * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
-            + v2_by_1_y_leg3 * rate_dot_1_leg3;
-        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
-            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
-        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
         let moment1_z_leg3 = parameters[20] * rate_dot_1_leg3;
         let tau_1_leg3 = parameters[21] * rate_dot_1_leg3 + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
+        let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
+        let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
+            - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
+        let rate_dot_2_leg3 = k_leg3
+            * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
         let force2_x_leg3 = parameters[28] * a_on_f1_leg3
             - (parameters[26] * rate_2_squared_leg3 + parameters[27] * rate_dot_2_leg3);
+        let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
+            + v2_by_1_y_leg3 * rate_dot_1_leg3;
         let force2_y_leg3 = parameters[26] * rate_dot_2_leg3
             - parameters[27] * rate_2_squared_leg3 + parameters[28] * a2_y_leg3;
+        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
         let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
             + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
             - tau_2_leg3;
-        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let force_y_platform = acceleration[1] * parameters[30];
-        let t2 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let moment2_z_leg3 = parameters[25] * rate_dot_2_leg3
+            + parameters[26] * a2_y_leg3 - parameters[27] * a_on_f1_leg3;
+        let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
+        let t3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = acceleration[0] * parameters[30];
-        let t3 = t2 + force_x_platform;
-        let t4 = inv_pivot_2 * (t1 + force_y_platform + t3 * minus_l_2_1);
-        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
-        let t6 = inv_pivot_2 * (g1_vx_leg3 * minus_l_2_1 - minus_g1_vy_leg3);
-        let t7 = g1_vx_leg3 * inv_pivot_1 + minus_l_2_1 * t6;
-        let minus_normal_1_1 = g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7;
-        let normal_3_1 = 1.0 - (g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6);
-        let norm_1 = ::overact::math::sqrt(normal_3_1);
-        ::overact::guard::platform(
-            norm_1,
-            0.5773502691896258,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_norm_1 = 1.0 / norm_1;
-        let minus_normal_2_1 = g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6;
+        let t4 = t3 + force_x_platform;
+        let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
+        let t5 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+        let force_y_platform = acceleration[1] * parameters[30];
+        let t6 = t5 + force_y_platform;
+        let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
+        let t7 = t4 * minus_vx_by_a1 + t6 * minus_vy_by_a1;
+        let share_2_3_inv_norm_3 = share_2_3 * inv_norm_3;
+        let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
+        let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
+        let t8 = t4 * minus_vx_by_a2 + t6 * minus_vy_by_a2;
+        let t9 = preload[0] - (share_1_3_inv_norm_3 * t7 + share_2_3_inv_norm_3 * t8);
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5
-                - preload[0] * (minus_normal_1_1 * inv_norm_1),
-            g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4
-                - preload[0] * (minus_normal_2_1 * inv_norm_1),
-            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4
-                + preload[0] * (normal_3_1 * inv_norm_1),
+            -(share_1_3_inv_norm_3 * t9 + t7), -(share_2_3_inv_norm_3 * t9 + t8), inv_norm_3 * t9,
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
@@ -5887,7 +7206,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 114 operations (40 additions, 66 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 114 intermediates.
+    /// 114 operations (40 additions, 66 multiplications, 8 divisions), 3 square roots, 11 guards, 114 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5995,7 +7314,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3 x 1.
     ///
-    /// 109 operations (37 additions, 63 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 110 intermediates.
+    /// 89 operations (29 additions, 52 multiplications, 8 divisions), 4 square roots, 12 guards, 2 negations, 90 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6011,6 +7330,37 @@ impl ThreeLegPoint {
         const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
         /// radius
         const RADIUS: ::core::primitive::f64 = 0.35;
+        // --- leg3
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
+        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
+            - 3.608439182435161 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        let k_leg3 = L_1 / det_leg3;
+        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -6018,88 +7368,51 @@ impl ThreeLegPoint {
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
-        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
             - 2.0833333333333335 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
+        let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
+        let g1_vy_leg1 = l2_x_leg1 * k_leg1;
+        let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
         ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            15.09578052481963,
+            ::overact::ActuatorGroup::Kept,
+        )?;
+        let inv_det_ja = 1.0 / det_ja;
+        let t1 = minus_g1_vy_leg3 * inv_det_ja;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let t2 = g1_vx_leg3 * inv_det_ja;
+        let share_1_3 = g1_vx_leg2 * t1 - minus_g1_vy_leg2 * t2;
+        let share_2_3 = minus_g1_vx_leg1 * t1 - g1_vy_leg1 * t2;
+        let norm_3 = ::overact::math::sqrt(
+            1.0 + share_1_3 * share_1_3 + share_2_3 * share_2_3,
+        );
+        ::overact::guard::platform(
+            norm_3,
+            1.7320508075688772,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
-        let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t1 = (g1_vx_leg3 * minus_l_2_1 - minus_g1_vy_leg3) / pivot_2;
-        let t2 = g1_vx_leg3 * inv_pivot_1 + minus_l_2_1 * t1;
-        let minus_normal_1_1 = g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2;
-        let normal_3_1 = 1.0 - (g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1);
-        let norm_1 = ::overact::math::sqrt(normal_3_1);
-        ::overact::guard::platform(
-            norm_1,
-            0.5773502691896258,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_norm_1 = 1.0 / norm_1;
-        let minus_normal_2_1 = g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1;
+        let inv_norm_3 = 1.0 / norm_3;
         ::core::result::Result::Ok([
-            [-(minus_normal_1_1 * inv_norm_1)], [-(minus_normal_2_1 * inv_norm_1)],
-            [normal_3_1 * inv_norm_1],
+            [-(share_1_3 * inv_norm_3)], [-(share_2_3 * inv_norm_3)], [inv_norm_3],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
@@ -6294,7 +7607,7 @@ impl ::overact::Model for ThreeLegPoint {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::project_actuators(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::InverseDynamics => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::inverse_dynamics(
                         row.row(0)?,
@@ -6303,17 +7616,43 @@ impl ::overact::Model for ThreeLegPoint {
                         row.row(3)?,
                     ))
             }
-            ::overact::Function::MassMatrix => {
+            ::overact::Function::InverseDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::inverse_dynamics_base(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::MassMatrix(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::mass_matrix(row.row(0)?, row.row(1)?))
             }
-            ::overact::Function::Bias => {
+            ::overact::Function::MassMatrix(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::mass_matrix_base(row.row(0)?, row.row(1)?))
+            }
+            ::overact::Function::Bias(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::bias(row.row(0)?, row.row(1)?, row.row(2)?))
             }
-            ::overact::Function::ForwardDynamics => {
+            ::overact::Function::Bias(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::bias_base(row.row(0)?, row.row(1)?, row.row(2)?))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Standard) => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
                     .each(|row| Self::forward_dynamics(
+                        row.row(0)?,
+                        row.row(1)?,
+                        row.row(2)?,
+                        row.row(3)?,
+                    ))
+            }
+            ::overact::Function::ForwardDynamics(::overact::Columns::Base) => {
+                ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
+                    .each(|row| Self::forward_dynamics_base(
                         row.row(0)?,
                         row.row(1)?,
                         row.row(2)?,

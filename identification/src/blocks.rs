@@ -7,7 +7,7 @@ use rayon::prelude::*;
 pub(crate) const BLOCK: usize = 512;
 
 /// Evaluates `function` at all samples. `inputs` hold one row per sample, except
-/// [`Input::Parameters`].
+/// [`Input::Parameters`] and [`Input::BaseParameters`].
 pub(crate) fn evaluate(
     model: &dyn Model,
     function: Function,
@@ -32,7 +32,7 @@ pub(crate) fn evaluate(
                 .iter()
                 .zip(inputs)
                 .map(|(input, values)| match input {
-                    Input::Parameters => values,
+                    Input::Parameters | Input::BaseParameters => values,
                     input => slice(values, sizes.of(*input), first, count),
                 })
                 .collect();

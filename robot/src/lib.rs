@@ -45,6 +45,7 @@ mod instruments;
 mod interpreted;
 mod parameters;
 mod partitions;
+mod physical;
 mod prior;
 mod robot;
 mod runs;

@@ -2,16 +2,20 @@
 
 use crate::{
     compiled_file::{CompiledFile, read, read_or},
-    error::{Error, Problem},
+    error::Error,
+    physical::doubts,
 };
 use overact::{Info, Parameter};
 use overact_codegen::{
-    Request,
-    derivation::{BodyParameter, Selection},
-    description::{self, Description, TrueParameter, parse_parameters},
-    diagnostic::Source,
+    Request, RobotModel,
+    derivation::BodyParameter,
+    description::{self, Description, parse_parameters},
+    diagnostic::{Diagnostic, Diagnostics, Source},
 };
 use std::{collections::BTreeMap, path::Path};
+
+/// The table that a file has.
+const TABLE: &str = "[parameters]";
 
 /// Standard parameters that a file gives.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,10 +37,10 @@ pub fn read_parameters(
     description: &Description,
     info: &Info<'_>,
 ) -> Result<GivenParameters, Error> {
-    let given = given(path, description)?;
+    let (source, given) = given(path, description)?;
     let names = |all: &[Parameter]| all.iter().map(|one| one.name.to_owned()).collect();
     let (own, payload) = (names(info.parameters), names(info.payload_parameters));
-    complete(path, &given.values, own, payload)?;
+    complete(source, &given.values, own, payload)?;
     Ok(given)
 }
 
@@ -61,36 +65,43 @@ impl CompiledFile {
                 });
             }
         };
-        let given = given(parameters, &description)?;
+        let (file, given) = given(parameters, &description)?;
+        // Which parameters the robot has is known when its columns are, long before its functions.
+        let columns = Request {
+            wanted: &|_, _, _| false,
+            ..*request
+        };
+        let RobotModel {
+            mechanism,
+            selection,
+            ..
+        } = Self::new(source.clone(), &columns)?.model;
+        let names = |all: &[BodyParameter]| {
+            let names = all.iter().map(|&one| one.name(&mechanism));
+            names.collect()
+        };
+        let (own, payload) = (names(&selection.standard), names(&selection.payload));
+        complete(file, &given.values, own, payload)?;
         let request = Request {
             parameters: Some(&given.values),
             ..*request
         };
         let mut robot = Self::new(source, &request)?;
-        let Selection {
-            standard, payload, ..
-        } = &robot.model.selection;
-        let names = |all: &[BodyParameter]| {
-            let names = all.iter().map(|&one| robot.model.parameter_name(one));
-            names.collect()
-        };
-        complete(parameters, &given.values, names(standard), names(payload))?;
         robot.doubts = given.doubts;
         Ok(robot)
     }
 }
 
 /// What a file says of a robot's standard parameters, by name (SI units).
-fn given(path: &Path, description: &Description) -> Result<GivenParameters, Error> {
+fn given(path: &Path, description: &Description) -> Result<(Source, GivenParameters), Error> {
     let origin = "`overact identify my.toml --parameters parameters.toml` writes one";
     let source = read_or(path, origin)?;
     match parse_parameters(&source, description) {
         Ok(values) => {
-            let doubts = values.iter().filter_map(|one| doubt(&source, one));
-            let doubts = doubts.collect();
+            let doubts = doubts(&source, &values);
             let pairs = values.into_iter().map(|one| (one.name.value, one.value));
             let values = pairs.collect();
-            Ok(GivenParameters { values, doubts })
+            Ok((source, GivenParameters { values, doubts }))
         }
         Err(diagnostics) => Err(Error::Description {
             source,
@@ -99,21 +110,9 @@ fn given(path: &Path, description: &Description) -> Result<GivenParameters, Erro
     }
 }
 
-/// What is wrong with a value that no body or joint has: estimates may be such, so it is no error.
-fn doubt(source: &Source, one: &TrueParameter) -> Option<String> {
-    let TrueParameter { name, value, .. } = one;
-    (one.symbol.is_nonnegative() && *value < 0.0).then(|| {
-        let line = source.position(&name.span).line;
-        format!(
-            "{}:{line}: `{}` = {value} is negative, which no body or joint is",
-            source.name, name.value
-        )
-    })
-}
-
 /// Refuses values of a file without all of the robot's parameters, or with some of the payload's.
 fn complete(
-    path: &Path,
+    source: Source,
     values: &BTreeMap<String, f64>,
     own: Vec<String>,
     payload: Vec<String>,
@@ -133,6 +132,10 @@ fn complete(
     let message = format!("missing parameters: {}", missing.join(", "));
     let help =
         "`overact identify --parameters FILE` writes all of them; write 0 for one that is absent";
-    let problem = Problem::new(message).file(path.display().to_string());
-    Err(problem.help(help).into())
+    let at = source.text.find(TABLE).unwrap_or_default();
+    let error = Diagnostic::new(message, at..at + TABLE.len()).help(help);
+    Err(Error::Description {
+        source,
+        diagnostics: Diagnostics::from(error),
+    })
 }

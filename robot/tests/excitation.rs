@@ -1,7 +1,7 @@
 //! Exciting runs keep every limit, tell more than random ones and the description's, and are written so that they
 //! can be read.
 
-use overact::{Function, Model};
+use overact::{Columns, Function, Model};
 use overact_robot::{Error, Excitation, ExcitationEffort, LimitKind, Robot};
 use overact_simulation::{Run, Trajectory, sample};
 
@@ -115,7 +115,10 @@ fn largest(robot: &Robot, found: &Excitation, run: &Run, parameters: &[f64]) -> 
             &actuated(ask(Function::JointAccelerations, &inputs[..3])),
             sizes.actuators,
         ),
-        LimitKind::Torque => peaks(&ask(Function::InverseDynamics, &inputs), sizes.actuators),
+        LimitKind::Torque => peaks(
+            &ask(Function::InverseDynamics(Columns::Standard), &inputs),
+            sizes.actuators,
+        ),
         LimitKind::Travel | LimitKind::Condition => Vec::new(),
     };
     found.limits.iter().map(|limit| of(limit.kind)).collect()

@@ -142,7 +142,12 @@ fn columns_times_parameters_are_the_torques() {
     );
     let loaded = evaluate(robot, Function::IdmRedPayload, &inputs, 3 * payload);
     let inputs: [&[f64]; 4] = [&POSE, &TWIST, &ACCELERATION, &values];
-    let torques = evaluate(robot, Function::InverseDynamics, &inputs, 4);
+    let torques = evaluate(
+        robot,
+        Function::InverseDynamics(Columns::Standard),
+        &inputs,
+        4,
+    );
     let projected = evaluate(robot, Function::ProjectPlatform, &[&POSE, &torques], 3);
     for r in 0..3 {
         let row = columns[r * own..(r + 1) * own]

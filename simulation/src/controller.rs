@@ -18,7 +18,7 @@
 //! kinematics. The limit comes last, as an amplifier's would.
 
 use nalgebra::{DMatrix, Matrix4, SymmetricEigen};
-use overact::{Function, Model};
+use overact::{Columns, Function, Model};
 use std::f64::consts::TAU;
 
 use crate::{error::Cause, experiment::Experiment};
@@ -185,7 +185,11 @@ fn jacobian_and_mass(
         .map_err(failed)?;
     let mut mass = vec![0.0; sizes.dof * sizes.dof];
     model
-        .evaluate(Function::MassMatrix, &[pose, parameters], &mut mass)
+        .evaluate(
+            Function::MassMatrix(Columns::Standard),
+            &[pose, parameters],
+            &mut mass,
+        )
         .map_err(failed)?;
     Ok((
         DMatrix::from_row_slice(sizes.actuators, sizes.dof, &jacobian),

@@ -12,7 +12,7 @@
 //! decelerated across zero within a step and back in the next: its velocity chatters within about
 //! (friction force / inertia) h around zero, and the mean of the friction force is that of sticking.
 
-use overact::{Error as ModelError, Function, Model};
+use overact::{Columns, Error as ModelError, Function, Model};
 
 use crate::error::Cause;
 
@@ -120,9 +120,11 @@ impl<'a> Plant<'a> {
             torques,
             self.parameters,
         ];
-        let found = self
-            .model
-            .evaluate(Function::ForwardDynamics, &state, &mut self.acceleration);
+        let found = self.model.evaluate(
+            Function::ForwardDynamics(Columns::Standard),
+            &state,
+            &mut self.acceleration,
+        );
         found.map_err(|failed| match failed.error {
             ModelError::MassMatrix => Cause::MassMatrix,
             error => Cause::Model(error),
@@ -147,7 +149,7 @@ mod tests {
         let inputs: [&[f64]; 2] = [&plant.pose, plant.parameters];
         plant
             .model
-            .evaluate(Function::MassMatrix, &inputs, &mut mass)
+            .evaluate(Function::MassMatrix(Columns::Standard), &inputs, &mut mass)
             .unwrap();
         let moment = |a: usize| -> f64 { (0..r).map(|b| mass[a * r + b] * plant.twist[b]).sum() };
         0.5 * (0..r).map(|a| plant.twist[a] * moment(a)).sum::<f64>()

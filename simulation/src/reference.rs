@@ -8,7 +8,7 @@
 //! The differences are exact to about 1e-9 relative for periodic trajectories; for point-to-point
 //! motions of a quaternion robot they are less exact near the points, where the jerk jumps.
 
-use overact::{Function, Info, Model, math::wrap_angle};
+use overact::{Columns, Function, Info, Model, math::wrap_angle};
 
 use crate::{
     controller::Desired,
@@ -126,7 +126,11 @@ impl<'a> Reference<'a> {
         if let Some(parameters) = self.parameters {
             let inputs: [&[f64]; 4] = [&self.pose, &self.twist, &self.acceleration, parameters];
             self.model
-                .evaluate(Function::InverseDynamics, &inputs, &mut self.torques)
+                .evaluate(
+                    Function::InverseDynamics(Columns::Standard),
+                    &inputs,
+                    &mut self.torques,
+                )
                 .map_err(located)?;
         }
         self.make_continuous();

@@ -1,8 +1,8 @@
 //! How many operations the identification models take of the works on which other generators have been
 //! counted, which ours stays below. `generated/manifest.toml` has the counts of all robots' functions.
 //!
-//! An operation is an addition, a subtraction, a multiplication or a division; square roots and
-//! trigonometric pairs stand apart.
+//! An operation is an addition, a subtraction, a multiplication, with a sign, too, or a division; square roots
+//! and trigonometric pairs stand apart.
 
 use overact::{Columns, Function};
 use overact_codegen::derivation::MotionInput;
@@ -34,7 +34,7 @@ const fn work(file: &'static str, full: bool, columns: Columns, best_known: usiz
 /// All are evaluated from joint angles. The best known counts are those of CasADi, SymPy, SymForce,
 /// OpenSYMORO, SymPyBotics, or of a model written by hand, whichever is least.
 const WORKS: [Work; 14] = [
-    work("robots/dualv.toml", false, Columns::Standard, 385),
+    work("robots/dualv.toml", false, Columns::Standard, 421),
     work("robots/dualv.toml", false, Columns::Base, 357),
     work("robots/rx90.toml", true, Columns::Base, 769),
     work("tests/fixtures/puma560.toml", true, Columns::Base, 824),

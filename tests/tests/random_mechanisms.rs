@@ -150,7 +150,7 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     let is_well_kept = is_well_kept(&model, &evaluated, &all)?;
     let has_masses = has_masses(&truths)?;
     for function in &model.functions {
-        let is_moved = has_masses || function.computes != Function::ForwardDynamics;
+        let is_moved = has_masses || !matches!(function.computes, Function::ForwardDynamics(_));
         if is_moved && (is_well_kept || !depends_on_kept(function.computes)) {
             comparison.function(function, &evaluated, &all, &truths)?;
         }
@@ -188,7 +188,7 @@ fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
             | Function::InverseJacobian
             | Function::JointVelocities
             | Function::JointAccelerations
-            | Function::InverseDynamics
+            | Function::InverseDynamics(Columns::Standard)
             | Function::IdmRedPlatform(_)
             | Function::IdmRedActuators(Columns::Standard) => from != MotionInput::Actuators,
             _ => false,
@@ -245,7 +245,7 @@ fn is_well_kept(
 /// that a joint moves, and then no torque says how fast it goes.
 fn has_masses(truths: &[Truth<'_>]) -> Result<bool, Failure> {
     for truth in truths {
-        let mass = truth.output(Function::MassMatrix, MotionInput::Pose)?;
+        let mass = truth.output(Function::MassMatrix(Columns::Standard), MotionInput::Pose)?;
         let scale = mass.diagonal().map(|entry| entry.sqrt().recip());
         let scaled = DMatrix::from_diagonal(&scale) * mass * DMatrix::from_diagonal(&scale);
         let is_finite = scaled.iter().all(|entry| entry.is_finite());

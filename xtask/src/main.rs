@@ -7,6 +7,7 @@ mod freshness;
 mod generated;
 mod licence;
 mod manifest;
+mod measure;
 mod metadata;
 mod release;
 mod robots;
@@ -21,6 +22,7 @@ const HELP: &str = "\
 cargo xtask generated           write generated/: five robots as text, all in the manifest
 cargo xtask generated ROBOT...  write robots/ROBOT.toml as target/generated/ROBOT.rs, to read
 cargo xtask freshness           fail unless generated/ is what the generator writes
+cargo xtask measure EFFORT FILE what generation makes of a description, in numbers (JSON)
 cargo xtask release             versions, licences and Rust versions of all packages
 cargo xtask tests               all test binaries, one for each processor at a time
 cargo xtask times [SECONDS]     processor time of each test binary; fail if all take more";
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
     let done = match arguments[..] {
         ["generated"] => generated::write_all(),
         ["generated", ref robots @ ..] => generated::write_to_read(robots),
+        ["measure", effort, file] => measure::print(effort, file),
         ["freshness"] => freshness::check(),
         ["release"] => release::check(),
         ["tests"] => at_once::run(),

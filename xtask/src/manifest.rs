@@ -3,7 +3,8 @@
 //! Most modules are too large to keep and nobody reads them. A line for each of their functions shows
 //! in a diff which function changed, and whether it takes more operations than before.
 
-use crate::robots::{Cost, Module};
+use crate::robots::Module;
+use overact_codegen::WholeCost;
 use std::fmt::Write as _;
 
 const HEADER: &str = "\
@@ -11,7 +12,9 @@ const HEADER: &str = "\
 #
 # The modules that `overact generate robots/*.toml` writes, with all operations searched: their length
 # in lines and bytes and the hash of their text; of each function the additions, subtractions,
-# multiplications and divisions, the square roots, the sine-cosine pairs, and the hash of its text.
+# multiplications (with signs, too) and divisions, the square roots, the sine-cosine pairs, and the hash of
+# its text; arc tangents, signs of velocities, guards and negations where there are any. What a function
+# calls is counted in; what it takes for each step of an iteration stands behind `each_step`.
 # `cargo xtask generated ROBOT` writes a module to target/generated/, to read.
 ";
 
@@ -39,17 +42,35 @@ fn robot(text: &mut String, module: &Module) {
         hash(code)
     );
     for (name, cost) in functions {
-        let Cost {
-            operations,
-            square_roots,
-            trigonometric_pairs,
-        } = cost;
-        let hash = hash(function(code, name));
-        let _ = writeln!(
-            text,
-            "{name} = {{ operations = {operations}, roots = {square_roots}, pairs = {trigonometric_pairs}, hash = \"{hash:016x}\" }}"
-        );
+        let (cost, hash) = (costs(cost), hash(function(code, name)));
+        let _ = writeln!(text, "{name} = {{ {cost}, hash = \"{hash:016x}\" }}");
     }
+}
+
+/// What a function takes, as entries of a table.
+fn costs(cost: &WholeCost) -> String {
+    let once = &cost.once;
+    let mut text = format!(
+        "operations = {}, roots = {}, pairs = {}",
+        once.operations(),
+        once.square_roots,
+        once.trigonometric_pairs
+    );
+    let others = [
+        ("arc_tangents", once.arc_tangents),
+        ("signs", once.signs),
+        ("guards", once.guards),
+        ("negations", once.negations),
+    ];
+    for (name, count) in others.into_iter().filter(|(_, count)| *count > 0) {
+        let _ = write!(text, ", {name} = {count}");
+    }
+    let steps = cost.iterations.iter().map(|one| one.operations.to_string());
+    let steps: Vec<String> = steps.collect();
+    if !steps.is_empty() {
+        let _ = write!(text, ", each_step = [{}]", steps.join(", "));
+    }
+    text
 }
 
 /// The text of a function in a module, from its name to the brace that closes it.
@@ -68,7 +89,8 @@ fn hash(text: &str) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cost, Module, function, hash, text};
+    use super::{Module, function, hash, text};
+    use overact_codegen::{WholeCost, lowering::Cost};
 
     const CODE: &str = "impl A {\n    pub fn one(x: f64) -> f64 {\n        x\n    }\n    #[must_use]\n    pub fn two(x: f64) -> f64 {\n        if x {\n        }\n    }\n}\n";
 
@@ -92,20 +114,17 @@ mod tests {
 
     #[test]
     fn a_changed_function_changes_its_line_alone() {
+        let cost = Cost {
+            additions: 3,
+            arc_tangents: 1,
+            ..Cost::default()
+        };
         let module = |code: &str| Module {
             stem: "a".to_owned(),
             text: code.to_owned(),
             functions: ["one", "two"]
-                .map(|name| {
-                    let cost = Cost {
-                        operations: 3,
-                        square_roots: 0,
-                        trigonometric_pairs: 1,
-                    };
-                    (name.to_owned(), cost)
-                })
-                .into_iter()
-                .collect(),
+                .map(|name| (name.to_owned(), WholeCost::from(cost)))
+                .to_vec(),
         };
         let before = text(&[module(CODE)]);
         let after = text(&[module(&CODE.replace("if x", "if y"))]);
@@ -116,5 +135,7 @@ mod tests {
             .map(|(before, _)| before.split(' ').next().unwrap_or_default())
             .collect();
         assert_eq!(changed, ["hash", "two"]);
+        let counts = "one = { operations = 3, roots = 0, pairs = 0, arc_tangents = 1, hash = ";
+        assert!(before.contains(counts), "{before}");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use crate::files::{read, stems};
-use overact_codegen::{Effort, Request, Source, compile_with, emission};
+use overact_codegen::{Effort, Request, Source, WholeCost, compile_with, emission};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -16,14 +16,7 @@ pub(crate) struct Module {
     /// The source file.
     pub(crate) text: String,
     /// Name and cost of each function.
-    pub(crate) functions: Vec<(String, Cost)>,
-}
-
-/// What a function takes, as the manifest shows it.
-pub(crate) struct Cost {
-    pub(crate) operations: usize,
-    pub(crate) square_roots: usize,
-    pub(crate) trigonometric_pairs: usize,
+    pub(crate) functions: Vec<(String, WholeCost)>,
 }
 
 /// All robots' modules in the order of their names, generated on all processors.
@@ -66,15 +59,8 @@ fn module(stem: &str) -> Result<Module, Failure> {
     let compiled =
         compile_with(&source, &request).map_err(|errors| errors.render_plain(&source))?;
     let model = compiled.model;
-    let functions = model.functions.iter().map(|function| {
-        let cost = function.program.cost();
-        let cost = Cost {
-            operations: cost.operations(),
-            square_roots: cost.square_roots,
-            trigonometric_pairs: cost.trigonometric_pairs,
-        };
-        (function.name.clone(), cost)
-    });
+    let functions = model.functions.iter();
+    let functions = functions.map(|function| (function.name.clone(), model.cost(function)));
     Ok(Module {
         stem: stem.to_owned(),
         functions: functions.collect(),

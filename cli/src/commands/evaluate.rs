@@ -39,13 +39,14 @@ pub(crate) struct Arguments {
     /// What to evaluate from [default: what the states hold]
     #[arg(long, value_enum)]
     from: Option<Source>,
-    /// Which columns an identification model has [default: standard]
+    /// Which columns an identification model has, or which parameters dynamics take [default: standard]
     #[arg(long, value_enum)]
     columns: Option<Choice>,
     /// Kept actuators of case 2 [default: those of the description]
     #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
     kept: Option<Vec<String>>,
-    /// Standard parameters, for functions that take `parameters` [default: those of each state]
+    /// Standard parameters, for functions that take `parameters` or `base_parameters` [default: those of
+    /// each state]
     #[arg(long, value_name = "TOML")]
     parameters: Option<PathBuf>,
     /// Write to a file instead of stdout
@@ -64,7 +65,7 @@ enum Source {
     Actuators,
 }
 
-/// Columns of an identification model.
+/// Columns of an identification model, or parameters that a function takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Choice {
     /// All standard parameters
@@ -138,9 +139,9 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         Some(path) => {
             let given = read_parameters(path, &description, &robot.info())?;
             tell_doubts(&given.doubts, as_json);
-            in_order(&given.values, &robot)
+            GivenParameters::new(&given.values, &robot)
         }
-        None => None,
+        None => GivenParameters::default(),
     };
     let values = evaluate(&robot, &program, (from, given), &states)?;
     let width = program.entries.len();
@@ -193,17 +194,41 @@ fn parameters(model: &RobotModel, function: Function) -> Vec<String> {
     }
 }
 
-/// The robot's standard parameters in the order of its columns.
-fn in_order(values: &BTreeMap<String, f64>, robot: &InterpretedRobot) -> Option<Vec<f64>> {
-    let all = robot.info().parameters.iter();
-    all.map(|one| values.get(one.name).copied()).collect()
+/// Parameters that hold for all states, in the order in which functions take them.
+#[derive(Debug, Default)]
+struct GivenParameters {
+    standard: Option<Vec<f64>>,
+    base: Option<Vec<f64>>,
+}
+
+impl GivenParameters {
+    /// Those of a file; without values of the payload's there is no payload.
+    fn new(values: &BTreeMap<String, f64>, robot: &InterpretedRobot) -> Self {
+        let info = robot.info();
+        let all = info.parameters.iter().chain(info.payload_parameters);
+        let standard = all.map(|one| values.get(one.name).copied().unwrap_or_default());
+        let base = robot.model().regrouped(values);
+        Self {
+            standard: Some(standard.collect()),
+            base: Some(base.into_iter().map(|(_, value)| value).collect()),
+        }
+    }
+
+    /// Those that an input takes.
+    fn input(&self, name: &str) -> Option<&Vec<f64>> {
+        match name {
+            "parameters" => self.standard.as_ref(),
+            "base_parameters" => self.base.as_ref(),
+            _ => None,
+        }
+    }
 }
 
 /// Values at all states, row after row.
 fn evaluate(
     robot: &InterpretedRobot,
     program: &Program,
-    (from, parameters): (MotionInput, Option<Vec<f64>>),
+    (from, parameters): (MotionInput, GivenParameters),
     states: &States,
 ) -> Result<Vec<f64>, Failure> {
     let inputs = gather::inputs(robot, program, (from, parameters), states)?;

@@ -6,17 +6,20 @@ use crate::{
     effort,
     failure::{Failure, Problem},
     functions,
-    note::{tell_doubts, tell_note},
+    note::{tell, tell_doubts, tell_note},
     output::{self, json, print, write},
     progress::Progress,
 };
 use module::Module;
-use overact_codegen::{Choice, Request};
+use overact_codegen::{Choice, Progress as Step, Request, mechanism::Mechanism};
 use overact_robot::CompiledFile;
 use std::{
     fs,
     path::{Path, PathBuf},
 };
+
+/// More joints than these and generation is a matter of minutes.
+const LARGE: usize = 60;
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -180,9 +183,18 @@ fn load_all(
     let count = arguments.files.len();
     let bar = Progress::new("generating", as_json);
     for (at, file) in arguments.files.iter().enumerate() {
-        bar.at(at as f64 / count as f64, &file.display().to_string());
+        let name = file.display().to_string();
+        let watch = |progress: Step<'_>| {
+            let whole = progress.functions.max(1) as f64;
+            let done = at as f64 + progress.done as f64 / whole;
+            bar.at(done / count as f64, &format!("{name}: {}", progress.work));
+            if progress.functions == 0 {
+                tell(&name, large(progress.mechanism).as_deref(), as_json);
+            }
+        };
         let request = Request {
             functions: choice,
+            progress: &watch,
             ..arguments.effort.request()
         };
         let compiled = match &arguments.parameters {
@@ -203,6 +215,17 @@ fn load_all(
     } else {
         Err(bad.into())
     }
+}
+
+/// What is said of a robot whose functions take minutes, before they do.
+fn large(mechanism: &Mechanism) -> Option<String> {
+    let joints = mechanism.joints().len();
+    (joints > LARGE).then(|| {
+        format!(
+            "with {joints} joints this takes minutes; `--effort none` is quickest, `--effort quick` \
+             finds most of what a thorough search does"
+        )
+    })
 }
 
 fn make_folder(arguments: &Arguments) -> Result<(), Failure> {

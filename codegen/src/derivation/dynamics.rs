@@ -1,15 +1,16 @@
 //! Dynamics of the whole robot on a sheet: columns of identification models, projections of torques, and
 //! inverse dynamics with given parameters.
 
-use super::elimination::Rows;
-use super::linear::{Factored, apply, null_space, product, transposed};
+use super::elimination::{Rows, inverse};
+use super::linear::{apply, product, transposed};
+use super::null_space::null_space;
 use super::parameter::BodyParameter;
 use super::regressor::Projection;
 use super::selection::DynamicsBy;
 use super::sheet::{Sheet, column};
 use super::underivable::Underivable;
 use crate::cas::{Expr, Number};
-use overact_core::{ActuatorGroup, Columns};
+use overact_core::{ActuatorGroup, Columns, Input};
 
 impl<'a> Sheet<'a, '_> {
     /// The parameters of a form's columns.
@@ -112,15 +113,11 @@ impl<'a> Sheet<'a, '_> {
         Ok(column((0..kept.len()).map(entry).collect()))
     }
 
-    /// The standard parameters with their values: an input, or constants where they are known.
-    fn parameter_values(&mut self) -> Vec<(BodyParameter, Expr<'a>)> {
-        let all: Vec<BodyParameter> = self
-            .selection
-            .standard
-            .iter()
-            .chain(&self.selection.payload)
-            .copied()
-            .collect();
+    /// Standard or base parameters and the payload's with their values: an input, or constants where they
+    /// are known. Of base parameters all others are zero, for they are regrouped into these.
+    fn parameter_values(&mut self, of: Columns) -> Vec<(BodyParameter, Expr<'a>)> {
+        let mut all = self.chosen(of);
+        all.extend(&self.selection.payload);
         if let Some(known) = &self.selection.values {
             let value = |one: &BodyParameter| known.iter().find(|(parameter, _)| parameter == one);
             let number = |one: BodyParameter| {
@@ -129,17 +126,22 @@ impl<'a> Sheet<'a, '_> {
             };
             return all.into_iter().map(number).collect();
         }
-        let values = self.input("parameters", all.len());
+        let input = match of {
+            Columns::Standard => Input::Parameters,
+            Columns::Base => Input::BaseParameters,
+        };
+        let values = self.input(input.name(), all.len());
         all.into_iter().zip(values).collect()
     }
 
     /// Γ¹ of given parameters.
     pub(super) fn projected_dynamics(
         &mut self,
+        of: Columns,
         twist: &[Expr<'a>],
         acceleration: &[Expr<'a>],
     ) -> Vec<Expr<'a>> {
-        let values = self.parameter_values();
+        let values = self.parameter_values(of);
         self.guards.extend(self.robot.spring_guards());
         let Some(motion) = self.robot.motion(twist, acceleration) else {
             return Vec::new();
@@ -153,41 +155,63 @@ impl<'a> Sheet<'a, '_> {
     }
 
     /// τ = J (JᵀJ)⁻¹ Γ¹, the torque of least norm.
-    pub(super) fn least_norm_torques(&mut self) -> Vec<Expr<'a>> {
+    pub(super) fn least_norm_torques(&mut self, of: Columns) -> Vec<Expr<'a>> {
         let (twist, acceleration) = (self.twist(), self.acceleration());
-        let forces = self.projected_dynamics(&twist, &acceleration);
+        let forces = self.projected_dynamics(of, &twist, &acceleration);
         let jacobian = self.robot.inverse_jacobian();
         let solved = self.factored(&jacobian).solve(&forces);
         apply(&jacobian, &solved)
     }
 
-    /// τ = J (JᵀJ)⁻¹ Γ¹ + N c, with a basis N of the torques that move nothing.
-    pub(super) fn preloaded_torques(&mut self, n: usize) -> Rows<'a> {
-        let torques = self.least_norm_torques();
+    /// τ = J (JᵀJ)⁻¹ Γ¹ + N c, with a basis N of the torques that move nothing: of the torques p = J_a^-T Γ¹
+    /// on the kept actuators alone, which move the robot, N (c - Nᵀ p) makes those.
+    ///
+    /// # Errors
+    /// See [`Sheet::null_space`].
+    pub(super) fn preloaded_torques(&mut self, n: usize) -> Result<Rows<'a>, Underivable> {
+        let (twist, acceleration) = (self.twist(), self.acceleration());
+        let forces = self.projected_dynamics(Columns::Standard, &twist, &acceleration);
         let preload = self.input("preload", n - self.robot.mechanism.dof());
-        let basis = self.null_space();
-        let entry = |i: usize| {
-            basis[i]
-                .iter()
-                .zip(&preload)
-                .fold(torques[i], |sum, (b, c)| sum + *b * *c)
-        };
-        column((0..n).map(entry).collect())
+        let (basis, inverse) = self.basis()?;
+        let moving = apply(&transposed(&inverse), &forces);
+        let kept = &self.selection.kept_actuators;
+        let internal = preload.iter().enumerate().map(|(k, &wanted)| {
+            let along = kept.iter().zip(&moving).map(|(&i, &p)| basis[i][k] * p);
+            wanted - along.sum::<Expr<'a>>()
+        });
+        let internal: Vec<Expr<'a>> = internal.collect();
+        let mut torques = apply(&basis, &internal);
+        for (&i, &p) in kept.iter().zip(&moving) {
+            torques[i] = torques[i] + p;
+        }
+        Ok(column(torques))
     }
 
     /// A basis of the torques that move nothing, one column for each redundant actuator.
-    pub(super) fn null_space(&mut self) -> Rows<'a> {
+    ///
+    /// # Errors
+    /// Kept actuators that never determine the platform's motion.
+    pub(super) fn null_space(&mut self) -> Result<Rows<'a>, Underivable> {
+        Ok(self.basis()?.0)
+    }
+
+    /// N, and the inverse of the kept actuators' rows of J_p^inv.
+    fn basis(&mut self) -> Result<(Rows<'a>, Rows<'a>), Underivable> {
         let jacobian = self.robot.inverse_jacobian();
         let kept = &self.selection.kept_actuators;
-        let seeds: Vec<usize> = (0..jacobian.len()).filter(|i| !kept.contains(i)).collect();
-        let pivots = Factored::normal(&jacobian).pivots;
-        self.guard_platform(&pivots, ActuatorGroup::All);
-        null_space(&jacobian, &seeds)
+        let rows: Rows<'a> = kept.iter().map(|&i| jacobian[i].clone()).collect();
+        let home = |value: Expr<'a>| self.robot.at_home(value);
+        let inverse = inverse(&rows, &home).ok_or(Underivable::SingularPartition)?;
+        self.guard_platform(&inverse.determinants, ActuatorGroup::Kept);
+        self.robot.name_partition(&inverse, &[], kept);
+        let arena = self.robot.arena;
+        let basis = null_space(arena, &jacobian, kept, &inverse);
+        Ok((basis, inverse.rows))
     }
 
     /// M of given parameters, from bodies summed from the tips to the base.
-    pub(super) fn mass_matrix(&mut self) -> Rows<'a> {
-        let values = self.parameter_values();
+    pub(super) fn mass_matrix(&mut self, of: Columns) -> Rows<'a> {
+        let values = self.parameter_values(of);
         self.robot.masses(&values).unwrap_or_default()
     }
 }

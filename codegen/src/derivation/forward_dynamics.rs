@@ -10,15 +10,16 @@ use super::linear::Factored;
 use super::names::name_matrix;
 use super::sheet::Sheet;
 use crate::cas::Expr;
+use overact_core::Columns;
 
 impl<'a> Sheet<'a, '_> {
     /// v̇ = M⁻¹ (Γ¹(τ) - h).
-    pub(super) fn forward_dynamics(&mut self, n: usize) -> Vec<Expr<'a>> {
+    pub(super) fn forward_dynamics(&mut self, of: Columns, n: usize) -> Vec<Expr<'a>> {
         let twist = self.twist();
         let torques = self.input("torques", n);
         let still = self.zeros();
-        let bias = self.projected_dynamics(&twist, &still);
-        let mass = self.mass_matrix();
+        let bias = self.projected_dynamics(of, &twist, &still);
+        let mass = self.mass_matrix(of);
         name_matrix(&mass, "mass");
         let forces = self.robot.projected_torques(&torques);
         let accelerating: Vec<Expr<'a>> = forces

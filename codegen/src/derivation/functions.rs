@@ -157,17 +157,17 @@ impl<'a> Sheet<'a, '_> {
                 column(self.robot.projected_torques(&torques))
             }
             Function::ProjectActuators => self.project_actuators(n)?,
-            Function::InverseDynamics => column(self.least_norm_torques()),
-            Function::InverseDynamicsPreloaded => self.preloaded_torques(n),
-            Function::MassMatrix => self.mass_matrix(),
-            Function::Bias => {
+            Function::InverseDynamics(of) => column(self.least_norm_torques(of)),
+            Function::InverseDynamicsPreloaded => self.preloaded_torques(n)?,
+            Function::MassMatrix(of) => self.mass_matrix(of),
+            Function::Bias(of) => {
                 let twist = self.twist();
                 let still = self.zeros();
-                column(self.projected_dynamics(&twist, &still))
+                column(self.projected_dynamics(of, &twist, &still))
             }
-            Function::ForwardDynamics => column(self.forward_dynamics(n)),
+            Function::ForwardDynamics(of) => column(self.forward_dynamics(of, n)),
             Function::ProjectTorques => column(self.project_torques(n)),
-            Function::NullSpace => self.null_space(),
+            Function::NullSpace => self.null_space()?,
         })
     }
 }

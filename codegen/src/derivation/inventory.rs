@@ -5,7 +5,7 @@ use super::motion_input::MotionInput;
 use super::selection::JointsBy;
 use crate::cas::Arena;
 use crate::mechanism::Mechanism;
-use overact_core::{Columns, Condition, Function};
+use overact_core::{Condition, Function};
 
 /// All functions of a robot with what they are evaluated from.
 #[must_use]
@@ -52,7 +52,7 @@ pub(crate) const fn sources(function: Function, tree: bool) -> &'static [MotionI
         Function::IdmRedPlatform(_)
         | Function::IdmRedActuators(_)
         | Function::IdmRedPayload
-        | Function::InverseDynamics => &[
+        | Function::InverseDynamics(_) => &[
             MotionInput::Pose,
             MotionInput::Joints,
             MotionInput::Actuators,
@@ -65,9 +65,9 @@ pub(crate) const fn sources(function: Function, tree: bool) -> &'static [MotionI
 #[must_use]
 pub fn function_name(function: Function, from: MotionInput, tree: bool) -> String {
     let name = function.name();
-    let base = match function.columns() {
-        Some(Columns::Base) => "_base",
-        _ => "",
+    let base = match function.is_of_base_parameters() {
+        true => "_base",
+        false => "",
     };
     let from = match from {
         MotionInput::Joints if !tree => "_from_joints",

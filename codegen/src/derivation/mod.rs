@@ -45,6 +45,7 @@ mod motion_input;
 mod names;
 mod naming;
 mod newton_euler;
+mod null_space;
 mod orientation;
 mod parameter;
 mod platform;

@@ -66,7 +66,7 @@ fn around(
 ) -> TokenStream {
     let name = format_ident!("{}", function.name);
     let output = array_type(&function.program.output);
-    let documentation = documentation(function, outline);
+    let documentation = documentation(model, function, outline);
     let check = boundary(model, &outline.arguments);
     let find_pose = outline.finds_pose.then(|| {
         quote! {
@@ -117,7 +117,11 @@ pub(crate) fn array_type(array: &Array) -> TokenStream {
 }
 
 /// Lines of documentation: meaning, inputs, output, errors, operations.
-fn documentation(function: &CompiledFunction, outline: &Outline<'_>) -> Vec<String> {
+fn documentation(
+    model: &RobotModel,
+    function: &CompiledFunction,
+    outline: &Outline<'_>,
+) -> Vec<String> {
     let mut lines = vec![format!(" {}", function.computes.summary()), String::new()];
     lines.push(format!(" {}", outline.origin));
     let meanings = outline.meanings.iter();
@@ -133,7 +137,13 @@ fn documentation(function: &CompiledFunction, outline: &Outline<'_>) -> Vec<Stri
     });
     lines.extend(table.map(|table| format!(" Columns: {table}.")));
     lines.push(String::new());
-    lines.push(format!(" {}.", function.program.cost()));
+    lines.extend(super::operations::of_function(&model.cost(function)));
+    if function.program.pieces > 0 {
+        lines.push(format!(
+            " Too large to be searched as a whole: fewer operations were searched in {} pieces.",
+            function.program.pieces
+        ));
+    }
     lines.push(String::new());
     lines.push(" # Errors".to_owned());
     lines.push(if outline.can_fail {

@@ -18,6 +18,7 @@ mod function;
 mod inverse;
 mod layout;
 mod model_impl;
+mod operations;
 
 use crate::model::RobotModel;
 use crate::writing::{labels::Labels, legend, text};
@@ -69,6 +70,8 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     let names = functions.iter().flat_map(|f| f.names.iter().cloned());
     let mut documentation = vec![String::new(), sizes(model)];
     documentation.extend(source(&model.mechanism.source));
+    documentation.push(String::new());
+    documentation.extend(operations::of_robot(model));
     let legend = legend::lines(&Labels::of_robot(model), &names.collect());
     if !legend.is_empty() {
         documentation.push(String::new());

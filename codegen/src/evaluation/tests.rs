@@ -90,6 +90,7 @@ fn program() -> Program {
                 home: 1.0,
             },
         }],
+        pieces: 0,
     }
 }
 

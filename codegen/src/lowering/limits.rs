@@ -25,8 +25,12 @@ pub struct SearchLimits {
     /// most, and operations that serve several of these: a later round has only what the earlier ones
     /// opened up.
     pub pair_rounds: usize,
-    /// Up to so many nodes a function has such rounds.
-    pub pair_nodes: usize,
+    /// A function of more nodes is large: it is searched in smaller pieces, and has no walk.
+    pub large_nodes: usize,
+    /// Up to so many nodes are searched for pairs at once; a heading with more is searched in pieces.
+    pub piece_nodes: usize,
+    /// The same in a large function.
+    pub small_piece_nodes: usize,
     /// Up to so many nodes a function's pairs are searched as a whole, not heading by heading.
     pub whole_nodes: usize,
     /// How many steps a walk among forms of equal cost has at most.
@@ -45,7 +49,9 @@ impl SearchLimits {
         replaces: false,
         compares_regular_states: false,
         pair_rounds: 0,
-        pair_nodes: 0,
+        large_nodes: 0,
+        piece_nodes: 0,
+        small_piece_nodes: 0,
         whole_nodes: 0,
         walk_steps: 0,
         walk_nodes: 0,
@@ -59,11 +65,13 @@ impl SearchLimits {
         ..Self::NONE
     };
 
-    /// Pairs once, in functions that are not too large, and a short walk in small ones.
+    /// Pairs once, and a short walk in small functions.
     pub const QUICK: Self = Self {
         compares_regular_states: true,
         pair_rounds: 1,
-        pair_nodes: 3000,
+        large_nodes: 3000,
+        piece_nodes: 2500,
+        small_piece_nodes: 300,
         walk_steps: 10,
         walk_nodes: 1000,
         walk_patience: 1,
@@ -73,14 +81,24 @@ impl SearchLimits {
     /// Pairs until nothing is found, in small functions among the nodes of all headings, and a long walk.
     pub const THOROUGH: Self = Self {
         pair_rounds: 4,
-        pair_nodes: usize::MAX,
+        large_nodes: 12_000,
+        small_piece_nodes: 1000,
         whole_nodes: 700,
         walk_steps: 40,
-        walk_nodes: usize::MAX,
+        walk_nodes: 12_000,
         walk_patience: 3,
         walk_pair_rounds: 1,
         ..Self::QUICK
     };
+
+    /// Up to so many nodes of a function with so many are searched for pairs at once.
+    #[must_use]
+    pub(crate) const fn piece(&self, nodes: usize) -> usize {
+        match nodes <= self.large_nodes {
+            true => self.piece_nodes,
+            false => self.small_piece_nodes,
+        }
+    }
 
     /// The limits of a function that matters less: of these no more than single replacements.
     #[must_use]

@@ -38,6 +38,7 @@ pub(crate) fn schedule(
         entries,
         steps: schedule.steps,
         guards,
+        pieces: dag.pieces(),
     })
 }
 

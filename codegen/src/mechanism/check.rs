@@ -186,6 +186,10 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
 /// Most joints of a robot. A check of so many takes seconds, a model of them more than anybody waits for.
 const JOINTS: usize = 200;
 
+/// Most independent joints of a leg: operations of its model grow with their square, the time of the search
+/// with the fourth power.
+const CHAIN: usize = 100;
+
 /// Legs without a joint, and robots with more than can be worked on.
 fn check_sizes(description: &Description, errors: &mut Diagnostics) {
     let joints: usize = description.legs.iter().map(|leg| leg.joints.len()).sum();
@@ -195,6 +199,18 @@ fn check_sizes(description: &Description, errors: &mut Diagnostics) {
         errors.push(Diagnostic::new(message, description.name.span.clone()).help(help));
     }
     for leg in &description.legs {
+        let own = leg.joints.iter().enumerate();
+        let own = own.filter(|(at, joint)| joint.is_independent(*at)).count();
+        if own > CHAIN {
+            let message = format!(
+                "leg `{}` has {own} independent joints, more than {CHAIN}: its identification model alone \
+                 would take some {} operations",
+                leg.name.value,
+                28 * own * own
+            );
+            let help = "describe it in parts, each as a robot of its own";
+            errors.push(Diagnostic::new(message, leg.name.span.clone()).help(help));
+        }
         if leg.joints.is_empty() {
             errors.push(Diagnostic::new(
                 format!("leg `{}` has no joint", leg.name.value),

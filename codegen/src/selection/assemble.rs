@@ -74,9 +74,9 @@ impl Assembler<'_> {
         }
         let has_forces = matches!(
             function,
-            Function::Bias
-                | Function::ForwardDynamics
-                | Function::InverseDynamics
+            Function::Bias(_)
+                | Function::ForwardDynamics(_)
+                | Function::InverseDynamics(_)
                 | Function::InverseDynamicsPreloaded
         );
         has_forces.then(|| Selection {

@@ -87,7 +87,11 @@ pub(super) fn select(
     result
 }
 
-/// Coefficients of the dependent columns on the kept ones, by least squares with scaled columns.
+/// How often the coefficients are corrected by what they leave.
+const REFINEMENTS: usize = 2;
+
+/// Coefficients of the dependent columns on the kept ones, by least squares with scaled columns. The columns
+/// depend exactly, so what a solution leaves is its own error, which is solved for once more.
 fn combinations(matrix: &DMatrix<f64>, kept: &[usize], dependent: &[usize]) -> DMatrix<f64> {
     if kept.is_empty() || dependent.is_empty() {
         return DMatrix::zeros(kept.len(), dependent.len());
@@ -98,10 +102,15 @@ fn combinations(matrix: &DMatrix<f64>, kept: &[usize], dependent: &[usize]) -> D
         column /= *scale;
     }
     let right = matrix.select_columns(dependent);
-    let qr = left.qr();
-    let mut solved = qr.q().tr_mul(&right);
-    if !qr.r().solve_upper_triangular_mut(&mut solved) {
-        return DMatrix::zeros(kept.len(), dependent.len());
+    let qr = left.clone().qr();
+    let (q, r) = (qr.q(), qr.r());
+    let mut solved = DMatrix::zeros(kept.len(), dependent.len());
+    for _ in 0..=REFINEMENTS {
+        let mut correction = q.tr_mul(&(&right - &left * &solved));
+        if !r.solve_upper_triangular_mut(&mut correction) {
+            return DMatrix::zeros(kept.len(), dependent.len());
+        }
+        solved += correction;
     }
     for (mut row, scale) in solved.row_iter_mut().zip(&scales) {
         row /= *scale;

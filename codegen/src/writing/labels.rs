@@ -194,6 +194,12 @@ fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
             all.map(|&parameter| plain(model.parameter_name(parameter)))
                 .collect()
         }
+        "base_parameters" => {
+            let base = model.base.iter().map(|base| model.base_name(base));
+            let payload = model.selection.payload.iter();
+            let payload = payload.map(|&parameter| model.parameter_name(parameter));
+            base.chain(payload).map(plain).collect()
+        }
         _ => (1..=count).map(|i| plain(format!("{name}_{i}"))).collect(),
     }
 }

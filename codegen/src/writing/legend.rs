@@ -259,12 +259,16 @@ const KINDS: &[Kind] = &[
     kind("inv_pivot_$", "1/d_k", "its reciprocal"),
     kind("l_$_$", "L", "entry of L"),
     kind(
-        "normal_$_$",
-        "(I - J J⁺) e",
-        "a vector of the null space of (J_p^inv)ᵀ, before it is made one of length 1, eq. (50)",
+        "share_$_$",
+        "J_a^-T j",
+        "what a kept actuator does against the unit torque of a projected one, eq. (50)",
     ),
-    kind("norm_$", "‖(I - J J⁺) e‖", "its length"),
-    kind("inv_norm_$", "1/‖(I - J J⁺) e‖", "the reciprocal"),
+    kind(
+        "norm_$",
+        "√(1 + c · Q c)",
+        "length of the internal torque that does one at a projected actuator",
+    ),
+    kind("inv_norm_$", "1/√(1 + c · Q c)", "the reciprocal"),
     kind(
         "det_ja",
         "det J_a",

@@ -290,6 +290,7 @@ mod tests {
             entries: Vec::new(),
             steps: operations.iter().map(step).collect(),
             guards: Vec::new(),
+            pieces: 0,
         };
         let mut naming = Names::new(&program, &labels);
         let mut taken: Vec<String> = Vec::new();

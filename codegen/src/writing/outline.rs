@@ -44,13 +44,13 @@ impl<'m> Outline<'m> {
     /// The outline of a robot's function.
     #[must_use]
     pub fn new(model: &'m RobotModel, function: &'m CompiledFunction) -> Self {
-        let finds_joints = needs_joints(model, function);
+        let finds_joints = model.needs_joints(function);
         let is_newton = model.finds_joints(function) && function.computes == Function::Joints;
         let is_pose = finds_joints && function.from == MotionInput::Pose && !is_newton;
         let twin = || model.function(function.computes, MotionInput::Joints);
         Self {
             arguments: arguments(model, function),
-            finds_pose: model.finds_pose(function) && needs_pose(model, function),
+            finds_pose: model.finds_pose(function) && model.needs_pose(function),
             finds_joints,
             is_newton,
             twin: is_pose.then(twin).flatten(),
@@ -62,26 +62,6 @@ impl<'m> Outline<'m> {
                 || !function.program.guards.is_empty(),
         }
     }
-}
-
-/// Whether the function's program, or the search of its joints, uses the pose.
-fn needs_pose(model: &RobotModel, function: &CompiledFunction) -> bool {
-    let used = function.program.used_inputs();
-    let mut inputs = function.program.inputs.iter();
-    let pose = inputs.position(|array| array.name == "pose");
-    pose.is_some_and(|at| used[at]) || needs_joints(model, function)
-}
-
-/// Whether the function's program uses joints that Newton's method has to find first.
-fn needs_joints(model: &RobotModel, function: &CompiledFunction) -> bool {
-    let inputs = &function.program.inputs;
-    let used = function.program.used_inputs();
-    let joints = inputs
-        .iter()
-        .zip(used)
-        .any(|(array, used)| array.name == "joints" && used);
-    // The joints themselves are what Newton's method gives.
-    model.finds_joints(function) && (joints || function.computes == Function::Joints)
 }
 
 fn arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Array> {
@@ -185,6 +165,9 @@ pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
         "torques" => "τ, forces and torques of the actuators (N, N m)".to_owned(),
         "parameters" => {
             "values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)".to_owned()
+        }
+        "base_parameters" => {
+            "values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)".to_owned()
         }
         "preload" => "coordinates of the internal torque on `null_space` (N, N m)".to_owned(),
         "start" => "a pose near the wanted one, in its assembly mode (m, rad)".to_owned(),

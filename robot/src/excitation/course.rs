@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::kind::LimitKind;
 use nalgebra::DMatrix;
-use overact::{Error, Function, Info, Model, math::wrap_angle};
+use overact::{Columns, Error, Function, Info, Model, math::wrap_angle};
 use overact_simulation::{Sampled, Trajectory, sample, trajectory::Displacement};
 use std::f64::consts::{PI, TAU};
 
@@ -95,7 +95,7 @@ impl<'a> Bench<'a> {
                     own[sizes.parameters..].fill(0.0);
                 }
                 ask(
-                    Function::InverseDynamics,
+                    Function::InverseDynamics(Columns::Standard),
                     &[motion[0], motion[1], motion[2], &own],
                 )?
             }

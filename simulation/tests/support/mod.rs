@@ -202,23 +202,31 @@ impl<K: Kinematics> Robot<K> {
                 self.least_squares(x, &rest, out)
             }
             Function::ProjectPlatform => project(input[1], out),
-            Function::Bias => {
+            Function::Bias(Columns::Standard) => {
                 let moving = self.moving(x, input[1])?;
                 self.force(&moving, [input[1], &zero[..r]], input[2], out);
                 Ok(())
             }
-            Function::ForwardDynamics => {
+            Function::ForwardDynamics(Columns::Standard) => {
                 let mut mass = vec![0.0; r * r];
                 let mut bias = vec![0.0; r];
-                self.sample(Function::MassMatrix, &[x, input[3]], &mut mass)?;
-                self.sample(Function::Bias, &[x, input[1], input[3]], &mut bias)?;
+                self.sample(
+                    Function::MassMatrix(Columns::Standard),
+                    &[x, input[3]],
+                    &mut mass,
+                )?;
+                self.sample(
+                    Function::Bias(Columns::Standard),
+                    &[x, input[1], input[3]],
+                    &mut bias,
+                )?;
                 project(input[2], out)?;
                 for (force, bias) in out.iter_mut().zip(&bias) {
                     *force -= bias;
                 }
                 solve_positive_definite(&mut mass, out).map_err(|_| Error::MassMatrix)
             }
-            Function::MassMatrix => {
+            Function::MassMatrix(Columns::Standard) => {
                 let moving = self.moving(x, &zero[..r])?;
                 columns(r, r, out, |k, column| {
                     let mut unit = [0.0; MAX];
@@ -242,7 +250,7 @@ impl<K: Kinematics> Robot<K> {
                 });
                 Ok(())
             }
-            Function::InverseDynamics => {
+            Function::InverseDynamics(Columns::Standard) => {
                 let mut force = [0.0; MAX];
                 let moving = self.moving(x, input[1])?;
                 let motion = [input[1], input[2]];
@@ -316,7 +324,7 @@ impl<K: Kinematics> Model for Robot<K> {
             for (k, kind) in function.inputs().iter().enumerate() {
                 let width = self.sizes.of(*kind);
                 row[k] = match kind {
-                    overact::Input::Parameters => inputs[k],
+                    overact::Input::Parameters | overact::Input::BaseParameters => inputs[k],
                     _ => &inputs[k][sample * width..(sample + 1) * width],
                 };
             }

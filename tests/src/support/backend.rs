@@ -172,9 +172,15 @@ macro_rules! redundant_backend {
             inverse_dynamics(pose, twist, acceleration, parameters);
             inverse_dynamics_from_joints(pose, joints, twist, acceleration, parameters);
             inverse_dynamics_from_actuators(actuators, actuator_velocities, actuator_accelerations, parameters, start);
+            inverse_dynamics_base(pose, twist, acceleration, base_parameters);
+            inverse_dynamics_base_from_joints(pose, joints, twist, acceleration, base_parameters);
+            inverse_dynamics_base_from_actuators(actuators, actuator_velocities, actuator_accelerations, base_parameters, start);
             mass_matrix(pose, parameters);
+            mass_matrix_base(pose, base_parameters);
             bias(pose, twist, parameters);
+            bias_base(pose, twist, base_parameters);
             forward_dynamics(pose, twist, torques, parameters);
+            forward_dynamics_base(pose, twist, torques, base_parameters);
             inverse_dynamics_preloaded(pose, twist, acceleration, parameters, preload);
             project_torques(pose, torques);
             null_space(pose);

@@ -1,7 +1,7 @@
 //! What the numeric reference says a function's output is.
 
 use super::sample::fitted_acceleration;
-use super::{Failure, Sample};
+use super::{Failure, Parameters, Sample};
 use crate::reference::dynamics::Partition;
 use crate::reference::linear::pseudo_inverse;
 use crate::reference::parameters::{BODY, INERTIAL, leg_start, names, platform_start};
@@ -21,6 +21,8 @@ pub struct Expected {
     pub standard: Vec<usize>,
     /// Of the base parameters.
     pub base: Vec<usize>,
+    /// What is regrouped into each of them, and how.
+    pub regrouped: Vec<Vec<(usize, f64)>>,
     /// Of the payload's parameters.
     pub payload: Vec<usize>,
     /// Kept actuators of case 2.
@@ -43,9 +45,14 @@ impl Expected {
             };
             of.iter().map(find).collect()
         };
+        let regrouped = model.base.iter().map(|base| {
+            let (others, coefficients): (Vec<_>, Vec<f64>) = base.regrouped.iter().copied().unzip();
+            Ok(columns(&others)?.into_iter().zip(coefficients).collect())
+        });
         Ok(Self {
             standard: columns(&model.selection.standard)?,
             base: columns(&model.selection.base)?,
+            regrouped: regrouped.collect::<Result<_, Failure>>()?,
             payload: columns(&model.selection.payload)?,
             kept: model.selection.kept_actuators.clone(),
             mechanism,
@@ -68,16 +75,31 @@ impl Expected {
         Self {
             standard: columns(&model.selection.standard),
             base: columns(&model.selection.base),
+            regrouped: model
+                .base
+                .iter()
+                .map(|base| base.regrouped.iter().map(|(p, c)| (at(p), *c)).collect())
+                .collect(),
             payload: columns(&model.selection.payload),
             kept: model.selection.kept_actuators.clone(),
             mechanism,
         }
     }
 
-    /// Columns of all parameters that inverse dynamics takes.
+    /// The parameters that inverse dynamics takes.
     #[must_use]
-    pub fn parameters(&self) -> Vec<usize> {
-        [&self.standard[..], &self.payload].concat()
+    pub fn parameters(&self) -> Parameters {
+        let alone = |&at: &usize| (at, 1.0);
+        let of_base = self.base.iter().zip(&self.regrouped);
+        let of_base = of_base.map(|(kept, others)| {
+            let others = others.iter().copied();
+            std::iter::once(alone(kept)).chain(others).collect()
+        });
+        let of_payload = self.payload.iter().map(|at| vec![alone(at)]);
+        Parameters {
+            columns: [&self.standard[..], &self.payload].concat(),
+            base: of_base.chain(of_payload).collect(),
+        }
     }
 
     /// What the reference says at a sample.
@@ -208,7 +230,7 @@ impl Truth<'_> {
             Function::IdmRedPlatform(_)
                 | Function::IdmRedActuators(_)
                 | Function::IdmRedPayload
-                | Function::InverseDynamics
+                | Function::InverseDynamics(_)
         );
         let fitted = dynamic && from == MotionInput::Actuators;
         let side = if fitted { &self.fitted } else { &self.here };
@@ -241,14 +263,15 @@ impl Truth<'_> {
                 let projected = torques.select_rows(&partition.projected);
                 vector(&(torques.select_rows(&expected.kept) - partition.projection * projected))
             }
-            Function::InverseDynamics => vector(&least_norm()?),
+            // Base parameters hold all others, regrouped: the same torques, the same motion.
+            Function::InverseDynamics(_) => vector(&least_norm()?),
             Function::InverseDynamicsPreloaded => {
                 let preload = DVector::from_column_slice(&self.sample.preload);
                 vector(&(least_norm()? + expected.null_space(dynamics) * preload))
             }
-            Function::MassMatrix => dynamics.mass_matrix_and_bias(chi)?.0,
-            Function::Bias => vector(&dynamics.mass_matrix_and_bias(chi)?.1),
-            Function::ForwardDynamics => {
+            Function::MassMatrix(_) => dynamics.mass_matrix_and_bias(chi)?.0,
+            Function::Bias(_) => vector(&dynamics.mass_matrix_and_bias(chi)?.1),
+            Function::ForwardDynamics(_) => {
                 let (mass, bias) = dynamics.mass_matrix_and_bias(chi)?;
                 let forces = dynamics.jacobians.inverse.transpose() * &torques - bias;
                 let solved = mass.lu().solve(&forces);

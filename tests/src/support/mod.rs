@@ -17,7 +17,7 @@ pub mod served;
 pub use agreement::Agreement;
 pub use backend::{Backend, Evaluated};
 pub use comparison::Comparison;
-pub use sample::Sample;
+pub use sample::{Parameters, Sample};
 pub use served::Served;
 
 use overact_codegen::{Effort, Request, RobotModel, Source, compile_with};

@@ -11,6 +11,38 @@ use rand_pcg::Pcg64;
 /// Largest perturbation of actuator velocities, rad/s, and accelerations, rad/s².
 const NOISE: f64 = 0.05;
 
+/// Which of the reference's parameters a model takes.
+#[derive(Clone, Debug)]
+pub struct Parameters {
+    /// Its standard parameters, then the payload's.
+    pub columns: Vec<usize>,
+    /// Of each of its base parameters and of the payload's, all that are regrouped into it.
+    pub base: Vec<Vec<(usize, f64)>>,
+}
+
+impl Parameters {
+    /// The model's among all parameters of the reference.
+    #[must_use]
+    pub fn values(&self, all: &DVector<f64>) -> Vec<f64> {
+        self.columns.iter().map(|&at| all[at]).collect()
+    }
+
+    /// The model's base parameters and the payload's.
+    #[must_use]
+    pub fn regrouped(&self, all: &DVector<f64>) -> Vec<f64> {
+        let sum = |terms: &Vec<(usize, f64)>| terms.iter().map(|&(at, c)| c * all[at]).sum();
+        self.base.iter().map(sum).collect()
+    }
+}
+
+impl std::ops::Deref for Parameters {
+    type Target = [usize];
+
+    fn deref(&self) -> &[usize] {
+        &self.columns
+    }
+}
+
 /// A state and inputs that go with it.
 #[derive(Clone, Debug)]
 pub struct Sample {
@@ -31,6 +63,8 @@ pub struct Sample {
     pub all_parameters: DVector<f64>,
     /// Those of the model: standard, then payload.
     pub parameters: Vec<f64>,
+    /// Its base parameters, then the payload's.
+    pub base_parameters: Vec<f64>,
     /// Coordinates of the internal torque.
     pub preload: Vec<f64>,
     /// A pose near the sample's, to start forward kinematics from.
@@ -38,7 +72,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// A sample in a state; `columns` are the reference's columns of the model's parameters.
+    /// A sample in a state, with random values of the model's parameters.
     ///
     /// # Errors
     ///
@@ -46,7 +80,7 @@ impl Sample {
     pub fn new(
         mechanism: &Mechanism,
         state: State,
-        columns: &[usize],
+        parameters: &Parameters,
         seed: u64,
     ) -> Result<Self, Failure> {
         let mut generator = Pcg64::seed_from_u64(seed);
@@ -60,7 +94,7 @@ impl Sample {
         let fitted = fit(mechanism, &state, &velocities, &accelerations)?;
         let drawn = random_parameters(mechanism, seed);
         let mut all_parameters = DVector::zeros(drawn.len());
-        for &at in columns {
+        for &at in parameters.iter() {
             all_parameters[at] = drawn[at];
         }
         let shift = random(r, 0.02);
@@ -70,7 +104,8 @@ impl Sample {
             actuator_velocities: velocities.as_slice().to_vec(),
             actuator_accelerations: accelerations.as_slice().to_vec(),
             torques: random(n, 10.0).as_slice().to_vec(),
-            parameters: columns.iter().map(|&at| drawn[at]).collect(),
+            parameters: parameters.values(&all_parameters),
+            base_parameters: parameters.regrouped(&all_parameters),
             all_parameters,
             preload: random(n - r, 3.0).as_slice().to_vec(),
             start: mechanism.motion.displace(&state.pose, &shift),
@@ -94,6 +129,7 @@ impl Sample {
             "actuator_accelerations" => &self.actuator_accelerations,
             "torques" => &self.torques,
             "parameters" => &self.parameters,
+            "base_parameters" => &self.base_parameters,
             "preload" => &self.preload,
             "start" => &self.start,
             _ => return Err(format!("no argument is called `{name}`").into()),
@@ -141,7 +177,7 @@ pub fn fitted_acceleration(
 /// If too few regular states are found.
 pub fn samples(
     mechanism: &Mechanism,
-    columns: &[usize],
+    parameters: &Parameters,
     count: usize,
     seed: u64,
     partitions: bool,
@@ -150,7 +186,7 @@ pub fn samples(
     let mut all = Vec::with_capacity(count);
     for (at, state) in drawn.into_iter().enumerate() {
         if all.len() < count && (!partitions || every_partition(mechanism, &state)?) {
-            all.push(Sample::new(mechanism, state, columns, seed + at as u64)?);
+            all.push(Sample::new(mechanism, state, parameters, seed + at as u64)?);
         }
     }
     if all.len() == count {

@@ -149,10 +149,10 @@ fn dynamics_agree() -> Result<(), Failure> {
         matches!(
             function,
             Function::ProjectPlatform
-                | Function::InverseDynamics
-                | Function::MassMatrix
-                | Function::Bias
-                | Function::ForwardDynamics
+                | Function::InverseDynamics(_)
+                | Function::MassMatrix(_)
+                | Function::Bias(_)
+                | Function::ForwardDynamics(_)
                 | Function::ProjectTorques
         )
     })

@@ -249,14 +249,14 @@ impl Contract<'_> {
         width: usize,
         ask: &impl Fn(&[Vec<f64>], usize, &str) -> Answer,
     ) {
-        if function != Function::ForwardDynamics {
+        if !matches!(function, Function::ForwardDynamics(_)) {
             return;
         }
         let mut inputs = inputs.to_vec();
         let parameters = function
             .inputs()
             .iter()
-            .position(|i| *i == Input::Parameters);
+            .position(|i| matches!(i, Input::Parameters | Input::BaseParameters));
         inputs[parameters.expect("parameters")].fill(0.0);
         let answer = ask(&inputs, width * SAMPLES, "no masses");
         let error = Err(SampleError {

@@ -1,7 +1,7 @@
 //! The two forms of the forces of given parameters give the same numbers: that which a robot's functions are
 //! not written in, because the other needs fewer operations, is seen nowhere else.
 
-use overact::{Function, Model};
+use overact::{Columns, Function, Model};
 use overact_codegen::derivation::{DynamicsBy, Selection};
 use overact_codegen::internals::{Assembler, Search};
 use overact_tests::support::backend::{evaluate, matrix};
@@ -23,7 +23,10 @@ fn check(stem: &str, _: &dyn Model) -> Result<(), Failure> {
         29,
         false,
     )?;
-    for function in [Function::Bias, Function::InverseDynamics] {
+    for function in [
+        Function::Bias(Columns::Standard),
+        Function::InverseDynamics(Columns::Standard),
+    ] {
         let from = model.plain(function).ok_or("no such function")?.from;
         let program = |dynamics: DynamicsBy| {
             let selection = Selection {

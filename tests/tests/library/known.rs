@@ -1,7 +1,7 @@
 //! With known parameters the dynamics have them as constants, and the base parameters alone: the same
 //! numbers as from parameters that are given, in fewer operations.
 
-use overact::Function;
+use overact::{Columns, Function};
 use overact_codegen::{Effort, Request, compile_with};
 use overact_compiled::{Rx90, known};
 use overact_tests::support::backend::{evaluate, matrix};
@@ -15,10 +15,10 @@ use std::fmt::Write as _;
 const TOLERANCE: f64 = 1e-9;
 const STATES: usize = 5;
 const DYNAMICS: [Function; 4] = [
-    Function::InverseDynamics,
-    Function::MassMatrix,
-    Function::Bias,
-    Function::ForwardDynamics,
+    Function::InverseDynamics(Columns::Standard),
+    Function::MassMatrix(Columns::Standard),
+    Function::Bias(Columns::Standard),
+    Function::ForwardDynamics(Columns::Standard),
 ];
 
 /// Robots of the default tier and of the full one.

@@ -1,6 +1,7 @@
 //! The inputs of a function from states that may hold other quantities than it takes: a pose from
 //! actuators or joints by forward kinematics, joints from a pose by inverse kinematics.
 
+use super::GivenParameters;
 use crate::{
     failure::{Failure, Problem},
     states::States,
@@ -41,7 +42,7 @@ impl std::convert::From<Problem> for Lack {
 pub(super) fn inputs(
     robot: &InterpretedRobot,
     program: &Program,
-    (from, parameters): (MotionInput, Option<Vec<f64>>),
+    (from, parameters): (MotionInput, GivenParameters),
     states: &States,
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut gatherer = Gatherer {
@@ -85,7 +86,7 @@ fn lacking(at: usize, missing: &[String], states: &States, takes: &[String]) -> 
         false => quoted(&mut found.into_iter().take(MOST_NAMED)) + &more,
     };
     let mut help = format!("the function takes {}", takes.join(", "));
-    if missing.iter().any(|name| name == "parameters") {
+    if missing.iter().any(|name| name.ends_with("parameters")) {
         help += "; `--parameters FILE` gives those of all states";
     }
     let missing = quoted(&mut missing.iter().map(String::as_str));
@@ -97,8 +98,8 @@ struct Gatherer<'a> {
     robot: &'a InterpretedRobot,
     states: &'a States,
     from: MotionInput,
-    /// Standard parameters that hold for all states.
-    parameters: Option<Vec<f64>>,
+    /// Parameters that hold for all states.
+    parameters: GivenParameters,
     /// The pose from which forward kinematics starts.
     previous: Vec<f64>,
 }
@@ -117,16 +118,11 @@ impl Gatherer<'_> {
 
     fn input(&mut self, at: usize, array: &Array) -> Result<Vec<f64>, Lack> {
         let is_tree = self.robot.model().is_tree();
+        if let Some(given) = self.parameters.input(&array.name) {
+            return Ok(given.clone());
+        }
         match array.name.as_str() {
             "pose" => self.pose(at),
-            "parameters"
-                if self
-                    .parameters
-                    .as_ref()
-                    .is_some_and(|own| own.len() == array.len()) =>
-            {
-                Ok(self.parameters.clone().unwrap_or_default())
-            }
             "joints" if !is_tree => self.joints(at, array.len()),
             name => {
                 // A tree's joints are its pose and its actuators, too.

@@ -32,7 +32,10 @@ pub(super) fn function<'m>(
         return by_full_name(model, name);
     }
     let columns = arguments.columns.map_or(Columns::Standard, Choice::columns);
-    let is_meant = |f: &&CompiledFunction| f.computes.columns().is_none_or(|c| c == columns);
+    let is_meant = |f: &&CompiledFunction| {
+        let of = f.computes.columns().or(f.computes.parameters());
+        of.is_none_or(|of| of == columns)
+    };
     let offered: Vec<&CompiledFunction> = named.into_iter().filter(is_meant).collect();
     if offered.is_empty() {
         let message = format!("`{name}` is not offered with {} columns", columns.name());

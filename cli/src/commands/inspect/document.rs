@@ -3,9 +3,7 @@
 use super::conditioning::Conditioning;
 use overact::Columns;
 use overact_codegen::{
-    BaseParameter, RobotModel,
-    derivation::MotionInput,
-    lowering::{Array, Cost},
+    BaseParameter, RobotModel, WholeCost, derivation::MotionInput, lowering::Array,
 };
 use overact_robot::{CompiledFile, InterpretedRobot};
 use serde::Serialize;
@@ -67,9 +65,10 @@ pub(super) struct Function {
     pub(super) from: &'static str,
     pub(super) inputs: Vec<Argument>,
     pub(super) outputs: Vec<Argument>,
+    /// Additions, multiplications and divisions; what is called is counted in, once.
     pub(super) operations: usize,
     #[serde(flatten)]
-    pub(super) cost: Cost,
+    pub(super) cost: WholeCost,
 }
 
 #[derive(Debug, Serialize)]
@@ -234,15 +233,18 @@ impl Function {
             );
             inputs.push(free("start", model.mechanism.pose_len(), true));
         }
-        let cost = program.cost();
+        let cost = model.cost(function);
         Self {
             name: function.computes.name(),
             function: function.name.clone(),
-            columns: function.computes.columns().map(Columns::name),
+            columns: match function.computes.is_of_base_parameters() {
+                true => Some(Columns::Base.name()),
+                false => function.computes.columns().map(Columns::name),
+            },
             from: function.from.name(),
             inputs,
             outputs: vec![argument(&program.output)],
-            operations: cost.operations(),
+            operations: cost.once.operations(),
             cost,
         }
     }

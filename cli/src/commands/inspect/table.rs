@@ -102,7 +102,20 @@ fn base_parameters(all: &[Base]) -> String {
 
 fn functions(document: &Document) -> String {
     let header = [
-        "function", "shape", "op", "+ -", "*", "/", "sqrt", "sin cos", "atan2", "sign", "values",
+        "function",
+        "shape",
+        "op",
+        "+ -",
+        "*",
+        "/",
+        "sqrt",
+        "sin cos",
+        "atan2",
+        "sign",
+        "guard",
+        "neg",
+        "values",
+        "op each step",
     ];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for function in &document.functions {
@@ -110,7 +123,7 @@ fn functions(document: &Document) -> String {
             let sizes: Vec<String> = output.shape.iter().map(usize::to_string).collect();
             sizes.join(" x ")
         });
-        let cost = &function.cost;
+        let cost = &function.cost.once;
         let counts = [
             function.operations,
             cost.additions,
@@ -120,13 +133,30 @@ fn functions(document: &Document) -> String {
             cost.trigonometric_pairs,
             cost.arc_tangents,
             cost.signs,
+            cost.guards,
+            cost.negations,
             cost.intermediates,
         ];
         let mut row = vec![function.function.clone(), shape.collect()];
         row.extend(counts.iter().map(usize::to_string));
+        row.push(iterations(function));
         rows.push(row);
     }
     table(&rows, &[true])
+        + "op: + - * and /, products with a sign among them; what a function calls is counted in.\n"
+}
+
+/// What a function that calls an iteration takes for each of its steps.
+fn iterations(function: &super::document::Function) -> String {
+    let told = function.cost.iterations.iter().map(|one| {
+        let runs = match (one.within, one.runs) {
+            (Some(_), 1) => " inside".to_owned(),
+            (Some(_), runs) => format!(" {runs} times inside"),
+            (None, _) => String::new(),
+        };
+        format!("{}{runs}", one.operations)
+    });
+    told.collect::<Vec<_>>().join(", ")
 }
 
 fn conditioning(document: &Document) -> String {

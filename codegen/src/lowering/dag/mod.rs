@@ -101,6 +101,8 @@ pub(crate) struct Dag {
     digits: Digits,
     /// What the search of single replacements knows of the nodes.
     forms: Forms,
+    /// In how many pieces pairs have been searched, if headings were too large to be searched as a whole.
+    pieces: usize,
     context: Arc<Context>,
 }
 
@@ -261,6 +263,16 @@ impl Dag {
         needed
     }
 
+    /// Pairs have been searched in so many pieces.
+    pub(crate) fn note_pieces(&mut self, pieces: usize) {
+        self.pieces = self.pieces.max(pieces);
+    }
+
+    /// In how many pieces pairs have been searched; none if as a whole, or heading by heading.
+    pub(crate) const fn pieces(&self) -> usize {
+        self.pieces
+    }
+
     /// Whether the node is needed.
     pub(crate) fn is_live(&self, node: usize) -> bool {
         self.uses[node] > 0
@@ -345,13 +357,14 @@ impl Dag {
         self.cost_of(self.definitions[node])
     }
 
-    /// What an operation counts: one, and nothing for a product with a sign, which is a selection.
-    pub(crate) fn cost_of(&self, definition: Definition) -> i32 {
-        let is_sign = |of: Edge| matches!(self.definitions[of.node()], Definition::Sign(_));
+    /// What an operation counts: one, also for a product with a sign.
+    pub(crate) const fn cost_of(&self, definition: Definition) -> i32 {
         match definition {
             Definition::Root(_) | Definition::ArcTangent(..) => EXPENSIVE,
-            Definition::Product(a, b) => i32::from(!is_sign(a) && !is_sign(b)),
-            Definition::Sum(..) | Definition::Quotient(..) => 1,
+            Definition::Sum(..)
+            | Definition::Product(..)
+            | Definition::Quotient(..)
+            | Definition::Selection(..) => 1,
             _ => 0,
         }
     }

@@ -9,12 +9,7 @@ pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
     if !limits.replaces {
         return;
     }
-    let rounds = if dag.len() <= limits.pair_nodes {
-        limits.pair_rounds
-    } else {
-        0
-    };
-    settle(dag, limits, rounds);
+    settle(dag, limits, limits.pair_rounds);
 }
 
 /// Replaces nodes as long as that saves anything, with so many rounds of pairs at most.
@@ -23,7 +18,7 @@ pub(super) fn settle(dag: &mut Dag, limits: &SearchLimits, mut rounds: usize) {
         let mut saved = single_replacements::improve(dag);
         if rounds > 0 {
             rounds -= 1;
-            saved += shared_pairs::improve(dag, limits.whole_nodes);
+            saved += shared_pairs::improve(dag, limits);
         }
         if saved == 0 {
             return;

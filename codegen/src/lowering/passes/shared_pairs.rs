@@ -3,19 +3,17 @@
 //! A target t asks for every value m with which one more operation gives it: t = c + m, t = c m,
 //! t = m / c. All sums, differences and products of two nodes are then held against what was asked for.
 //! This is done heading by heading, each with the nodes that its own are made of, because a leg's nodes
-//! have little to do with another leg's; a small function is searched as a whole.
+//! have little to do with another leg's; a small function is searched as a whole, and a heading with many
+//! nodes in pieces, each a run of its own nodes in the order in which the derivation has made them.
 
 use super::own_pairs::{Kind, OwnPairs};
 use super::requests::{Form, Request, requests};
 use super::single_replacements::{LOSS, fits};
 use crate::cas::field::{Element, canonical};
 use crate::cas::filter::Filter;
-#[cfg(test)]
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition, Dominators, Edge};
-
-/// More nodes than this are searched without pairs: the table of pairs grows with the square.
-const MOST: usize = 2500;
+use std::collections::BTreeSet;
 
 /// A new node and the bound of what it can save.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -29,14 +27,14 @@ struct Hit {
 /// The pass on its own: one round.
 #[cfg(test)]
 pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
-    if limits.pair_rounds > 0 && dag.len() <= limits.pair_nodes {
-        improve(dag, limits.whole_nodes);
+    if limits.pair_rounds > 0 {
+        improve(dag, limits);
     }
 }
 
-/// Replaces nodes group by group, or together if there are no more than `whole`; the operations saved.
-pub(super) fn improve(dag: &mut Dag, whole: usize) -> i32 {
-    let groups = groups(dag, whole);
+/// Replaces nodes group by group, or together if they are few; the operations saved.
+pub(super) fn improve(dag: &mut Dag, limits: &SearchLimits) -> i32 {
+    let groups = groups(dag, limits);
     let saved = groups.iter().map(|group| improve_group(dag, group)).sum();
     if saved > 0 {
         // There are new nodes.
@@ -45,26 +43,48 @@ pub(super) fn improve(dag: &mut Dag, whole: usize) -> i32 {
     saved
 }
 
-/// The nodes of each heading: first its own, then those they are made of.
-fn groups(dag: &Dag, whole: usize) -> Vec<(Vec<usize>, Vec<usize>)> {
+/// Nodes that are searched together: a heading's own, or a piece of them, and with those they are made of.
+type Group = (Vec<usize>, Vec<usize>);
+
+/// The groups that are searched, one after the other.
+fn groups(dag: &mut Dag, limits: &SearchLimits) -> Vec<Group> {
     let live: Vec<usize> = (0..dag.len()).filter(|&n| dag.is_live(n)).collect();
-    if live.len() <= whole {
+    if live.len() <= limits.whole_nodes {
         return vec![(live.clone(), live)];
     }
+    let most = limits.piece(dag.len());
     let mut scopes: Vec<u32> = live.iter().map(|&n| dag.scope(n)).collect();
     scopes.sort_unstable();
     scopes.dedup();
-    let group = |scope: &u32| {
+    let mut groups = Vec::new();
+    for scope in &scopes {
         let is_own = |n: &usize| dag.scope(*n) == *scope;
         let own: Vec<usize> = live.iter().copied().filter(is_own).collect();
-        let mut all = own.clone();
-        all.extend(own.iter().flat_map(|&n| dag.definition(n).operands()));
-        all.sort_unstable();
-        all.dedup();
-        (own, all)
-    };
-    let groups = scopes.iter().map(group);
-    groups.filter(|(_, all)| all.len() <= MOST).collect()
+        groups.extend(pieces(dag, &own, most));
+    }
+    if groups.len() > scopes.len() {
+        dag.note_pieces(groups.len());
+    }
+    groups
+}
+
+/// Runs of a heading's nodes, each with no more than `most` nodes together with those they are made of.
+fn pieces(dag: &Dag, own: &[usize], most: usize) -> Vec<Group> {
+    let mut pieces: Vec<Group> = Vec::new();
+    let (mut run, mut all) = (Vec::new(), BTreeSet::new());
+    for &node in own {
+        let operands = dag.definition(node).operands();
+        let with: Vec<usize> = operands.chain([node]).collect();
+        let more = with.iter().filter(|n| !all.contains(*n)).count();
+        if !run.is_empty() && all.len() + more > most {
+            let full = std::mem::take(&mut all);
+            pieces.push((std::mem::take(&mut run), full.into_iter().collect()));
+        }
+        run.push(node);
+        all.extend(with);
+    }
+    pieces.push((run, all.into_iter().collect()));
+    pieces
 }
 
 fn improve_group(dag: &mut Dag, (own, all): &(Vec<usize>, Vec<usize>)) -> i32 {

@@ -2,14 +2,15 @@
 
 use super::{Operand, Operation, Program};
 use std::fmt;
+use std::ops::AddAssign;
 
-/// Operation counts by the rule: a sum of n terms counts n - 1, a product of n factors n - 1, a
-/// square 1, a division 1; square roots, trigonometric pairs, signs and negations stand apart.
+/// Operation counts by the rule: a sum of n terms counts n - 1, a product of n factors n - 1, a product
+/// with a sign is one, a square 1, a division 1; all others stand apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Cost {
     /// Additions and subtractions.
     pub additions: usize,
-    /// Multiplications, those by constants included.
+    /// Multiplications, those by constants and by signs included.
     pub multiplications: usize,
     /// Divisions.
     pub divisions: usize,
@@ -19,8 +20,10 @@ pub struct Cost {
     pub trigonometric_pairs: usize,
     /// Arc tangents.
     pub arc_tangents: usize,
-    /// Signs of velocities, as numbers or as selections.
+    /// Velocities whose signs are taken.
     pub signs: usize,
+    /// Values that are compared, so that the outputs mean something.
+    pub guards: usize,
     /// Sign changes.
     pub negations: usize,
     /// Values that are computed and are no output themselves.
@@ -33,22 +36,62 @@ impl Cost {
     pub const fn operations(&self) -> usize {
         self.additions + self.multiplications + self.divisions
     }
+
+    /// Whether nothing at all is done.
+    #[must_use]
+    pub fn is_nothing(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// What stands apart of the operations, each with its name.
+    fn others(&self) -> [(usize, &'static str); 7] {
+        [
+            (self.square_roots, "square root"),
+            (self.trigonometric_pairs, "trigonometric pair"),
+            (self.arc_tangents, "arc tangent"),
+            (self.signs, "sign"),
+            (self.guards, "guard"),
+            (self.negations, "negation"),
+            (self.intermediates, "intermediate"),
+        ]
+    }
+}
+
+impl AddAssign for Cost {
+    fn add_assign(&mut self, other: Self) {
+        self.additions += other.additions;
+        self.multiplications += other.multiplications;
+        self.divisions += other.divisions;
+        self.square_roots += other.square_roots;
+        self.trigonometric_pairs += other.trigonometric_pairs;
+        self.arc_tangents += other.arc_tangents;
+        self.signs += other.signs;
+        self.guards += other.guards;
+        self.negations += other.negations;
+        self.intermediates += other.intermediates;
+    }
 }
 
 impl fmt::Display for Cost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} operations ({} additions, {} multiplications, {} divisions), {} square roots, {} trigonometric pairs, {} signs, {} intermediates",
-            self.operations(),
-            self.additions,
-            self.multiplications,
-            self.divisions,
-            self.square_roots,
-            self.trigonometric_pairs,
-            self.signs,
-            self.intermediates
-        )
+        let counted = |(count, name): (usize, &str)| match count {
+            1 => format!("1 {name}"),
+            _ => format!("{count} {name}s"),
+        };
+        write!(f, "{}", counted((self.operations(), "operation")))?;
+        if self.operations() > 0 {
+            write!(
+                f,
+                " ({}, {}, {})",
+                counted((self.additions, "addition")),
+                counted((self.multiplications, "multiplication")),
+                counted((self.divisions, "division")),
+            )?;
+        }
+        for other in self.others().into_iter().filter(|(count, _)| *count > 0) {
+            write!(f, ", {}", counted(other))?;
+        }
+        Ok(())
     }
 }
 
@@ -56,8 +99,11 @@ impl Program {
     /// Counts the program's operations.
     #[must_use]
     pub fn cost(&self) -> Cost {
-        let mut cost = Cost::default();
-        let mut angles: Vec<Operand> = Vec::new();
+        let mut cost = Cost {
+            guards: self.guards.len(),
+            ..Cost::default()
+        };
+        let (mut angles, mut velocities) = (Distinct::default(), Distinct::default());
         for step in &self.steps {
             match step.operation {
                 Operation::Add(..) | Operation::Sub(..) => cost.additions += 1,
@@ -65,16 +111,17 @@ impl Program {
                 Operation::Div(..) => cost.divisions += 1,
                 Operation::Neg(_) => cost.negations += 1,
                 Operation::Sqrt(_) => cost.square_roots += 1,
-                Operation::Sign(_) | Operation::Signed(..) => cost.signs += 1,
-                Operation::Atan2(..) => cost.arc_tangents += 1,
-                Operation::Sine(angle) | Operation::Cosine(angle) => {
-                    if !angles.contains(&angle) {
-                        angles.push(angle);
-                    }
+                Operation::Sign(velocity) => velocities.add(velocity),
+                Operation::Signed(_, velocity) => {
+                    cost.multiplications += 1;
+                    velocities.add(velocity);
                 }
+                Operation::Atan2(..) => cost.arc_tangents += 1,
+                Operation::Sine(angle) | Operation::Cosine(angle) => angles.add(angle),
             }
         }
-        cost.trigonometric_pairs = angles.len();
+        cost.trigonometric_pairs = angles.0.len();
+        cost.signs = velocities.0.len();
         cost.negations += self.entries.iter().filter(|e| e.negative).count();
         let mut is_output = vec![false; self.steps.len()];
         for entry in &self.entries {
@@ -84,5 +131,17 @@ impl Program {
         }
         cost.intermediates = is_output.iter().filter(|o| !**o).count();
         cost
+    }
+}
+
+/// Operands, each once.
+#[derive(Default)]
+struct Distinct(Vec<Operand>);
+
+impl Distinct {
+    fn add(&mut self, operand: Operand) {
+        if !self.0.contains(&operand) {
+            self.0.push(operand);
+        }
     }
 }

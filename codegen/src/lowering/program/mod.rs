@@ -38,7 +38,7 @@ pub enum Operation {
     Cosine(Operand),
     /// -1, 0 or 1.
     Sign(Operand),
-    /// The first operand with the sign of the second: a × sign(b), as a selection.
+    /// The first operand with the sign of the second: a × sign(b), a multiplication.
     Signed(Operand, Operand),
     Atan2(Operand, Operand),
 }
@@ -49,7 +49,7 @@ impl Operation {
     pub(crate) const fn is_counted(&self) -> bool {
         matches!(
             self,
-            Self::Add(..) | Self::Sub(..) | Self::Mul(..) | Self::Div(..)
+            Self::Add(..) | Self::Sub(..) | Self::Mul(..) | Self::Div(..) | Self::Signed(..)
         )
     }
 
@@ -181,6 +181,8 @@ pub struct Program {
     pub steps: Vec<Step>,
     /// Conditions, each on a step that exists.
     pub guards: Vec<Guard>,
+    /// In how many pieces its operations were searched, if it was too large for a search as a whole.
+    pub pieces: usize,
 }
 
 impl Program {

@@ -142,6 +142,39 @@ fn every_pass_keeps_outputs_and_divisors_and_costs_no_more() {
     }
 }
 
+/// Large functions are searched in pieces; small ones are, where the pieces are small enough.
+#[test]
+fn pieces_save_operations_and_keep_outputs() {
+    let limits = SearchLimits {
+        piece_nodes: 12,
+        whole_nodes: 0,
+        ..SearchLimits::QUICK
+    };
+    let (mut single, mut with_pieces, mut split) = (0, 0, 0);
+    for seed in 0..FUNCTIONS {
+        let Built { mut dag, .. } = built(seed);
+        let symbols = point(&dag, seed);
+        let expected = outputs(&dag, &symbols);
+        let mut other = built(seed).dag;
+        let run = |dag: &mut Dag, limits: &SearchLimits| {
+            crate::lowering::passes::run(dag, limits).expect("sound passes");
+        };
+        run(&mut dag, &limits);
+        run(&mut other, &SearchLimits::SINGLE_REPLACEMENTS);
+        assert_close(
+            &outputs(&dag, &symbols),
+            &expected,
+            &format!("function {seed}"),
+        );
+        single += other.total();
+        with_pieces += dag.total();
+        split += usize::from(dag.pieces() > 1);
+        assert_eq!(other.pieces(), 0);
+    }
+    assert!(split > 10, "{split} functions are split");
+    assert!(with_pieces < single, "{with_pieces} after {single}");
+}
+
 #[test]
 fn programs_compute_what_the_expressions_say() {
     for seed in 0..FUNCTIONS {

@@ -1,0 +1,66 @@
+//! What functions cost, as their documentation and that of the type says it.
+
+use crate::lowering::Cost;
+use crate::model::RobotModel;
+use crate::whole::WholeCost;
+
+/// The lines of a function.
+#[must_use]
+pub fn of_function(cost: &WholeCost) -> Vec<String> {
+    let mut lines = vec![format!(" {}.", cost.once)];
+    for iteration in &cost.iterations {
+        let (function, step) = (iteration.function, iteration.step);
+        let runs = match iteration.runs {
+            1 => String::new(),
+            runs => format!(", which is run {runs} times"),
+        };
+        let within = match iteration.within {
+            Some(outer) => format!(" in each step of `{outer}`"),
+            None => String::new(),
+        };
+        lines.push(format!(
+            " And in each step of the iteration in `{function}`{runs}{within}: {step}."
+        ));
+    }
+    lines
+}
+
+/// The lines of a robot: a table of its functions.
+#[must_use]
+pub fn of_robot(model: &RobotModel) -> Vec<String> {
+    let mut lines = vec![
+        " # Operations".to_owned(),
+        String::new(),
+        " Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.".to_owned(),
+        String::new(),
+        " | function | once | each step |".to_owned(),
+        " |---|---|---|".to_owned(),
+    ];
+    for function in &model.functions {
+        let cost = model.cost(function);
+        let steps: Vec<String> = cost.iterations.iter().map(|one| short(&one.step)).collect();
+        lines.push(format!(
+            " | `{}` | {} | {} |",
+            function.name,
+            short(&cost.once),
+            steps.join("; ")
+        ));
+    }
+    lines
+}
+
+/// `362, 4 √, 1 sc, 8 gd`.
+fn short(cost: &Cost) -> String {
+    let others = [
+        (cost.square_roots, "√"),
+        (cost.trigonometric_pairs, "sc"),
+        (cost.arc_tangents, "at"),
+        (cost.signs, "sg"),
+        (cost.guards, "gd"),
+    ];
+    let mut text = cost.operations().to_string();
+    for (count, name) in others.into_iter().filter(|(count, _)| *count > 0) {
+        text += &format!(", {count} {name}");
+    }
+    text
+}

@@ -1,0 +1,239 @@
+//! What a function costs from its inputs to its output: its own program, and what it calls.
+//!
+//! A function from actuators calls forward kinematics, a function from a pose whose joints no rule gives
+//! calls Newton's method. Both iterate, so there are two numbers: what is done once, and what each step of
+//! an iteration takes. What the runtime does on the way is counted here from its loops, for the usual case:
+//! no step is shortened, no quaternion is far from length 1, no pivot is exchanged.
+
+use crate::derivation::MotionInput;
+use crate::lowering::Cost;
+use crate::model::{CompiledFunction, RobotModel};
+use overact_core::Function;
+
+/// An iteration that a function runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[non_exhaustive]
+pub struct Iteration {
+    /// The function that iterates.
+    pub function: &'static str,
+    /// The iteration of which each step runs it; without one it is run once.
+    pub within: Option<&'static str>,
+    /// How often it is run there.
+    pub runs: usize,
+    /// Operations of a step.
+    pub operations: usize,
+    /// What a step takes.
+    #[serde(flatten)]
+    pub step: Cost,
+}
+
+/// What a function costs, all that it calls included.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[non_exhaustive]
+pub struct WholeCost {
+    /// What is done once.
+    #[serde(flatten)]
+    pub once: Cost,
+    /// What is done in each step of an iteration.
+    pub iterations: Vec<Iteration>,
+}
+
+/// The iterations' names: those of the functions that have them.
+const FORWARD: &str = "pose_from_actuators";
+const INVERSE: &str = "joints";
+
+impl From<Cost> for WholeCost {
+    fn from(once: Cost) -> Self {
+        Self {
+            once,
+            iterations: Vec::new(),
+        }
+    }
+}
+
+impl WholeCost {
+    /// Adds what is called once.
+    fn call(&mut self, other: Self) {
+        self.once += other.once;
+        for called in other.iterations {
+            let known = self.iterations.iter_mut();
+            let same = |one: &&mut Iteration| {
+                (one.function, one.within) == (called.function, called.within)
+            };
+            match known.into_iter().find(same) {
+                Some(known) => known.runs += called.runs,
+                None => self.iterations.push(called),
+            }
+        }
+    }
+
+    /// Adds an iteration whose step has this cost.
+    fn iterate(&mut self, function: &'static str, step: Self) {
+        let within = |mut inner: Iteration| {
+            inner.within = Some(function);
+            inner
+        };
+        self.iterations.push(Iteration {
+            function,
+            within: None,
+            runs: 1,
+            operations: step.once.operations(),
+            step: step.once,
+        });
+        self.iterations
+            .extend(step.iterations.into_iter().map(within));
+    }
+}
+
+impl RobotModel {
+    /// What a function costs, all that it calls included. Functions that the model was not asked for cost
+    /// nothing.
+    #[must_use]
+    pub fn cost(&self, function: &CompiledFunction) -> WholeCost {
+        let newton = self.needs_joints(function) && function.computes == Function::Joints;
+        let mut whole = WholeCost::from(match newton {
+            true => Cost::default(),
+            false => function.program.cost(),
+        });
+        let takes_pose = function.program.inputs.iter().any(|i| i.name == "pose");
+        if takes_pose && !self.finds_pose(function) {
+            whole.call(WholeCost::from(self.scaled_quaternion()));
+        }
+        if self.finds_pose(function) && self.needs_pose(function) {
+            whole.call(self.forward_kinematics());
+        }
+        if newton {
+            whole.call(self.newton());
+        } else if self.needs_joints(function) {
+            whole.call(self.of(Function::Joints, MotionInput::Pose));
+        }
+        whole
+    }
+
+    fn of(&self, function: Function, from: MotionInput) -> WholeCost {
+        let found = self.function(function, from);
+        found.map_or_else(
+            || WholeCost::from(Cost::default()),
+            |function| self.cost(function),
+        )
+    }
+
+    fn has_quaternion(&self) -> bool {
+        let platform = self.mechanism.platform.as_ref();
+        platform.is_some_and(|p| p.motion.has_quaternion())
+    }
+
+    /// `guard::unit_quaternion` where the length is 1 but for rounding.
+    fn scaled_quaternion(&self) -> Cost {
+        match self.has_quaternion() {
+            true => Cost {
+                additions: 5,
+                multiplications: 9,
+                guards: 1,
+                ..Cost::default()
+            },
+            false => Cost::default(),
+        }
+    }
+
+    /// `pose_from_actuators`: the closed form where it is taken, else Gauss and Newton's steps.
+    fn forward_kinematics(&self) -> WholeCost {
+        let (n, r) = (self.mechanism.actuated().len(), self.mechanism.dof());
+        let mut whole = WholeCost::from(self.scaled_quaternion());
+        let closed = self.function(Function::PoseInClosedForm, MotionInput::Actuators);
+        if let Some(closed) = closed.filter(|_| n == r) {
+            whole.call(self.cost(closed));
+            return whole;
+        }
+        let mut step = WholeCost::from(gauss_newton_step(n, r));
+        step.call(WholeCost::from(displacement(r, self.has_quaternion())));
+        step.call(self.of(Function::ActuatorPositions, MotionInput::Pose));
+        step.call(self.of(Function::InverseJacobian, MotionInput::Pose));
+        whole.iterate(FORWARD, step);
+        whole
+    }
+
+    /// `joints` by Newton's method, where the way from home is gone in one step.
+    fn newton(&self) -> WholeCost {
+        let legs = self.mechanism.legs.iter();
+        let sizes: Vec<usize> = legs.map(|leg| leg.independent().count()).collect();
+        let mut evaluation = self.of(Function::ClosureError, MotionInput::Joints).once;
+        evaluation += self.of(Function::LegsJacobian, MotionInput::Joints).once;
+        let mut whole = WholeCost::from(Cost::default());
+        if self.has_quaternion() {
+            whole.once += Cost {
+                additions: 3,
+                multiplications: 4,
+                divisions: 4,
+                square_roots: 1,
+                ..Cost::default()
+            };
+        }
+        let mut step = evaluation;
+        for &size in &sizes {
+            step += elimination(size);
+            step.additions += size;
+            step.multiplications += size;
+            // The mode is compared with that at home.
+            for _ in 0..2 {
+                whole.once += evaluation;
+                whole.once += elimination(size);
+            }
+            whole.once.multiplications += 1;
+        }
+        whole.iterate(INVERSE, WholeCost::from(step));
+        whole
+    }
+}
+
+/// A step of `forward::gauss_newton` for n actuators and r coordinates, without what it evaluates.
+fn gauss_newton_step(n: usize, r: usize) -> Cost {
+    let mut cost = Cost {
+        // Differences, Jᵀ Δq and JᵀJ.
+        additions: n * (1 + r + r * r),
+        multiplications: n * (r + r * r) + r,
+        guards: r,
+        ..Cost::default()
+    };
+    for below in 0..r {
+        // Elimination of the rows below a pivot, and substitution of what is behind it.
+        cost.additions += below * below + below + below;
+        cost.multiplications += below * below + below + below;
+        cost.divisions += below + 1;
+    }
+    cost
+}
+
+/// `forward::displace` or `displace_quaternion`.
+fn displacement(r: usize, quaternion: bool) -> Cost {
+    match quaternion {
+        false => Cost {
+            additions: r,
+            ..Cost::default()
+        },
+        true => Cost {
+            additions: 3 + 2 + 12 + 3,
+            multiplications: 3 + 1 + 3 + 16 + 4,
+            divisions: 1 + 4,
+            square_roots: 2,
+            trigonometric_pairs: 1,
+            ..Cost::default()
+        },
+    }
+}
+
+/// `inverse::System::eliminate` of a leg of so many joints.
+fn elimination(size: usize) -> Cost {
+    let mut cost = Cost {
+        divisions: 1,
+        guards: size,
+        ..Cost::default()
+    };
+    for below in 0..size {
+        let products = below * (below + 2) + below;
+        cost.additions += products;
+        cost.multiplications += products;
+        cost.divisions += below + 1;
+    }
+    cost
+}
