@@ -7,7 +7,7 @@ use crate::{
     runs::Runs,
 };
 use overact::Model;
-use overact_codegen::description::{COUPLED_MOTORS, Leg};
+use overact_codegen::description::{COUPLED_MOTORS, KNOWN_TORQUES, Leg};
 use overact_identification::{
     Calibration, CalibrationScope, Dataset, Gains, Identification, Instruments, Log, Progress,
     Settings, Stage, Study, drive_gains, identify, study,
@@ -185,6 +185,12 @@ impl<'a> Identifier<'a> {
             let problem = Problem::new(COUPLED_MOTORS).file(self.robot.file());
             let help =
                 "identify without gains; a gain of a motor scales its `torque_gain` in [data]";
+            return Err(problem.help(help).into());
+        }
+        let mut legs = self.robot.description().legs.iter();
+        if legs.any(Leg::has_known_torques) {
+            let problem = Problem::new(KNOWN_TORQUES).file(self.robot.file());
+            let help = "identify without gains, or leave out the key `known` of the joints";
             return Err(problem.help(help).into());
         }
         let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });

@@ -29,6 +29,7 @@ mod elimination;
 mod forward_dynamics;
 mod forward_kinematics;
 mod frames;
+mod friction;
 mod functions;
 mod guard;
 mod inertia;

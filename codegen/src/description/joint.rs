@@ -1,7 +1,7 @@
 //! The joints of a placed leg: geometry, and which joint follows which.
 
 use super::dimension::Dimension;
-use super::formula::Spring;
+use super::friction;
 use super::model::{Joint, JointKind, Spanned};
 use super::reader::{Item, Table};
 use super::scalar::Scalar;
@@ -109,18 +109,26 @@ impl Reader<'_, '_, '_> {
             spring: joint
                 .spring
                 .as_ref()
-                .and_then(|item| self.spring(item, &scope)),
+                .and_then(|item| spring::read(item, joint.kind.value, &self.of_position(&scope))),
+            known: joint
+                .known
+                .as_ref()
+                .and_then(|item| spring::known(item, joint.kind.value, &self.of_position(&scope))),
+            stribeck: joint
+                .stribeck
+                .as_ref()
+                .and_then(|item| friction::stribeck(item, joint.kind.value, &scope)),
             span: joint.span.clone(),
         }
     }
 
-    /// The spring of the joint, in whose expression `q` is the joint's variable even where it follows others.
-    fn spring(&self, item: &Item<'_, '_>, scope: &Scope) -> Option<Spring> {
-        let kind = self.joint.kind.value;
+    /// What an expression of the joint's position knows: `q` is the joint's variable even where it follows
+    /// others.
+    fn of_position(&self, scope: &Scope) -> Scope {
         let mut scope = scope.without_variables();
-        let own = dimension(kind).unwrap_or(Dimension::ANGLE);
+        let own = dimension(self.joint.kind.value).unwrap_or(Dimension::ANGLE);
         scope.add("q".to_owned(), Some(Value::variable(self.index, own)));
-        spring::read(item, kind, &scope)
+        scope
     }
 
     /// A value with the place of its key, or of the joint if there is none.

@@ -1,6 +1,6 @@
 //! The robot that a description gives, evaluated: one value per placement, lengths in m, masses in kg.
 
-use super::formula::Spring;
+use super::formula::{Formula, Spring};
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::Span;
 use overact_core::StandardParameter;
@@ -230,6 +230,10 @@ pub struct Joint {
     pub motor: Option<Number>,
     /// What the position adds to its torque, with an unknown coefficient.
     pub spring: Option<Spring>,
+    /// The torque of its position that is known, N m or N, without any coefficient.
+    pub known: Option<Formula>,
+    /// The Stribeck velocity of its friction, rad/s or m/s.
+    pub stribeck: Option<Number>,
     /// Place of its table.
     pub span: Span,
 }

@@ -85,6 +85,8 @@ fn plain(description: &Description) -> Mechanism {
         parameters: j.parameters.clone(),
         motor: j.motor.map(crate::cas::Number::value),
         spring: j.spring.clone(),
+        known: j.known.clone(),
+        stribeck: j.stribeck,
     };
     let leg = |l: &crate::description::Leg| Leg {
         name: l.name.value.clone(),

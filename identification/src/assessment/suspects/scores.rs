@@ -1,7 +1,7 @@
 //! One pass over the beginnings of the runs. What is kept does not grow with the data.
 
 use nalgebra::DMatrix;
-use overact::{Function, Model, StandardParameter};
+use overact::{Function, Model};
 use rayon::prelude::*;
 
 use super::{
@@ -144,7 +144,7 @@ fn narrower(runs: &[Log], settings: &Settings, (columns, lines): (usize, usize))
 fn coulomb(columns: &ColumnSet, base: &[usize]) -> Vec<usize> {
     let is_coulomb = |column: usize| {
         let column = columns.as_slice().get(column);
-        column.is_some_and(|column| column.symbol == StandardParameter::Fs)
+        column.is_some_and(|column| column.symbol.has_sign())
     };
     let places = base.iter().enumerate();
     let places = places.filter(|(_, column)| is_coulomb(**column));
