@@ -1,5 +1,6 @@
 //! The fourteen standard parameters of a body and its joint, and what a joint may have beside them: the
-//! stiffness of a spring, friction of its own in each direction, friction that rises towards standstill.
+//! stiffness of a spring, friction of its own in each direction, friction that rises towards
+//! standstill or with a load.
 
 /// A standard parameter, eq. (2); the order is that of the paper's χ, which ends with the offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -44,6 +45,8 @@ pub enum StandardParameter {
     FsNeg,
     /// What Coulomb friction has more at standstill than at speed (Stribeck), N m or N.
     Fst,
+    /// Part of a known load that is dry friction, 1 of a load in N m or N.
+    Fl,
 }
 
 impl StandardParameter {
@@ -112,6 +115,7 @@ impl StandardParameter {
             Self::FvNeg => "fv_neg",
             Self::FsNeg => "fs_neg",
             Self::Fst => "fst",
+            Self::Fl => "fl",
         }
     }
 
@@ -156,7 +160,10 @@ impl StandardParameter {
     /// Whether it is friction that jumps where its coordinate reverses.
     #[must_use]
     pub const fn has_sign(self) -> bool {
-        matches!(self, Self::Fs | Self::FsPos | Self::FsNeg | Self::Fst)
+        matches!(
+            self,
+            Self::Fs | Self::FsPos | Self::FsNeg | Self::Fst | Self::Fl
+        )
     }
 
     /// Whether no body or joint has a negative one.
@@ -174,6 +181,7 @@ impl StandardParameter {
                 | Self::FvPos
                 | Self::FvNeg
                 | Self::Fst
+                | Self::Fl
         )
     }
 
@@ -190,6 +198,7 @@ impl StandardParameter {
             Self::Fv | Self::FvPos | Self::FvNeg => "N m s/rad",
             Self::Fs | Self::Off | Self::FsPos | Self::FsNeg | Self::Fst if slides => "N",
             Self::Fs | Self::Off | Self::FsPos | Self::FsNeg | Self::Fst => "N m",
+            Self::Fl => "1",
             Self::K if slides => "N/m",
             Self::K => "N m/rad",
         }

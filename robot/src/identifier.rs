@@ -2,6 +2,7 @@
 
 use crate::{
     error::{Error, Problem},
+    motors::at_motors,
     partitions::partitions,
     robot::Robot,
     runs::Runs,
@@ -244,6 +245,7 @@ impl<'a> Identifier<'a> {
             without_essential(&mut result);
         }
         result.settings = settings;
+        result.motors = at_motors(self.robot.description(), &result.estimates);
         Ok(result)
     }
 

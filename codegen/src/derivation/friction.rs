@@ -4,7 +4,8 @@
 //! differences are the columns of symmetric friction, of |q̇| and of the offset, as at every velocity so at
 //! rest, where the sign is 0. What dry friction has more at standstill than at speed falls with the velocity
 //! as 1/(1 + (q̇/v)²), v being the Stribeck velocity: the form of Hess and Soom (*Friction at a lubricated line
-//! contact operating at oscillating sliding velocities*, 1990), which takes no exponential.
+//! contact operating at oscillating sliding velocities*, 1990), which takes no exponential. Friction in
+//! proportion to a load that is known as a function of the position has the column |load| sign q̇.
 
 use super::robot::Robot;
 use crate::cas::{Arena, Expr, Number, Ratio};
@@ -23,8 +24,8 @@ impl<'a> Robot<'a> {
         Some(match symbol {
             P::Fv => rate(),
             P::Fs => rate().sign(),
-            P::FvPos => (rate() + speed(rate())) * half(),
-            P::FvNeg => (rate() - speed(rate())) * half(),
+            P::FvPos => (rate() + magnitude(rate())) * half(),
+            P::FvNeg => (rate() - magnitude(rate())) * half(),
             P::FsPos => (rate().sign() + one()) * half(),
             P::FsNeg => (rate().sign() - one()) * half(),
             P::Fst => {
@@ -34,6 +35,7 @@ impl<'a> Robot<'a> {
                     |velocity| stribeck(self.arena, rate(), velocity),
                 )
             }
+            P::Fl => rate().sign() * magnitude(self.load(leg, joint)),
             _ => return None,
         })
     }
@@ -47,9 +49,9 @@ fn stribeck<'a>(arena: &'a Arena, rate: Expr<'a>, velocity: Number) -> Expr<'a> 
     rate.sign() / divisor
 }
 
-/// |q̇|.
-fn speed(rate: Expr<'_>) -> Expr<'_> {
-    rate * rate.sign()
+/// |x|.
+fn magnitude(x: Expr<'_>) -> Expr<'_> {
+    x * x.sign()
 }
 
 fn half() -> Number {

@@ -27,7 +27,14 @@ impl<'a> Robot<'a> {
         self.torque_of_position((leg, joint), known, &mut Vec::new())
     }
 
-    /// Conditions for the springs of all legs, and for the torques that are known, to have a value: roots of
+    /// The load in proportion to which a joint has friction; zero where none is described.
+    pub(super) fn load(&self, leg: usize, joint: usize) -> Expr<'a> {
+        let load = self.mechanism.legs[leg].joints[joint].load.as_ref();
+        let formula = load.map(|load| &load.formula);
+        self.torque_of_position((leg, joint), formula, &mut Vec::new())
+    }
+
+    /// Conditions for the springs of all legs, and for the torques and loads that are known, to have a value: roots of
     /// what is not negative.
     pub(super) fn spring_guards(&self) -> Vec<Guard<'a>> {
         let mut guards = Vec::new();
@@ -35,7 +42,8 @@ impl<'a> Robot<'a> {
             let mut radicands = Vec::new();
             for (joint, own) in leg.joints.iter().enumerate() {
                 let spring = own.spring.as_ref().map(|spring| &spring.formula);
-                for formula in [spring, own.known.as_ref()] {
+                let load = own.load.as_ref().map(|load| &load.formula);
+                for formula in [spring, own.known.as_ref(), load] {
                     let _ = self.torque_of_position((index, joint), formula, &mut radicands);
                 }
             }

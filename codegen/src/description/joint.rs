@@ -106,14 +106,9 @@ impl Reader<'_, '_, '_> {
             parameters: joint.parameters.clone(),
             home: Number::ZERO,
             motor: None,
-            spring: joint
-                .spring
-                .as_ref()
-                .and_then(|item| spring::read(item, joint.kind.value, &self.of_position(&scope))),
-            known: joint
-                .known
-                .as_ref()
-                .and_then(|item| spring::known(item, joint.kind.value, &self.of_position(&scope))),
+            spring: self.formula(joint.spring.as_ref(), &scope, spring::read),
+            known: self.formula(joint.known.as_ref(), &scope, spring::known),
+            load: self.formula(joint.load.as_ref(), &scope, spring::load),
             stribeck: joint
                 .stribeck
                 .as_ref()
@@ -122,13 +117,19 @@ impl Reader<'_, '_, '_> {
         }
     }
 
-    /// What an expression of the joint's position knows: `q` is the joint's variable even where it follows
-    /// others.
-    fn of_position(&self, scope: &Scope) -> Scope {
+    /// What a key says as an expression of the joint's position, in which `q` is the joint's variable even where
+    /// it follows others.
+    fn formula<'i, 'c, 't, T>(
+        &self,
+        item: Option<&'i Item<'c, 't>>,
+        scope: &Scope,
+        read: impl Fn(&'i Item<'c, 't>, JointKind, &Scope) -> Option<T>,
+    ) -> Option<T> {
+        let kind = self.joint.kind.value;
         let mut scope = scope.without_variables();
-        let own = dimension(self.joint.kind.value).unwrap_or(Dimension::ANGLE);
+        let own = dimension(kind).unwrap_or(Dimension::ANGLE);
         scope.add("q".to_owned(), Some(Value::variable(self.index, own)));
-        scope
+        read(item?, kind, &scope)
     }
 
     /// A value with the place of its key, or of the joint if there is none.

@@ -234,11 +234,22 @@ pub struct Joint {
     pub known: Option<Formula>,
     /// The Stribeck velocity of its friction, rad/s or m/s.
     pub stribeck: Option<Number>,
+    /// The load in proportion to which it has friction, with an unknown coefficient.
+    pub load: Option<Spring>,
     /// Place of its table.
     pub span: Span,
 }
 
 impl Joint {
+    /// What one of its parameters multiplies that is described as a formula, if it does.
+    pub(super) fn formula_of(&self, symbol: StandardParameter) -> Option<&Spring> {
+        match symbol {
+            StandardParameter::K => self.spring.as_ref(),
+            StandardParameter::Fl => self.load.as_ref(),
+            _ => None,
+        }
+    }
+
     /// Whether the joint at `index` has a variable of its own.
     #[must_use]
     pub fn is_independent(&self, index: usize) -> bool {

@@ -117,6 +117,7 @@ impl MotorShape<'_, '_> {
             motor: Some(ratio?),
             spring: None,
             known: None,
+            load: None,
             stribeck: stribeck.and_then(|item| friction::stribeck(item, kind, scope)),
             span: self.span.clone(),
         })

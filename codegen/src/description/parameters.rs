@@ -92,6 +92,7 @@ impl Item<'_, '_> {
     fn unknown_parameter(&self, symbol: &str) {
         let with_key = [
             (P::K, "spring = \"q - 20 deg\""),
+            (P::Fl, "friction_load = \"40 N m * cos(q)\""),
             (P::Fst, "stribeck = \"0.05 rad/s\""),
         ];
         if let Some((_, key)) = with_key.iter().find(|(one, _)| one.name() == symbol) {

@@ -33,6 +33,7 @@ pub(super) struct JointShape<'c, 't> {
     pub(super) spring: Option<Item<'c, 't>>,
     pub(super) known: Option<Item<'c, 't>>,
     pub(super) stribeck: Option<Item<'c, 't>>,
+    pub(super) load: Option<Item<'c, 't>>,
     pub(super) span: Span,
 }
 
@@ -274,6 +275,8 @@ fn joint<'c, 't>(
     parameters.extend(spring.as_ref().map(|_| StandardParameter::K));
     let stribeck = table.get("stribeck");
     parameters.extend(stribeck.as_ref().map(|_| StandardParameter::Fst));
+    let load = table.get("friction_load");
+    parameters.extend(load.as_ref().map(|_| StandardParameter::Fl));
     let known = table.get("known");
     table.finish();
     JointShape {
@@ -286,6 +289,7 @@ fn joint<'c, 't>(
         spring,
         known,
         stribeck,
+        load,
         span: table.span.clone(),
     }
 }

@@ -17,12 +17,31 @@ use crate::cas::{Number, Ratio};
 /// Reads the key `spring` of a joint whose scope knows `q` as the joint's variable.
 pub(super) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
     let effort = effort(item, kind, "a fixed joint has no spring")?;
+    let constant = "a torque that does not depend on the position is no spring";
+    let help = "write it with the joint variable, for instance spring = \"q - 20 deg\"; a constant \
+                torque is the parameter `off`";
+    with_coefficient(item, scope, effort, (constant, help))
+}
+
+/// Reads the key `friction_load` of a joint.
+pub(super) fn load(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
+    let effort = effort(item, kind, "a fixed joint has no friction")?;
+    let constant = "friction under a load that does not depend on the position is Coulomb friction";
+    let help = "leave `friction_load` out, its parameter is `fs`; or write the load with the joint \
+                variable, for instance friction_load = \"40 N m * cos(q)\"";
+    with_coefficient(item, scope, effort, (constant, help))
+}
+
+/// A formula that is an effort for each unit of a coefficient; one that is constant is told what it is.
+fn with_coefficient(
+    item: &Item<'_, '_>,
+    scope: &Scope,
+    effort: Dimension,
+    (constant, help): (&str, &str),
+) -> Option<Spring> {
     let found: Positional = item.evaluate_as(scope)?;
     if matches!(&found, Positional::Exact(value) if value.terms.is_empty()) {
-        let error = item.error("a torque that does not depend on the position is no spring");
-        let help = "write it with the joint variable, for instance spring = \"q - 20 deg\"; a constant \
-                    torque is the parameter `off`";
-        item.context.report_once(error.help(help));
+        item.context.report_once(item.error(constant).help(help));
         return None;
     }
     let inverse = found.dimension().power(-1);

@@ -87,6 +87,7 @@ fn plain(description: &Description) -> Mechanism {
         spring: j.spring.clone(),
         known: j.known.clone(),
         stribeck: j.stribeck,
+        load: j.load.clone(),
     };
     let leg = |l: &crate::description::Leg| Leg {
         name: l.name.value.clone(),

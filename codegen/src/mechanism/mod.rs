@@ -67,6 +67,8 @@ pub struct Joint {
     pub known: Option<Formula>,
     /// The Stribeck velocity of its friction, rad/s or m/s.
     pub stribeck: Option<Number>,
+    /// The load in proportion to which it has friction, with an unknown coefficient.
+    pub load: Option<Spring>,
 }
 
 impl Joint {

@@ -133,6 +133,7 @@ pub fn identify(
         calibration: None,
         gains: Vec::new(),
         gain_parameters: Vec::new(),
+        motors: Vec::new(),
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,

@@ -248,7 +248,7 @@ impl ColumnSet {
                     continue;
                 };
                 let (direction, other) = match column.symbol {
-                    P::Fs | P::Fst => (column.direction, None),
+                    P::Fs | P::Fst | P::Fl => (column.direction, None),
                     P::FsPos => (Some(Direction::Positive), Some(P::FsNeg)),
                     P::FsNeg => (Some(Direction::Negative), Some(P::FsPos)),
                     _ => continue,

@@ -4,12 +4,13 @@
 //! a constant combination of their rates, c·q̇. The power of its friction gives (c·q̇)² = q̇ᵀ (c cᵀ) q̇ at every
 //! state, which is linear in the matrix c cᵀ; c is its only eigenvector whose eigenvalue isn't zero. States are
 //! so slow that friction which rises towards standstill (Stribeck) has all of its height, and is dry friction
-//! like any other; how fast it falls is seen at speed.
+//! like any other; how fast it falls is seen at speed. Friction in proportion to a load takes |load| |u|, and the
+//! load of a pose is the same for two motions: their ratio is that of the rates.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use overact::{Columns, Function, Model, StandardParameter};
 
-use super::states::random_states;
+use super::states::{States, random_states};
 use crate::error::{Error, Problem};
 
 /// States from which the rate of a friction parameter is recognised, beyond those that a combination of
@@ -89,6 +90,8 @@ struct FrictionPower {
     /// At these states, and at their poses with a small part of the twist.
     regressors: [Vec<f64>; 2],
     velocities: Vec<f64>,
+    /// The same motion at each state's pose and at the next one's twist, where friction has a load.
+    other: Option<Box<FrictionPower>>,
 }
 
 impl FrictionPower {
@@ -100,7 +103,27 @@ impl FrictionPower {
         // Friction of one direction shows at every other state.
         let times = 1 + usize::from(model.info().parameters.iter().any(friction));
         let states = random_states(model, times * (RECOGNITION_STATES + unknown), seed)?;
-        let slow: Vec<f64> = states.twist.iter().map(|v| SLOW * v).collect();
+        let is_load = |one: &overact::Parameter| one.symbol == StandardParameter::Fl;
+        let mut turned = states.twist.clone();
+        turned.rotate_left(sizes.dof);
+        let other = model
+            .info()
+            .parameters
+            .iter()
+            .any(is_load)
+            .then_some(turned);
+        let mut own = Self::at(model, &states, &states.twist)?;
+        own.other = match other {
+            Some(twist) => Some(Box::new(Self::at(model, &states, &twist)?)),
+            None => None,
+        };
+        Ok(own)
+    }
+
+    /// At the poses of some states, and twists.
+    fn at(model: &dyn Model, states: &States, twist: &[f64]) -> Result<Self, Error> {
+        let sizes = model.info().sizes;
+        let slow: Vec<f64> = twist.iter().map(|v| SLOW * v).collect();
         let ask = |function: Function, twist: &[f64]| -> Result<Vec<f64>, Error> {
             let inputs: [&[f64]; 3] = [&states.pose, twist, &states.acceleration];
             let (rows, columns) = function.shape(&sizes);
@@ -116,9 +139,10 @@ impl FrictionPower {
             dof: sizes.dof,
             joints: sizes.joints,
             parameters: sizes.parameters,
-            regressors: [regressor(&states.twist)?, regressor(&slow)?],
-            velocities: ask(Function::JointVelocities, &states.twist)?,
-            twist: states.twist,
+            regressors: [regressor(twist)?, regressor(&slow)?],
+            velocities: ask(Function::JointVelocities, twist)?,
+            twist: twist.to_vec(),
+            other: None,
         })
     }
 
@@ -150,6 +174,21 @@ impl FrictionPower {
             let expected = part(rate.of(self.joints(sample)), symbol);
             let difference = self.speed(sample, column, symbol) - expected;
             difference.abs() <= RECOGNITION_TOLERANCE * expected.max(1e-3)
+        })
+    }
+
+    /// Whether a column of friction under a load is that of a rate.
+    fn matches_load(&self, rate: &Rate, column: usize) -> bool {
+        let Some(other) = self.other.as_deref() else {
+            return false;
+        };
+        (0..self.samples).all(|sample| {
+            let [own, others] = [self, other].map(|all| {
+                let speed = rate.of(all.joints(sample)).abs();
+                [speed, all.power(true, sample, column)]
+            });
+            let (a, b) = (own[0] * others[1], own[1] * others[0]);
+            (a - b).abs() <= RECOGNITION_TOLERANCE * a.abs().max(b.abs()).max(1e-3)
         })
     }
 
@@ -217,14 +256,27 @@ pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<
             continue;
         }
         let own = |joint: usize| Rate::new(vec![(joint, 1.0)]);
+        let under_load = symbol == StandardParameter::Fl;
         let joint = (0..info.sizes.joints)
             .filter(|joint| !taken.contains(&(symbol, *joint)))
-            .find(|joint| friction.matches(&own(*joint), column, symbol));
+            .find(|joint| match under_load {
+                true => friction.matches_load(&own(*joint), column),
+                false => friction.matches(&own(*joint), column, symbol),
+            });
         taken.extend(joint.map(|joint| (symbol, joint)));
-        found[column] = match joint {
+        // Of a joint that follows others, friction without a load tells the rate.
+        let same_joint = || {
+            let before = info.parameters.iter().zip(&found);
+            let mut rates = before.filter(|(one, _)| one.body == parameter.body);
+            let rate = Rate::new(rates.find_map(|(_, rate)| rate.clone())?.joints);
+            friction.matches_load(&rate, column).then_some(rate)
+        };
+        let rate = match joint {
             Some(joint) => Some(own(joint)),
+            None if under_load => same_joint(),
             None => friction.combination(column, symbol),
         };
+        found[column] = rate;
         if let (Some(rate), StandardParameter::Fst) = (&mut found[column], symbol) {
             rate.stribeck = friction.stribeck(rate, column);
         }

@@ -55,6 +55,8 @@ pub struct Joint {
     pub known: Option<Spring>,
     /// The velocity at which friction has fallen to half of what standstill has more, rad/s or m/s.
     pub stribeck: Option<f64>,
+    /// The load, a part of which is dry friction.
+    pub load: Option<Spring>,
 }
 
 /// The torque of a spring per unit of its coefficient, or one that is known, as a function of the sum Σ c_i q_i of its joint.
@@ -112,6 +114,7 @@ impl Joint {
             spring: None,
             known: None,
             stribeck: None,
+            load: None,
         }
     }
 

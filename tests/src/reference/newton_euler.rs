@@ -98,7 +98,13 @@ pub fn leg_torques(
         };
         let [rotor, viscous, dry, offset, stiffness] =
             std::array::from_fn(|at| own(j)[INERTIAL + at]);
-        let friction = friction(rates[j], &own(j)[INERTIAL + 5..], joint.stribeck);
+        let friction = friction(rates[j], &own(j)[INERTIAL + 5..], joint.stribeck)
+            + own(j)[INERTIAL + 10]
+                * joint
+                    .load
+                    .as_ref()
+                    .map_or(0.0, |load| load.torque(positions[j]).abs())
+                * sign(rates[j]);
         let spring = joint
             .spring
             .as_ref()

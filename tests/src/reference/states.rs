@@ -82,6 +82,7 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
         let mut friction = || of_directions.random_range(0.1..1.0);
         all.extend([friction(), friction(), friction(), friction()]);
         all.push(joint.stribeck.map_or(0.0, |_| friction()));
+        all.push(joint.load.as_ref().map_or(0.0, |_| friction()));
     }
     if mechanism.motion != Motion::None {
         all.extend(random_body(&mut generator));

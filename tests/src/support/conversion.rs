@@ -94,6 +94,7 @@ fn joint(joint: &mechanism::Joint) -> Joint {
         actuated: joint.actuated,
         spring: joint.spring.clone().map(|spring| torque(spring.formula)),
         known: joint.known.clone().map(torque),
+        load: joint.load.clone().map(|load| torque(load.formula)),
         stribeck: joint.stribeck.map(Number::value),
     }
 }

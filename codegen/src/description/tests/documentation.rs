@@ -219,6 +219,7 @@ fn every_word_of_a_value_is_documented() {
         "friction",
         "k",
         "fst",
+        "fl",
         "all",
         "revolute",
         "prismatic",

@@ -83,6 +83,18 @@ fn errors() {
             "6:12 `stribeck`: expected a number or an expression, found a boolean".to_owned(),
         ),
         (
+            "parameters = [\"fl\"]",
+            "6:15 `fl` is not listed; the key friction_load = \"40 N m * cos(q)\" of the joint adds it".to_owned(),
+        ),
+        (
+            "friction_load = \"30 N m\"",
+            "6:18 friction under a load that does not depend on the position is Coulomb friction; leave `friction_load` out, its parameter is `fs`; or write the load with the joint variable, for instance friction_load = \"40 N m * cos(q)\"".to_owned(),
+        ),
+        (
+            "friction_load = \"cos(q^2)\"",
+            "6:18 `cos` takes an angle that is linear in the joint variable; for instance cos(q - 20 deg)".to_owned(),
+        ),
+        (
             "known = \"sin(q) * 1 m\"",
             "6:10 expected a torque (N m), found a length; give its factors their units, for instance \"2 N m * cos(q)\"".to_owned(),
         ),
@@ -117,6 +129,8 @@ fn only_joints_that_move_have_friction_and_only_measured_ones_known_torques() {
     let expected =
         "7:15 a fixed joint has no parameter `fv_pos`; its parameters are the ten of \"inertia\"";
     assert_eq!(fixed("parameters = [\"fv_pos\"]"), [expected]);
+    let expected = "7:17 a fixed joint has no friction; give it to a joint that moves";
+    assert_eq!(fixed("friction_load = \"q\""), [expected]);
     let platform = "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
                     [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\nknown = \"3 N\"\n\
                     [leg.slide.end]\n[[place]]\nname = \"slide\"\nshape = \"slide\"\n";
