@@ -40,7 +40,7 @@ essential = false
 
 [experiment]
 sampling = "2 kHz"
-duration = "12 s"
+duration = "10 s"
 bandwidth = "20 Hz"
 encoder = "1e-6 rad"
 torque_noise = "0.02 N m"
@@ -121,11 +121,12 @@ fn errors(result: &Identification) -> (Vec<String>, f64, f64) {
 fn friction_of_every_kind_is_identified_under_default_settings() {
     let result = identified(ARM);
     let (names, deviations, percent) = errors(&result);
-    for name in [
-        "fs_pos_1", "fv_neg_1", "fst_2", "fl_2", "fs_neg_3", "fv_pos_3",
-    ] {
+    for name in ["fv_neg_1", "fst_2", "fl_2", "fv_pos_3"] {
         assert!(names.iter().any(|one| one == name), "{names:?}");
     }
+    // What is constant of the follower's friction, its coefficients' difference, is regrouped into the others'.
+    assert!(names.iter().any(|one| one == "fs_pos_3R"), "{names:?}");
+    assert!(!names.iter().any(|one| one == "fs_neg_3"), "{names:?}");
     assert!(deviations < 4.5, "{deviations:.1} deviations");
     assert!(percent < 5.0, "{percent:.1} %");
 }
@@ -134,13 +135,18 @@ fn friction_of_every_kind_is_identified_under_default_settings() {
 /// front of them.
 #[test]
 fn parameters_of_motors_are_told_in_front_of_their_gears() {
-    let motors = "[[leg.arm.motor]]\nname = \"base\"\nturns = \"q1\"\nratio = -20\n\
+    let motors = "[[leg.arm.motor]]\nname = \"first\"\nturns = \"q1\"\nratio = -20\n\
                   [[leg.arm.motor]]\nname = \"both\"\nturns = \"q1 + 2*q2\"\nratio = 50\n\
                   parameters = [\"ia\", \"friction by direction\"]\nstribeck = \"1 rad/s\"\n\n[[place]]";
     let values = "[experiment.parameters]\nia_both = 0.2\nfv_pos_both = 0.3\nfs_pos_both = 0.8\n\
                   fv_neg_both = 0.5\nfs_neg_both = 0.6\nfst_both = 0.4\n";
     let text = ARM.replacen("[[place]]", motors, 1);
     let text = text.replacen("[experiment.parameters]\n", values, 1);
+    // Friction of three rates is all that two joints tell.
+    let text = text.replace("[\"m\", \"friction by direction\"]", "\"m\"");
+    let own = |line: &&str| !(line.starts_with('f') && line.contains("_3 = "));
+    let text: Vec<&str> = text.lines().filter(own).collect();
+    let text = text.join("\n");
     let result = identified(&text);
     let (_, deviations, _) = errors(&result);
     assert!(deviations < 4.5, "{deviations:.1} deviations");
@@ -157,9 +163,7 @@ fn parameters_of_motors_are_told_in_front_of_their_gears() {
     let at = |name: &str, motor, divisor: f64, unit| {
         assert_eq!(told(name), (motor, behind(name) / divisor, unit));
     };
-    at("fs_pos_1", "base", 20.0, "N m");
-    at("fv_neg_1", "base", 400.0, "N m s/rad");
-    at("fs_pos_both", "both", 50.0, "N m");
+    at("fv_neg_1", "first", 400.0, "N m s/rad");
     at("fv_pos_both", "both", 2500.0, "N m s/rad");
     at("fst_both", "both", 50.0, "N m");
     let of_joint = result.motors.iter().any(|one| one.name.ends_with("_2"));

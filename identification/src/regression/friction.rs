@@ -249,7 +249,7 @@ pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<
     let friction = FrictionPower::new(model, seed)?;
     let mut problems = Vec::new();
     let mut taken: Vec<(StandardParameter, usize)> = Vec::new();
-    let mut found = vec![None; info.parameters.len()];
+    let mut found: Vec<Option<Rate>> = vec![None; info.parameters.len()];
     for (column, parameter) in info.parameters.iter().enumerate() {
         let symbol = parameter.symbol;
         if !symbol.follows_rate() {
