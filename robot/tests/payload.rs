@@ -33,6 +33,11 @@ fn rx90(seed: u64) -> String {
         ("torque_noise = [1.0, 1.0, 0.5, 0.2, 0.2, 0.1]", NOISE),
         ("seed = 1", &format!("seed = {seed}")),
         ("decimation = 10", "decimation = 10\nessential = false"),
+        // A period of the run, or four of them.
+        (
+            "duration = \"20 s\"",
+            by_tier(["duration = \"5 s\"", "duration = \"20 s\""]),
+        ),
     ];
     let text = replaced.into_iter().fold(text, |text, (from, to)| {
         assert!(text.contains(from), "{from}");
