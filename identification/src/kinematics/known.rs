@@ -3,7 +3,7 @@
 
 use overact::{Function, Model};
 
-use super::Motion;
+use super::motion::Motion;
 use crate::error::Error;
 
 /// Poses at which it is tried out whether a robot has such torques.
