@@ -9,7 +9,6 @@ mod agreement;
 mod contract;
 mod finite;
 mod forms;
-mod friction;
 mod known;
 mod newton_euler;
 mod power;

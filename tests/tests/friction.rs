@@ -3,13 +3,13 @@
 
 use overact::{Columns, Function, Model, StandardParameter};
 use overact_codegen::derivation::BodyParameter;
-use overact_codegen::{Effort, Request, RobotModel, Source, model_with};
+use overact_codegen::{Effort, Request, RobotModel, Source};
 use overact_compiled::friction::{ARM, BAR, FrictionArm, FrictionBar};
 use overact_tests::support::conversion::reference;
 use overact_tests::support::expected::Expected;
 use overact_tests::support::library::workspace;
 use overact_tests::support::sample::samples;
-use overact_tests::support::{Comparison, Evaluated, Failure, Served};
+use overact_tests::support::{Comparison, Evaluated, Failure, Served, model_with};
 use overact_tier::by_tier;
 
 const TOLERANCE: f64 = 1e-9;
@@ -19,7 +19,7 @@ const STATES: [usize; 2] = [20, 200];
 fn described(text: &str) -> Result<(RobotModel, Expected), Failure> {
     let source = Source::new("friction.toml", text);
     let request = Request::with_effort(by_tier([Effort::None, Effort::Quick]));
-    let model = model_with(&source, &request).map_err(|errors| errors.render_plain(&source))?;
+    let model = model_with(&source, &request)?;
     let mechanism = reference(&model.mechanism, workspace(&model));
     let expected = Expected::by_position(&model, mechanism);
     Ok((model, expected))
