@@ -118,6 +118,7 @@ const HOUSES: [House; 6] = [
             "instruments",
             "tracking",
             "partitions",
+            "motors",
             "identifier",
         ],
     },
