@@ -158,12 +158,13 @@ impl RobotModel {
         match parameter {
             BodyParameter::Leg { leg, joint, symbol } => {
                 let joint = &self.mechanism.legs[leg].joints[joint];
-                match joint
-                    .spring
-                    .as_ref()
-                    .filter(|_| symbol == StandardParameter::K)
-                {
-                    Some(spring) => &spring.unit,
+                let formula = match symbol {
+                    StandardParameter::K => joint.spring.as_ref(),
+                    StandardParameter::Fl => joint.load.as_ref(),
+                    _ => None,
+                };
+                match formula {
+                    Some(formula) => &formula.unit,
                     None => symbol.unit(joint.kind == JointKind::Prismatic),
                 }
             }

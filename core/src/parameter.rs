@@ -1,6 +1,8 @@
-//! The fourteen standard parameters of a body and its joint, and the stiffness of a joint's spring.
+//! The fourteen standard parameters of a body and its joint, and what a joint may have beside them: the
+//! stiffness of a spring, friction of its own in each direction, friction that rises towards
+//! standstill or with a load.
 
-/// A standard parameter, eq. (2); the order is that of the paper's χ, which knows no springs.
+/// A standard parameter, eq. (2); the order is that of the paper's χ, which ends with the offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum StandardParameter {
     /// Moment of inertia about x through the body frame's origin, kg m².
@@ -33,6 +35,18 @@ pub enum StandardParameter {
     Off,
     /// Coefficient of a joint's spring, N m/rad or N/m of a linear one.
     K,
+    /// Viscous friction where the velocity is positive, N m s/rad or N s/m.
+    FvPos,
+    /// Coulomb friction where the velocity is positive, N m or N.
+    FsPos,
+    /// Viscous friction where the velocity is negative, N m s/rad or N s/m.
+    FvNeg,
+    /// Coulomb friction where the velocity is negative, N m or N.
+    FsNeg,
+    /// What Coulomb friction has more at standstill than at speed (Stribeck), N m or N.
+    Fst,
+    /// Part of a known load that is dry friction, 1 of a load in N m or N.
+    Fl,
 }
 
 impl StandardParameter {
@@ -74,6 +88,9 @@ impl StandardParameter {
     /// The three of friction.
     pub const FRICTION: [Self; 3] = [Self::Fv, Self::Fs, Self::Off];
 
+    /// The four of friction that differs by direction; they take the place of [`Self::FRICTION`].
+    pub const DIRECTED: [Self; 4] = [Self::FvPos, Self::FsPos, Self::FvNeg, Self::FsNeg];
+
     /// Field-standard name, `zz` for instance.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -93,19 +110,60 @@ impl StandardParameter {
             Self::Fs => "fs",
             Self::Off => "off",
             Self::K => "k",
+            Self::FvPos => "fv_pos",
+            Self::FsPos => "fs_pos",
+            Self::FvNeg => "fv_neg",
+            Self::FsNeg => "fs_neg",
+            Self::Fst => "fst",
+            Self::Fl => "fl",
         }
     }
 
-    /// The parameter with this name.
+    /// The parameter with this name, among those that a description lists: others come with a key of their own.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|p| p.name() == name)
+        let mut listed = Self::ALL.into_iter().chain(Self::DIRECTED);
+        listed.find(|p| p.name() == name)
     }
 
     /// Whether it belongs to the rigid body and not to the joint.
     #[must_use]
     pub const fn is_inertial(self) -> bool {
-        !matches!(self, Self::Ia | Self::Fv | Self::Fs | Self::Off | Self::K)
+        matches!(
+            self,
+            Self::Xx
+                | Self::Xy
+                | Self::Xz
+                | Self::Yy
+                | Self::Yz
+                | Self::Zz
+                | Self::Mx
+                | Self::My
+                | Self::Mz
+                | Self::M
+        )
+    }
+
+    /// Whether it is friction that follows the rate of its coordinate, so that its column changes where that
+    /// reverses.
+    #[must_use]
+    pub const fn follows_rate(self) -> bool {
+        self.is_viscous() || self.has_sign()
+    }
+
+    /// Whether it is friction in proportion to the velocity.
+    #[must_use]
+    pub const fn is_viscous(self) -> bool {
+        matches!(self, Self::Fv | Self::FvPos | Self::FvNeg)
+    }
+
+    /// Whether it is friction that jumps where its coordinate reverses.
+    #[must_use]
+    pub const fn has_sign(self) -> bool {
+        matches!(
+            self,
+            Self::Fs | Self::FsPos | Self::FsNeg | Self::Fst | Self::Fl
+        )
     }
 
     /// Whether no body or joint has a negative one.
@@ -113,7 +171,17 @@ impl StandardParameter {
     pub const fn is_nonnegative(self) -> bool {
         matches!(
             self,
-            Self::Xx | Self::Yy | Self::Zz | Self::M | Self::Ia | Self::Fv | Self::Fs
+            Self::Xx
+                | Self::Yy
+                | Self::Zz
+                | Self::M
+                | Self::Ia
+                | Self::Fv
+                | Self::Fs
+                | Self::FvPos
+                | Self::FvNeg
+                | Self::Fst
+                | Self::Fl
         )
     }
 
@@ -126,10 +194,11 @@ impl StandardParameter {
             Self::M => "kg",
             Self::Ia if slides => "kg",
             Self::Ia => "kg m^2",
-            Self::Fv if slides => "N s/m",
-            Self::Fv => "N m s/rad",
-            Self::Fs | Self::Off if slides => "N",
-            Self::Fs | Self::Off => "N m",
+            Self::Fv | Self::FvPos | Self::FvNeg if slides => "N s/m",
+            Self::Fv | Self::FvPos | Self::FvNeg => "N m s/rad",
+            Self::Fs | Self::Off | Self::FsPos | Self::FsNeg | Self::Fst if slides => "N",
+            Self::Fs | Self::Off | Self::FsPos | Self::FsNeg | Self::Fst => "N m",
+            Self::Fl => "1",
             Self::K if slides => "N/m",
             Self::K => "N m/rad",
         }

@@ -83,7 +83,9 @@ pub use regression::{
     projection::{ModelKind, Projection},
     system::{Part, PartitionCondition, Stretch, System},
 };
-pub use result::{CrossValidation, Estimate, Estimator, ParameterEstimate, RunSummary, Stage};
+pub use result::{
+    CrossValidation, Estimate, Estimator, MotorParameter, ParameterEstimate, RunSummary, Stage,
+};
 pub use series::{ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series};
 pub use settings::{Instruments, Normalisation, Settings};
 pub use significant::significant;

@@ -6,7 +6,7 @@ use crate::{
     intervals::half_width_percent,
     judgement::{grade_words, objections, passed},
     layout::{line, table},
-    terminal::{calibration, gains},
+    terminal::{calibration, gains, motors},
     text::{fitted, visible},
 };
 use overact_identification::{
@@ -34,6 +34,9 @@ pub fn summary(identification: &Identification, page: Option<&str>) -> String {
         text.push_str(&model(identification, estimate));
     }
     text.push_str(&parameters(identification));
+    for told in motors::motors(&identification.motors).lines() {
+        line(&mut text, told);
+    }
     text.push_str(&consistent(identification));
     text.push_str(&next(identification, page));
     text

@@ -2,6 +2,7 @@
 
 pub(crate) mod calibration;
 pub(crate) mod gains;
+pub(crate) mod motors;
 
 use crate::{
     intervals::{half_width_percent, is_outside},

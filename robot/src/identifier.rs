@@ -2,12 +2,13 @@
 
 use crate::{
     error::{Error, Problem},
+    motors::at_motors,
     partitions::partitions,
     robot::Robot,
     runs::Runs,
 };
 use overact::Model;
-use overact_codegen::description::{COUPLED_MOTORS, Leg};
+use overact_codegen::description::{COUPLED_MOTORS, KNOWN_TORQUES, Leg};
 use overact_identification::{
     Calibration, CalibrationScope, Dataset, Gains, Identification, Instruments, Log, Progress,
     Settings, Stage, Study, drive_gains, identify_with_gains, study,
@@ -187,6 +188,12 @@ impl<'a> Identifier<'a> {
                 "identify without gains; a gain of a motor scales its `torque_gain` in [data]";
             return Err(problem.help(help).into());
         }
+        let mut legs = self.robot.description().legs.iter();
+        if legs.any(Leg::has_known_torques) {
+            let problem = Problem::new(KNOWN_TORQUES).file(self.robot.file());
+            let help = "identify without gains, or leave out the key `known` of the joints";
+            return Err(problem.help(help).into());
+        }
         let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });
         let settings = self.with_defaults();
         let (model, runs) = (self.robot.model(), self.runs);
@@ -239,6 +246,7 @@ impl<'a> Identifier<'a> {
             without_essential(&mut result);
         }
         result.settings = settings;
+        result.motors = at_motors(self.robot.description(), &result.estimates);
         Ok(result)
     }
 

@@ -43,6 +43,7 @@ mod experiment;
 mod identifier;
 mod instruments;
 mod interpreted;
+mod motors;
 mod parameters;
 mod partitions;
 mod physical;

@@ -1,6 +1,6 @@
 //! Generates what the tests need compiled and `generated/` does not keep as text: the other robots of
-//! `robots/`, the DualV in each of its four partitions, and the RX90 with known parameters, the way a user's
-//! build script does.
+//! `robots/`, robots with every kind of friction, the DualV in each of its four partitions, and the RX90 with
+//! known parameters, the way a user's build script does.
 //!
 //! The default tier searches operations quickly, the full tier thoroughly, as the manifest of
 //! `generated/` has them. The partitions differ in one line of the description, so the variants are made
@@ -25,6 +25,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         if path.extension().is_some_and(|e| e == "toml") && !is_kept {
             write(&stem, &stem, &fs::read_to_string(&path)?, effort)?;
         }
+    }
+    println!("cargo::rerun-if-changed=friction");
+    for stem in ["friction_arm", "friction_bar"] {
+        let text = fs::read_to_string(format!("friction/{stem}.toml"))?;
+        write(stem, stem, &text, effort)?;
     }
     known_parameters()?;
     let dualv = fs::read_to_string("../../robots/dualv.toml")?;

@@ -124,6 +124,7 @@ const HOUSES: [House; 6] = [
             "instruments",
             "tracking",
             "partitions",
+            "motors",
             "identifier",
         ],
     },

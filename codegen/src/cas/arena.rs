@@ -16,7 +16,7 @@ use super::number::Number;
 use super::ratio::Ratio;
 use super::sample::Sample;
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// A node and a sign: twice the node's index, plus one for its negative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -111,6 +111,8 @@ struct Tables {
     by_fingerprint: QuickMap<[Element; POINTS], Handle>,
     by_ratio: ByValue<u32>,
     names: HashMap<usize, String>,
+    /// Nodes that are known never to be zero.
+    never_zero: BTreeSet<usize>,
     scopes: Vec<String>,
     scope: u32,
 }
@@ -189,6 +191,23 @@ impl Arena {
             true => negative_name(&name),
             false => name,
         })
+    }
+
+    /// Says that an expression is never zero, such as a square and one more: it may be divided by anywhere.
+    pub fn assert_never_zero(&self, expr: Expr<'_>) {
+        let index = expr.handle().index();
+        self.tables.borrow_mut().never_zero.insert(index);
+    }
+
+    pub(crate) fn is_never_zero(&self, index: usize) -> bool {
+        self.tables.borrow().never_zero.contains(&index)
+    }
+
+    /// What those evaluate to that are known never to be zero.
+    pub(crate) fn never_zero(&self) -> Vec<Fingerprint> {
+        let tables = self.tables.borrow();
+        let nodes = tables.never_zero.iter();
+        nodes.map(|&node| tables.nodes[node].fingerprint).collect()
     }
 
     /// What a node computes.

@@ -5,8 +5,8 @@ use super::expr::Expr;
 use std::collections::BTreeSet;
 
 impl Arena {
-    /// What is divided by anywhere in some expressions, constants left out: each divisor once, in the order
-    /// in which they were built.
+    /// What is divided by anywhere in some expressions, constants and what is never zero left out: each divisor
+    /// once, in the order in which they were built.
     #[must_use]
     pub fn divisors(&self, expressions: &[Expr<'_>]) -> Vec<Expr<'_>> {
         let mut stack: Vec<usize> = expressions.iter().map(|e| e.handle().index()).collect();
@@ -18,6 +18,7 @@ impl Arena {
             let op = self.op(index);
             if let Op::Div(_, by) = op
                 && !self.is_constant(by)
+                && !self.is_never_zero(by.index())
             {
                 divisors.insert(by.positive());
             }

@@ -102,6 +102,7 @@ impl<'a> BodyMotion<'a> {
             P::My => first(1),
             P::Mz => first(2),
             P::Ia | P::Fv | P::Fs | P::Off | P::K => [zero; 2],
+            P::FvPos | P::FsPos | P::FvNeg | P::FsNeg | P::Fst | P::Fl => [zero; 2],
             _ => [
                 zero,
                 second_moment(arena, parameter, self.omega, self.alpha),

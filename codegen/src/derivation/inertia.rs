@@ -54,6 +54,7 @@ impl<'a> Inertia<'a> {
                 Some(P::Yz) => (1, 2),
                 Some(P::Zz) => (2, 2),
                 Some(P::Ia | P::Fv | P::Fs | P::Off | P::K) | None => continue,
+                Some(P::FvPos | P::FsPos | P::FvNeg | P::FsNeg | P::Fst | P::Fl) => continue,
             };
             if j == 3 {
                 sum.first.0[i] = sum.first.0[i] + *value;

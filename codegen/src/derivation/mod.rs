@@ -3,8 +3,8 @@
 //! `closure` opens the robot at its platform and closes it again, eqs. (9) to (13): quasi-velocities
 //! (`rates`), joints and `frames` in the axes that suit the leg (`orientation`), and the wrenches that feel
 //! one joint alone (`elimination`, `bias`). `body` runs the recursion of Newton and Euler in the bodies' own
-//! frames, `carried` has those that move with the platform, `spring` has what a spring
-//! adds to its joint's torque, `centres` finds axes that meet in a point.
+//! frames, `carried` has those that move with the platform, `spring` has what a
+//! joint's position adds to its torque and `friction` what its rate does, `centres` finds axes that meet in a point.
 //! `regressor` projects what each standard parameter produces on the platform, eq. (30), or on kept
 //! actuators, eq. (36). `robot` holds one derivation together. `inverse_kinematics` finds joints from a pose
 //! and `forward_kinematics` a pose from actuators, in closed form where there is one. `functions` says what
@@ -29,6 +29,7 @@ mod elimination;
 mod forward_dynamics;
 mod forward_kinematics;
 mod frames;
+mod friction;
 mod functions;
 mod guard;
 mod inertia;

@@ -90,7 +90,7 @@ impl<'a> Robot<'a> {
                 let symbol = p.of_joint(index, j).filter(|s| !s.is_inertial())?;
                 Some(self.joint_force(motion, index, j, symbol) * *value)
             });
-            let mut on_joint = on_joint.fold(arena.zero(), |sum, force| sum + force);
+            let mut on_joint = on_joint.fold(self.known_force(index, j), |sum, force| sum + force);
             if joint.kind == JointKind::Prismatic {
                 on_joint = on_joint + wrench[0].z();
             }

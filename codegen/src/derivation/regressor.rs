@@ -170,10 +170,11 @@ impl<'a> Robot<'a> {
     ) -> Expr<'a> {
         let form = &self.legs[leg].rates.joint[joint];
         let rate = || form.value(self.arena, &motion.u[leg]);
+        if let Some(friction) = self.friction_force((leg, joint), symbol, rate) {
+            return friction;
+        }
         match symbol {
             StandardParameter::Ia => form.value(self.arena, &motion.u_dot[leg]),
-            StandardParameter::Fv => rate(),
-            StandardParameter::Fs => rate().sign(),
             StandardParameter::K => self.spring_force(leg, joint),
             StandardParameter::Off => self.arena.one(),
             // The ten of a body act through its wrench.
@@ -281,7 +282,8 @@ impl<'a> Robot<'a> {
                 let symbol = own(*p).filter(|s| !s.is_inertial())?;
                 Some(self.joint_force(motion, l, j, symbol) * *value)
             });
-            let on_joint = on_joint.fold(self.arena.zero(), |sum, force| sum + force);
+            let known = self.known_force(l, j);
+            let on_joint = on_joint.fold(known, |sum, force| sum + force);
             let on_joint = on_joint.named(&joined(&["tau", &leg.joints[j].name, &leg.name]));
             let form = &self.legs[l].rates.joint[j];
             let shares = (0..forces.len()).map(|i| on_joint * form.coefficient(i));

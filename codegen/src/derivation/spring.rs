@@ -1,4 +1,5 @@
-//! Springs: what a joint's position adds to its torque, for each unit of the unknown coefficient.
+//! What a joint's position adds to its torque: for each unit of a spring's unknown coefficient, and without
+//! any, as it is known.
 
 use super::guard::{Guard, GuardKind};
 use super::joint::{joint_slide, joint_turn};
@@ -15,16 +16,36 @@ struct Position<'a> {
 impl<'a> Robot<'a> {
     /// The torque of a joint's spring per unit of its coefficient; zero without a spring.
     pub(super) fn spring_force(&self, leg: usize, joint: usize) -> Expr<'a> {
-        self.spring(leg, joint, &mut Vec::new())
+        let spring = self.mechanism.legs[leg].joints[joint].spring.as_ref();
+        let formula = spring.map(|spring| &spring.formula);
+        self.torque_of_position((leg, joint), formula, &mut Vec::new())
     }
 
-    /// Conditions for the springs of all legs to have a value: roots of what is not negative.
+    /// The torque of a joint's position that is known; zero where none is.
+    pub(super) fn known_force(&self, leg: usize, joint: usize) -> Expr<'a> {
+        let known = self.mechanism.legs[leg].joints[joint].known.as_ref();
+        self.torque_of_position((leg, joint), known, &mut Vec::new())
+    }
+
+    /// The load in proportion to which a joint has friction; zero where none is described.
+    pub(super) fn load(&self, leg: usize, joint: usize) -> Expr<'a> {
+        let load = self.mechanism.legs[leg].joints[joint].load.as_ref();
+        let formula = load.map(|load| &load.formula);
+        self.torque_of_position((leg, joint), formula, &mut Vec::new())
+    }
+
+    /// Conditions for the springs of all legs, and for the torques and loads that are known, to have a value: roots of
+    /// what is not negative.
     pub(super) fn spring_guards(&self) -> Vec<Guard<'a>> {
         let mut guards = Vec::new();
         for (index, leg) in self.mechanism.legs.iter().enumerate() {
             let mut radicands = Vec::new();
-            for joint in 0..leg.joints.len() {
-                let _ = self.spring(index, joint, &mut radicands);
+            for (joint, own) in leg.joints.iter().enumerate() {
+                let spring = own.spring.as_ref().map(|spring| &spring.formula);
+                let load = own.load.as_ref().map(|load| &load.formula);
+                for formula in [spring, own.known.as_ref(), load] {
+                    let _ = self.torque_of_position((index, joint), formula, &mut radicands);
+                }
             }
             guards.extend(radicands.into_iter().map(|value| Guard {
                 value,
@@ -35,15 +56,15 @@ impl<'a> Robot<'a> {
         guards
     }
 
-    fn spring(&self, leg: usize, joint: usize, radicands: &mut Vec<Expr<'a>>) -> Expr<'a> {
-        let spring = &self.mechanism.legs[leg].joints[joint].spring;
-        let position = spring.as_ref().and_then(|_| self.position(leg, joint));
-        let value = spring
-            .as_ref()
-            .zip(position)
-            .and_then(|(spring, position)| {
-                expression(self.arena, &spring.formula, &position, radicands)
-            });
+    fn torque_of_position(
+        &self,
+        (leg, joint): (usize, usize),
+        formula: Option<&Formula>,
+        radicands: &mut Vec<Expr<'a>>,
+    ) -> Expr<'a> {
+        let value = formula
+            .zip(formula.and_then(|_| self.position(leg, joint)))
+            .and_then(|(formula, position)| expression(self.arena, formula, &position, radicands));
         value.unwrap_or_else(|| self.arena.zero())
     }
 

@@ -73,11 +73,7 @@ impl Inventory<'_> {
                             format!("{}_{}_{}", symbol.name(), joint.name.value, leg.name.value)
                         }
                     };
-                    let own = joint
-                        .spring
-                        .as_ref()
-                        .filter(|_| *symbol == StandardParameter::K);
-                    let dimension = own.map_or_else(
+                    let dimension = joint.formula_of(*symbol).map_or_else(
                         || dimension(*symbol, joint.kind.value),
                         |spring| spring.dimension,
                     );

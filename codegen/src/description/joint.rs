@@ -1,7 +1,7 @@
 //! The joints of a placed leg: geometry, and which joint follows which.
 
 use super::dimension::Dimension;
-use super::formula::Spring;
+use super::friction;
 use super::model::{Joint, JointKind, Spanned};
 use super::reader::{Item, Table};
 use super::scalar::Scalar;
@@ -106,21 +106,30 @@ impl Reader<'_, '_, '_> {
             parameters: joint.parameters.clone(),
             home: Number::ZERO,
             motor: None,
-            spring: joint
-                .spring
+            spring: self.formula(joint.spring.as_ref(), &scope, spring::read),
+            known: self.formula(joint.known.as_ref(), &scope, spring::known),
+            load: self.formula(joint.load.as_ref(), &scope, spring::load),
+            stribeck: joint
+                .stribeck
                 .as_ref()
-                .and_then(|item| self.spring(item, &scope)),
+                .and_then(|item| friction::stribeck(item, joint.kind.value, &scope)),
             span: joint.span.clone(),
         }
     }
 
-    /// The spring of the joint, in whose expression `q` is the joint's variable even where it follows others.
-    fn spring(&self, item: &Item<'_, '_>, scope: &Scope) -> Option<Spring> {
+    /// What a key says as an expression of the joint's position, in which `q` is the joint's variable even where
+    /// it follows others.
+    fn formula<'i, 'c, 't, T>(
+        &self,
+        item: Option<&'i Item<'c, 't>>,
+        scope: &Scope,
+        read: impl Fn(&'i Item<'c, 't>, JointKind, &Scope) -> Option<T>,
+    ) -> Option<T> {
         let kind = self.joint.kind.value;
         let mut scope = scope.without_variables();
         let own = dimension(kind).unwrap_or(Dimension::ANGLE);
         scope.add("q".to_owned(), Some(Value::variable(self.index, own)));
-        spring::read(item, kind, &scope)
+        read(item?, kind, &scope)
     }
 
     /// A value with the place of its key, or of the joint if there is none.

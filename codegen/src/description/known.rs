@@ -11,7 +11,16 @@ use overact_core::StandardParameter;
 /// Why gains of joints do not exist where motors turn several joints.
 pub const COUPLED_MOTORS: &str = "gains are those of drives that turn one joint each, but motors of this robot turn several: a joint's torque has no gain of its own";
 
+/// Why gains are not identified where torques of joints are known.
+pub const KNOWN_TORQUES: &str = "gains are not identified where torques of joints are known: a gain scales what is measured, not what is known";
+
 impl Leg {
+    /// Whether a torque of a joint is known.
+    #[must_use]
+    pub fn has_known_torques(&self) -> bool {
+        self.joints.iter().any(|joint| joint.known.is_some())
+    }
+
     /// Whether a motor turns a combination of several joints, so that the torque of a joint is no multiple of
     /// one motor's signal.
     #[must_use]
@@ -40,7 +49,7 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, f
             item.context.report(error.help(help));
         };
         match one.symbol {
-            P::Fv | P::Fs | P::Off => report(
+            friction if friction.follows_rate() || friction == P::Off => report(
                 format!(
                     "friction and offsets are not known exactly, `{}` is one",
                     one.name.value
@@ -68,6 +77,11 @@ pub(super) fn gains(item: &Item<'_, '_>, known: &[(String, f64)], robot: &Invent
     if robot.legs.iter().any(Leg::has_coupled_motors) {
         let help = "leave out `gains`; a gain of a motor scales its `torque_gain` in [data]";
         item.context.report(item.error(COUPLED_MOTORS).help(help));
+        return false;
+    }
+    if robot.legs.iter().any(Leg::has_known_torques) {
+        let help = "leave out `gains`, or the key `known` of the joints";
+        item.context.report(item.error(KNOWN_TORQUES).help(help));
         return false;
     }
     if known.is_empty() {

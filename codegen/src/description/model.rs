@@ -1,6 +1,6 @@
 //! The robot that a description gives, evaluated: one value per placement, lengths in m, masses in kg.
 
-use super::formula::Spring;
+use super::formula::{Formula, Spring};
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::Span;
 use overact_core::StandardParameter;
@@ -230,11 +230,26 @@ pub struct Joint {
     pub motor: Option<Number>,
     /// What the position adds to its torque, with an unknown coefficient.
     pub spring: Option<Spring>,
+    /// The torque of its position that is known, N m or N, without any coefficient.
+    pub known: Option<Formula>,
+    /// The Stribeck velocity of its friction, rad/s or m/s.
+    pub stribeck: Option<Number>,
+    /// The load in proportion to which it has friction, with an unknown coefficient.
+    pub load: Option<Spring>,
     /// Place of its table.
     pub span: Span,
 }
 
 impl Joint {
+    /// What one of its parameters multiplies that is described as a formula, if it does.
+    pub(super) fn formula_of(&self, symbol: StandardParameter) -> Option<&Spring> {
+        match symbol {
+            StandardParameter::K => self.spring.as_ref(),
+            StandardParameter::Fl => self.load.as_ref(),
+            _ => None,
+        }
+    }
+
     /// Whether the joint at `index` has a variable of its own.
     #[must_use]
     pub fn is_independent(&self, index: usize) -> bool {

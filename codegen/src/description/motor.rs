@@ -5,6 +5,7 @@
 //! the combination's factors. In the model a motor is a joint that follows others and carries no body.
 
 use super::dimension::Dimension;
+use super::friction;
 use super::model::{Joint, JointKind, Spanned};
 use super::parameters::Owner;
 use super::reader::{Item, Table};
@@ -20,6 +21,7 @@ pub(super) struct MotorShape<'c, 't> {
     /// What it turns.
     turns: Option<Item<'c, 't>>,
     ratio: Option<Item<'c, 't>>,
+    stribeck: Option<Item<'c, 't>>,
     /// Parameters where they are given.
     parameters: Option<Vec<StandardParameter>>,
     span: Span,
@@ -66,6 +68,7 @@ fn shape<'c, 't>(table: &Table<'c, 't>, index: usize) -> MotorShape<'c, 't> {
         name,
         turns,
         ratio: table.get("ratio"),
+        stribeck: table.get("stribeck"),
         parameters: parameters.and_then(|item| item.parameters(Owner::Motor)),
         span: table.span.clone(),
     };
@@ -92,6 +95,9 @@ impl MotorShape<'_, '_> {
             _ => JointKind::Revolute,
         };
         let coupled = value.terms.len() > 1;
+        let stribeck = self.stribeck.as_ref();
+        let mut parameters = self.parameters.clone().unwrap_or_else(|| own(coupled));
+        parameters.extend(stribeck.map(|_| StandardParameter::Fst));
         let here = |value: Angle| Spanned::new(value, self.span.clone());
         let zero = Spanned::new(Number::ZERO, self.span.clone());
         Some(Joint {
@@ -106,10 +112,13 @@ impl MotorShape<'_, '_> {
             r: zero,
             variable: value.terms,
             actuated: false,
-            parameters: self.parameters.clone().unwrap_or_else(|| own(coupled)),
+            parameters,
             home: Number::ZERO,
             motor: Some(ratio?),
             spring: None,
+            known: None,
+            load: None,
+            stribeck: stribeck.and_then(|item| friction::stribeck(item, kind, scope)),
             span: self.span.clone(),
         })
     }

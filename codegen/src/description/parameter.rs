@@ -16,10 +16,12 @@ pub(super) fn dimension(parameter: StandardParameter, kind: JointKind) -> Dimens
         StandardParameter::Ia if slides => Dimension::MASS,
         StandardParameter::K if slides => Dimension::LINEAR_STIFFNESS,
         StandardParameter::K => Dimension::ANGULAR_STIFFNESS,
-        StandardParameter::Fv if slides => Dimension::LINEAR_VISCOSITY,
-        StandardParameter::Fv => Dimension::ANGULAR_VISCOSITY,
-        StandardParameter::Fs | StandardParameter::Off if slides => Dimension::FORCE,
-        StandardParameter::Fs | StandardParameter::Off => Dimension::TORQUE,
+        viscous if viscous.is_viscous() && slides => Dimension::LINEAR_VISCOSITY,
+        viscous if viscous.is_viscous() => Dimension::ANGULAR_VISCOSITY,
+        dry if dry.has_sign() || dry == StandardParameter::Off => match slides {
+            true => Dimension::FORCE,
+            false => Dimension::TORQUE,
+        },
         _ => Dimension::INERTIA,
     }
 }

@@ -1,5 +1,6 @@
 //! Lists of standard parameters: symbols, and groups of them.
 
+use super::friction;
 use super::model::JointKind;
 use super::reader::Item;
 use crate::diagnostic::did_you_mean;
@@ -17,8 +18,8 @@ pub(super) enum Owner {
 }
 
 impl Owner {
-    /// All parameters that it can have.
-    fn possible(self) -> &'static [P] {
+    /// The parameters that `"all"` stands for.
+    fn all(self) -> &'static [P] {
         match self {
             Self::FreeBody | Self::Joint(JointKind::Fixed) => &P::INERTIA,
             Self::Motor => &P::DRIVE,
@@ -26,9 +27,15 @@ impl Owner {
         }
     }
 
+    /// Whether it can have a parameter.
+    fn can_have(self, parameter: P) -> bool {
+        let moves = !matches!(self, Self::FreeBody | Self::Joint(JointKind::Fixed));
+        self.all().contains(&parameter) || moves && P::DIRECTED.contains(&parameter)
+    }
+
     /// The parameters of a body whose description names none.
     pub(super) fn default(self, actuated: bool) -> Vec<P> {
-        let all = self.possible().iter().copied();
+        let all = self.all().iter().copied();
         all.filter(|p| actuated || *p != P::Ia).collect()
     }
 }
@@ -47,15 +54,17 @@ impl Item<'_, '_> {
         }
         all.sort_unstable();
         all.dedup();
+        friction::check(self, &all);
         Some(all)
     }
 
     fn parameter_group(&self, owner: Owner) -> Option<Vec<P>> {
         let name = self.string()?.value;
         let group = match name.as_str() {
-            "all" => owner.possible().to_vec(),
+            "all" => owner.all().to_vec(),
             "inertia" => P::INERTIA.to_vec(),
             "friction" => P::FRICTION.to_vec(),
+            "friction by direction" => P::DIRECTED.to_vec(),
             symbol => {
                 let Some(parameter) = P::from_name(symbol) else {
                     self.unknown_parameter(symbol);
@@ -64,14 +73,14 @@ impl Item<'_, '_> {
                 vec![parameter]
             }
         };
-        if let Some(wrong) = group.iter().find(|p| !owner.possible().contains(p)) {
+        if let Some(wrong) = group.iter().find(|p| !owner.can_have(**p)) {
             let ten = "its parameters are the ten of \"inertia\"";
             let (body, help) = match owner {
                 Owner::FreeBody => ("a free body", ten),
                 Owner::Joint(_) => ("a fixed joint", ten),
                 Owner::Motor => (
                     "a motor",
-                    "its parameters are \"ia\", \"fv\", \"fs\" and \"off\"",
+                    "its parameters are \"ia\", \"fv\", \"fs\", \"off\" and those of \"friction by direction\"",
                 ),
             };
             let message = format!("{body} has no parameter `{}`", wrong.name());
@@ -81,11 +90,24 @@ impl Item<'_, '_> {
     }
 
     fn unknown_parameter(&self, symbol: &str) {
+        let with_key = [
+            (P::K, "spring = \"q - 20 deg\""),
+            (P::Fl, "friction_load = \"40 N m * cos(q)\""),
+            (P::Fst, "stribeck = \"0.05 rad/s\""),
+        ];
+        if let Some((_, key)) = with_key.iter().find(|(one, _)| one.name() == symbol) {
+            let error = self.error(format!("`{symbol}` is not listed"));
+            let help = format!("the key {key} of the joint adds it");
+            self.context.report(error.help(help));
+            return;
+        }
         let known = || {
-            P::ALL
-                .iter()
-                .map(|p| p.name())
-                .chain(["all", "inertia", "friction"])
+            P::ALL.iter().chain(&P::DIRECTED).map(|p| p.name()).chain([
+                "all",
+                "inertia",
+                "friction",
+                "friction by direction",
+            ])
         };
         let help = did_you_mean(symbol, known());
         let list = || format!("known: {}", known().collect::<Vec<_>>().join(", "));

@@ -80,7 +80,7 @@ fn bounds(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, [f64; 2])>
                 let help = "masses, friction, rotor inertias and offsets can be";
                 item.context.report(error.help(help));
             }
-            [Some(_), Some(high)] if *high <= 0.0 && *symbol != StandardParameter::Off => {
+            [Some(_), Some(high)] if *high <= 0.0 && symbol.is_nonnegative() => {
                 let error = item.error(format!(
                     "these bounds leave no positive value of `{}`",
                     name.value

@@ -241,14 +241,30 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
     }
 }
 
-/// Springs are known of robots without platform, whose joints are measured.
+/// Springs and known torques are described of robots without platform, whose joints are measured.
 fn check_springs(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
-    let mut joints = legs.iter().flat_map(|leg| &leg.joints);
-    if let (Some(_), Some(joint)) = (platform, joints.find(|joint| joint.spring.is_some())) {
-        let message = "springs are described of robots without platform only";
-        let help = "leave `spring` out, and subtract a known torque in `torques` of [data]";
+    if platform.is_none() {
+        return;
+    }
+    let joints = || legs.iter().flat_map(|leg| &leg.joints);
+    let report = |joint: &super::Joint, what: &str, key: &str| {
+        let message = format!("{what} are described of robots without platform only");
+        let instead = match key {
+            "friction_load" => "",
+            _ => ", and subtract a known torque in `torques` of [data]",
+        };
+        let help = format!("leave `{key}` out{instead}");
         let error = Diagnostic::new(message, joint.span.clone());
         table.context.report_once(error.help(help));
+    };
+    if let Some(joint) = joints().find(|joint| joint.spring.is_some()) {
+        report(joint, "springs", "spring");
+    }
+    if let Some(joint) = joints().find(|joint| joint.load.is_some()) {
+        report(joint, "loads of friction", "friction_load");
+    }
+    if let Some(joint) = joints().find(|joint| joint.known.is_some()) {
+        report(joint, "known torques", "known");
     }
 }
 

@@ -31,6 +31,9 @@ pub(super) struct JointShape<'c, 't> {
     pub(super) actuated: bool,
     pub(super) parameters: Vec<StandardParameter>,
     pub(super) spring: Option<Item<'c, 't>>,
+    pub(super) known: Option<Item<'c, 't>>,
+    pub(super) stribeck: Option<Item<'c, 't>>,
+    pub(super) load: Option<Item<'c, 't>>,
     pub(super) span: Span,
 }
 
@@ -270,6 +273,11 @@ fn joint<'c, 't>(
     let mut parameters = parameters.unwrap_or_else(|| owner.default(actuated));
     let spring = table.get("spring");
     parameters.extend(spring.as_ref().map(|_| StandardParameter::K));
+    let stribeck = table.get("stribeck");
+    parameters.extend(stribeck.as_ref().map(|_| StandardParameter::Fst));
+    let load = table.get("friction_load");
+    parameters.extend(load.as_ref().map(|_| StandardParameter::Fl));
+    let known = table.get("known");
     table.finish();
     JointShape {
         name,
@@ -279,6 +287,9 @@ fn joint<'c, 't>(
         actuated,
         parameters,
         spring,
+        known,
+        stribeck,
+        load,
         span: table.span.clone(),
     }
 }

@@ -1,8 +1,8 @@
-//! Springs: torques that a joint's position makes, linear in one unknown coefficient.
+//! Torques that a joint's position makes: springs, linear in one unknown coefficient, and what is known.
 //!
 //! The key `spring` of a joint is an expression of its variable `q`: what a unit of the coefficient adds to
 //! the joint's torque. Of a linear spring that is `q` less its rest position; any lever, cable or spring of
-//! another kind has its own. Expressions of `q` are kept as formulas, constants in them are exact.
+//! another kind has its own. The key `known` is the torque itself. Expressions of `q` are kept as formulas, constants in them are exact.
 
 use super::dimension::Dimension;
 use super::expression::Quantity;
@@ -16,22 +16,32 @@ use crate::cas::{Number, Ratio};
 
 /// Reads the key `spring` of a joint whose scope knows `q` as the joint's variable.
 pub(super) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
-    let effort = match kind {
-        JointKind::Revolute => Dimension::TORQUE,
-        JointKind::Prismatic => Dimension::FORCE,
-        JointKind::Fixed => {
-            let error = item.error("a fixed joint has no spring");
-            let help = "give it to a joint that moves";
-            item.context.report_once(error.help(help));
-            return None;
-        }
-    };
+    let effort = effort(item, kind, "a fixed joint has no spring")?;
+    let constant = "a torque that does not depend on the position is no spring";
+    let help = "write it with the joint variable, for instance spring = \"q - 20 deg\"; a constant \
+                torque is the parameter `off`";
+    with_coefficient(item, scope, effort, (constant, help))
+}
+
+/// Reads the key `friction_load` of a joint.
+pub(super) fn load(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
+    let effort = effort(item, kind, "a fixed joint has no friction")?;
+    let constant = "friction under a load that does not depend on the position is Coulomb friction";
+    let help = "leave `friction_load` out, its parameter is `fs`; or write the load with the joint \
+                variable, for instance friction_load = \"40 N m * cos(q)\"";
+    with_coefficient(item, scope, effort, (constant, help))
+}
+
+/// A formula that is an effort for each unit of a coefficient; one that is constant is told what it is.
+fn with_coefficient(
+    item: &Item<'_, '_>,
+    scope: &Scope,
+    effort: Dimension,
+    (constant, help): (&str, &str),
+) -> Option<Spring> {
     let found: Positional = item.evaluate_as(scope)?;
     if matches!(&found, Positional::Exact(value) if value.terms.is_empty()) {
-        let error = item.error("a torque that does not depend on the position is no spring");
-        let help = "write it with the joint variable, for instance spring = \"q - 20 deg\"; a constant \
-                    torque is the parameter `off`";
-        item.context.report_once(error.help(help));
+        item.context.report_once(item.error(constant).help(help));
         return None;
     }
     let inverse = found.dimension().power(-1);
@@ -47,6 +57,37 @@ pub(super) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Optio
         formula: found.formula(),
         dimension,
     })
+}
+
+/// Reads the key `known` of a joint, a torque or force that may depend on `q`.
+pub(super) fn known(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Formula> {
+    let effort = effort(item, kind, "no torque acts on a fixed joint")?;
+    let found: Positional = item.evaluate_as(scope)?;
+    if !found.dimension().fits(effort) {
+        let (name, unit) = (effort.name(), effort.unit());
+        let message = format!(
+            "expected {name} ({unit}), found {}",
+            found.dimension().name()
+        );
+        let help = format!("give its factors their units, for instance \"2 {unit} * cos(q)\"");
+        item.context.report_once(item.error(message).help(help));
+        return None;
+    }
+    Some(found.formula())
+}
+
+/// The dimension of what acts on a joint; `None` for a fixed one, which is reported.
+fn effort(item: &Item<'_, '_>, kind: JointKind, fixed: &str) -> Option<Dimension> {
+    match kind {
+        JointKind::Revolute => Some(Dimension::TORQUE),
+        JointKind::Prismatic => Some(Dimension::FORCE),
+        JointKind::Fixed => {
+            let error = item.error(fixed);
+            item.context
+                .report_once(error.help("give it to a joint that moves"));
+            None
+        }
+    }
 }
 
 /// A value that may depend on a joint's position in any way.

@@ -19,7 +19,14 @@ pub(super) fn guard(
     conditions: &[GuardedExpr<'_>],
 ) -> Result<(), InternalError> {
     let mut open = dag.divisors();
-    open.retain(|&node| !is_never_zero(dag, node));
+    let never = arena.never_zero();
+    let is_known = |node: usize| {
+        let edges = [false, true].map(|negative| dag.fingerprint(Edge::new(node, negative)));
+        never
+            .iter()
+            .any(|one| edges.iter().any(|edge| edge.agrees(one)))
+    };
+    open.retain(|&node| !is_never_zero(dag, node) && !is_known(node));
     for GuardedExpr { value, condition } in conditions {
         let wanted = arena.fingerprint_at(value.handle().index());
         // The value itself, or its negative.

@@ -85,6 +85,9 @@ fn plain(description: &Description) -> Mechanism {
         parameters: j.parameters.clone(),
         motor: j.motor.map(crate::cas::Number::value),
         spring: j.spring.clone(),
+        known: j.known.clone(),
+        stribeck: j.stribeck,
+        load: j.load.clone(),
     };
     let leg = |l: &crate::description::Leg| Leg {
         name: l.name.value.clone(),

@@ -63,6 +63,12 @@ pub struct Joint {
     pub motor: Option<f64>,
     /// What the position adds to its torque, with an unknown coefficient.
     pub spring: Option<Spring>,
+    /// The torque of the position that is known, without any coefficient.
+    pub known: Option<Formula>,
+    /// The Stribeck velocity of its friction, rad/s or m/s.
+    pub stribeck: Option<Number>,
+    /// The load in proportion to which it has friction, with an unknown coefficient.
+    pub load: Option<Spring>,
 }
 
 impl Joint {

@@ -1,6 +1,6 @@
 //! What every result rests on, since no data can show it.
 
-use overact::{Model, StandardParameter};
+use overact::Model;
 
 use crate::regression::{columns::ColumnSet, projection::ModelKind};
 
@@ -25,13 +25,8 @@ pub(crate) fn assumptions(
             "the robot is rigid and stays as it was: temperature, wear and what was mounted are those of the runs",
         ),
     ];
-    let has = |symbol: StandardParameter| {
-        columns
-            .as_slice()
-            .iter()
-            .any(|column| column.symbol == symbol)
-    };
-    if has(StandardParameter::Fv) || has(StandardParameter::Fs) {
+    let mut friction = columns.as_slice().iter();
+    if friction.any(|column| column.symbol.follows_rate()) {
         all.push(String::from(
             "friction is viscous and Coulomb friction as in the model, at speeds that the runs do not reach, too",
         ));

@@ -64,7 +64,7 @@ fn impossible_bounds(
     } else if known.is_some_and(|symbol| !bounded(symbol)) {
         let help = "masses, and coefficients of friction and rotors can";
         (format!("`{name}` can't be bounded"), help)
-    } else if high <= 0.0 && known.is_some_and(|symbol| symbol != StandardParameter::Off) {
+    } else if high <= 0.0 && known.is_some_and(StandardParameter::is_nonnegative) {
         let message = format!("the bounds of `{name}` leave no positive value");
         (message, "it can't be negative")
     } else {

@@ -31,6 +31,7 @@ fn places(parameter: StandardParameter) -> &'static [(usize, usize, f64)] {
         P::Mz => &[(2, 3, 1.0), (3, 2, 1.0)],
         P::M => &[(3, 3, 1.0)],
         P::Ia | P::Fv | P::Fs | P::Off | P::K => &[],
+        P::FvPos | P::FsPos | P::FvNeg | P::FsNeg | P::Fst | P::Fl => &[],
     }
 }
 

@@ -138,7 +138,7 @@ fn scalar(column: &Column, values: &Values) -> Kind {
     match column.symbol {
         // Friction split by direction contains the offset, which has either sign.
         // So may the coefficient of a spring have, as its expression is written.
-        P::Off | P::K => Kind::Free { scale: value },
+        P::Off | P::K | P::FsPos | P::FsNeg => Kind::Free { scale: value },
         P::Fs if column.direction.is_some() => Kind::Free { scale: value },
         _ => Kind::Positive { prior: value },
     }

@@ -22,7 +22,7 @@ use crate::{
     estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
     gains::{DriveGain, JointParameter},
     regression::columns::ColumnSet,
-    result::{CrossValidation, Estimate, Estimator, RunSummary},
+    result::{CrossValidation, Estimate, Estimator, MotorParameter, RunSummary},
     settings::Settings,
     thresholds::Thresholds,
 };
@@ -70,6 +70,9 @@ pub struct Identification {
     /// `standard_deviation` of these holds for the gains as they were found.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gain_parameters: Vec<JointParameter>,
+    /// Base estimates of the drives' parameters in front of their gears, where motors are described.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub motors: Vec<MotorParameter>,
     /// Table 4, where controlled runs were compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tracking: Vec<TrackingError>,

@@ -152,6 +152,7 @@ pub fn identify_with_gains(
         calibration: None,
         gains: Vec::new(),
         gain_parameters: Vec::new(),
+        motors: Vec::new(),
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,

@@ -10,6 +10,7 @@ pub(crate) mod conditioning;
 mod dense;
 pub(crate) mod distribution;
 mod forward;
+mod known;
 mod motion;
 mod stream;
 
@@ -25,6 +26,7 @@ use crate::{
 
 use forward::Forward;
 pub(crate) use forward::approach;
+use known::KnownTorques;
 pub use motion::Motion;
 use motion::outside;
 use stream::{Derivatives, Stream};
@@ -56,6 +58,7 @@ pub struct Motions<'a> {
     log: &'a Log,
     stream: Stream<'a>,
     forward: Forward<'a>,
+    known: KnownTorques<'a>,
     /// Samples that are kept.
     kept: std::ops::Range<usize>,
 }
@@ -73,6 +76,7 @@ impl<'a> Motions<'a> {
             log,
             stream: Stream::new(log, settings)?,
             forward: Forward::new(model, log),
+            known: KnownTorques::new(model),
             kept: settings.skip_start..log.samples() - settings.skip_end,
         })
     }
@@ -173,7 +177,7 @@ impl<'a> Motions<'a> {
         let reached =
             evaluate(self.model, Function::ActuatorPositions, &[&pose], samples).map_err(at)?;
         let positions = keep(&block.positions, n);
-        Ok(Motion {
+        let mut motion = Motion {
             closure_residual: largest_difference(&positions, &reached, info.actuator_is_revolute),
             first_sample: kept.start,
             samples,
@@ -183,7 +187,9 @@ impl<'a> Motions<'a> {
             velocities,
             torques: keep(&block.torques, n),
             ..self.empty()
-        })
+        };
+        self.known.subtract(&mut motion)?;
+        Ok(motion)
     }
 }
 

@@ -25,7 +25,7 @@ pub struct Motion {
     pub acceleration: Vec<f64>,
     /// Velocities of the actuators' joints, samples x n (m/s, rad/s).
     pub velocities: Vec<f64>,
-    /// Torques, samples x n (N, N m), unfiltered.
+    /// Torques, samples x n (N, N m), unfiltered, without those that the description knows.
     pub torques: Vec<f64>,
     /// Largest distance of a filtered actuator position from the one that the pose asks for (m,
     /// rad): zero without redundancy, else the quality of the geometry and the encoders' offsets.

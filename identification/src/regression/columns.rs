@@ -11,21 +11,34 @@
 //!
 //! Around standstill the sign of a measured velocity is noise. Within a dead band the columns fs can
 //! be zero.
+//!
+//! Friction that the description itself gives by direction is treated alike: where the mean of the sign over
+//! the interval is none of either direction, both columns have their part, which is told from their sum, the
+//! column of the sign. Friction that rises towards standstill (Stribeck) takes its own mean over the interval.
 
 use overact::{Body, Columns, Function, Info, Model, Parameter, SampleError, StandardParameter};
 
 use super::friction::{Rate, friction_rates};
 use crate::{error::Error, settings::Settings};
+use StandardParameter as P;
 
 /// Where the numbers of a column come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Origin {
     /// A column of [`Function::IdmRedPlatform`].
     Robot(usize),
+    /// The sum of two of them, which are friction of the two directions.
+    Both([usize; 2]),
     /// A column of [`Function::IdmRedPayload`].
     Payload(usize),
     /// A column of [`Function::IdmRedPlatform`] that counts in runs with the payload alone.
     Carried(usize),
+}
+
+impl Origin {
+    const fn is_of_payload(self) -> bool {
+        matches!(self, Self::Payload(_) | Self::Carried(_))
+    }
 }
 
 /// Whether a parameter is one of the payload of a robot without platform: of a body with the name `payload`,
@@ -95,8 +108,12 @@ impl Reversal {
 
     /// The sign of a velocity that changes by `step` in a sampling interval; none within the dead band.
     pub(crate) fn sign(self, velocity: f64, step: f64) -> Option<f64> {
-        let step = if self.averaged { step } else { 0.0 };
-        (velocity.abs() >= self.band).then(|| mean_sign(velocity, step))
+        (velocity.abs() >= self.band).then(|| mean_sign(velocity, self.step(step)))
+    }
+
+    /// By how much the velocity changes in the interval that counts.
+    const fn step(self, step: f64) -> f64 {
+        if self.averaged { step } else { 0.0 }
     }
 }
 
@@ -119,6 +136,15 @@ impl Column {
     /// The factor of the model's column at a velocity of its coordinate, which changes by `step` in a sampling
     /// interval.
     fn factor(&self, velocity: f64, step: f64) -> f64 {
+        if let (Some(rate), Some(own)) = (&self.rate, self.reversal)
+            && let Some(factor) = rate.mean_factor(velocity, own.step(step))
+        {
+            return if velocity.abs() < own.band {
+                0.0
+            } else {
+                factor
+            };
+        }
         let sign = match self.reversal {
             Some(reversal) => reversal.sign(velocity, step),
             None => Some(mean_sign(velocity, 0.0)),
@@ -186,11 +212,13 @@ impl ColumnSet {
             };
             let whole = Column::new(parameter, origin);
             match rate {
-                Some(rate) => columns.extend(whole.split(&rate)),
+                Some(rate) if P::FRICTION.contains(&parameter.symbol) => {
+                    columns.extend(whole.split(&rate));
+                }
                 None if asymmetric_friction
                     && parameter.symbol == StandardParameter::Off
                     && has_fs(parameter.body) => {}
-                None => columns.push(whole),
+                _ => columns.push(whole),
             }
         }
         if payload {
@@ -210,13 +238,31 @@ impl ColumnSet {
         let reversal = Reversal::new(settings);
         if reversal.band > 0.0 || reversal.averaged {
             let rates = friction_rates(model, settings.seed)?;
+            let parameters = model.info().parameters;
+            let of = |symbol: P, body: Body| {
+                let mut all = parameters.iter();
+                all.position(|one| one.symbol == symbol && one.body == body)
+            };
             for column in &mut self.columns {
-                if let (Origin::Robot(index), StandardParameter::Fs) =
-                    (column.origin, column.symbol)
-                {
-                    column.rate.clone_from(&rates[index]);
-                    column.reversal = Some(reversal);
+                let Origin::Robot(index) = column.origin else {
+                    continue;
+                };
+                let (direction, other) = match column.symbol {
+                    P::Fs | P::Fst | P::Fl => (column.direction, None),
+                    P::FsPos => (Some(Direction::Positive), Some(P::FsNeg)),
+                    P::FsNeg => (Some(Direction::Negative), Some(P::FsPos)),
+                    _ => continue,
+                };
+                if let Some(other) = other {
+                    // Friction of one direction alone keeps the sign at the sample.
+                    let Some(other) = of(other, column.body) else {
+                        continue;
+                    };
+                    column.origin = Origin::Both([index, other]);
                 }
+                column.direction = direction;
+                column.rate.clone_from(&rates[index]);
+                column.reversal = Some(reversal);
             }
         }
         Ok(self)
@@ -250,7 +296,7 @@ impl ColumnSet {
     #[must_use]
     pub fn indices(&self, payload: bool) -> Vec<usize> {
         (0..self.columns.len())
-            .filter(|&index| !matches!(self.columns[index].origin, Origin::Robot(_)) == payload)
+            .filter(|&index| self.columns[index].origin.is_of_payload() == payload)
             .collect()
     }
 
@@ -289,20 +335,16 @@ impl ColumnSet {
         let width = picked.len() + more;
         let mut lines = vec![vec![0.0; samples * width]; sizes.dof];
         // Where the numbers of a row come from: places of the robot's columns, then the payload's.
-        let place = |wanted: &dyn Fn(Origin) -> Option<usize>| -> Vec<(usize, usize)> {
-            let all = columns().enumerate();
-            all.filter_map(|(to, column)| Some((to, wanted(column.origin)?)))
-                .collect()
-        };
-        let own = place(&|origin| match origin {
-            Origin::Robot(k) => Some(k),
-            Origin::Carried(k) => loaded.then_some(k),
-            Origin::Payload(_) => None,
-        });
-        let load = place(&|origin| match origin {
-            Origin::Payload(k) => Some(k),
-            Origin::Robot(_) | Origin::Carried(_) => None,
-        });
+        let (mut own, mut load) = (Vec::new(), Vec::new());
+        for (to, column) in columns().enumerate() {
+            match column.origin {
+                Origin::Robot(k) => own.push((to, k)),
+                Origin::Both(both) => own.extend(both.map(|k| (to, k))),
+                Origin::Carried(k) if loaded => own.push((to, k)),
+                Origin::Carried(_) => {}
+                Origin::Payload(k) => load.push((to, k)),
+            }
+        }
         let sources = [
             (&robot, sizes.parameters, own),
             (&payload, sizes.payload_parameters, load),
@@ -315,7 +357,7 @@ impl ColumnSet {
                 let start = row / sizes.dof * width;
                 let to = &mut lines[row % sizes.dof][start..start + width];
                 for &(place, index) in places {
-                    to[place] = from[index];
+                    to[place] += from[index];
                 }
             }
         }

@@ -2,12 +2,15 @@
 //!
 //! A joint of its own has its own rate. One that follows others, and a motor that turns several joints, has
 //! a constant combination of their rates, c·q̇. The power of its friction gives (c·q̇)² = q̇ᵀ (c cᵀ) q̇ at every
-//! state, which is linear in the matrix c cᵀ; c is its only eigenvector whose eigenvalue isn't zero.
+//! state, which is linear in the matrix c cᵀ; c is its only eigenvector whose eigenvalue isn't zero. States are
+//! so slow that friction which rises towards standstill (Stribeck) has all of its height, and is dry friction
+//! like any other; how fast it falls is seen at speed. Friction in proportion to a load takes |load| |u|, and the
+//! load of a pose is the same for two motions: their ratio is that of the rates.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use overact::{Columns, Function, Model, StandardParameter};
 
-use super::states::random_states;
+use super::states::{States, random_states};
 use crate::error::{Error, Problem};
 
 /// States from which the rate of a friction parameter is recognised, beyond those that a combination of
@@ -17,31 +20,78 @@ const RECOGNITION_STATES: usize = 12;
 /// Relative tolerance of that recognition.
 const RECOGNITION_TOLERANCE: f64 = 1e-6;
 
+/// Part of the speed of random states at which friction is recognised, a power of two.
+const SLOW: f64 = 1.0 / (1u64 << 30) as f64;
+
 /// Factors of joints in a combination below this part of the largest one are rounding.
 const NEGLIGIBLE: f64 = 1e-7;
 
-/// A rate as a constant combination of joint rates: joints with their factors.
+/// A rate as a constant combination of joint rates.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Rate(Vec<(usize, f64)>);
+pub(crate) struct Rate {
+    /// Joints with their factors.
+    joints: Vec<(usize, f64)>,
+    /// The Stribeck velocity of friction that falls with it.
+    stribeck: Option<f64>,
+}
 
 impl Rate {
+    fn new(joints: Vec<(usize, f64)>) -> Self {
+        Self {
+            joints,
+            stribeck: None,
+        }
+    }
+
     /// Its value where all joints have these rates, or accelerations.
     pub(crate) fn of(&self, joints: &[f64]) -> f64 {
-        let terms = self.0.iter();
+        let terms = self.joints.iter();
         terms.map(|(joint, factor)| factor * joints[*joint]).sum()
+    }
+
+    fn reversed(self) -> Self {
+        let joints = self.joints.into_iter();
+        Self::new(joints.map(|(joint, factor)| (joint, -factor)).collect())
+    }
+
+    /// By how much the mean over an interval in which the rate changes by `step` differs from the friction at
+    /// its middle, as a factor; for friction that falls with the rate.
+    pub(crate) fn mean_factor(&self, rate: f64, step: f64) -> Option<f64> {
+        let velocity = self.stribeck?;
+        if rate == 0.0 || step == 0.0 {
+            return Some(1.0);
+        }
+        // ∫ sign(u)/(1 + (u/v)²) du = v atan(|u|/v), and the difference of two such.
+        let [before, after] = [rate - step / 2.0, rate + step / 2.0].map(|u| u.abs() / velocity);
+        let mean = velocity * ((after - before) / (1.0 + after * before)).atan() / step;
+        let middle = rate.signum() / (1.0 + (rate / velocity).powi(2));
+        Some(mean / middle)
+    }
+}
+
+/// The part of a rate that a column of friction is about.
+fn part(rate: f64, symbol: StandardParameter) -> f64 {
+    use StandardParameter as P;
+    match symbol {
+        P::FvPos | P::FsPos => rate.max(0.0),
+        P::FvNeg | P::FsNeg => (-rate).max(0.0),
+        _ => rate.abs(),
     }
 }
 
 /// Motion and regressor on random states, by which the rate u of a friction parameter is recognised: the
-/// power of friction is vᵀ W_fv = u² and vᵀ W_fs = |u|.
+/// power of friction is vᵀ W_fv = u² and vᵀ W_fs = |u|, or that of one direction.
 struct FrictionPower {
     samples: usize,
     dof: usize,
     joints: usize,
     parameters: usize,
     twist: Vec<f64>,
-    regressor: Vec<f64>,
+    /// At these states, and at their poses with a small part of the twist.
+    regressors: [Vec<f64>; 2],
     velocities: Vec<f64>,
+    /// The same motion at each state's pose and at the next one's twist, where friction has a load.
+    other: Option<Box<FrictionPower>>,
 }
 
 impl FrictionPower {
@@ -49,9 +99,33 @@ impl FrictionPower {
     fn new(model: &dyn Model, seed: u64) -> Result<Self, Error> {
         let sizes = model.info().sizes;
         let unknown = sizes.joints * (sizes.joints + 1) / 2;
-        let states = random_states(model, RECOGNITION_STATES + unknown, seed)?;
-        let inputs: [&[f64]; 3] = [&states.pose, &states.twist, &states.acceleration];
-        let ask = |function: Function| -> Result<Vec<f64>, Error> {
+        let friction = |one: &overact::Parameter| part(-1.0, one.symbol) != part(1.0, one.symbol);
+        // Friction of one direction shows at every other state.
+        let times = 1 + usize::from(model.info().parameters.iter().any(friction));
+        let states = random_states(model, times * (RECOGNITION_STATES + unknown), seed)?;
+        let is_load = |one: &overact::Parameter| one.symbol == StandardParameter::Fl;
+        let mut turned = states.twist.clone();
+        turned.rotate_left(sizes.dof);
+        let other = model
+            .info()
+            .parameters
+            .iter()
+            .any(is_load)
+            .then_some(turned);
+        let mut own = Self::at(model, &states, &states.twist)?;
+        own.other = match other {
+            Some(twist) => Some(Box::new(Self::at(model, &states, &twist)?)),
+            None => None,
+        };
+        Ok(own)
+    }
+
+    /// At the poses of some states, and twists.
+    fn at(model: &dyn Model, states: &States, twist: &[f64]) -> Result<Self, Error> {
+        let sizes = model.info().sizes;
+        let slow: Vec<f64> = twist.iter().map(|v| SLOW * v).collect();
+        let ask = |function: Function, twist: &[f64]| -> Result<Vec<f64>, Error> {
+            let inputs: [&[f64]; 3] = [&states.pose, twist, &states.acceleration];
             let (rows, columns) = function.shape(&sizes);
             let mut output = vec![0.0; states.samples * rows * columns];
             model
@@ -59,21 +133,24 @@ impl FrictionPower {
                 .map_err(|error| Problem::new(error.to_string()))?;
             Ok(output)
         };
+        let regressor = |twist: &[f64]| ask(Function::IdmRedPlatform(Columns::Standard), twist);
         Ok(Self {
             samples: states.samples,
             dof: sizes.dof,
             joints: sizes.joints,
             parameters: sizes.parameters,
-            regressor: ask(Function::IdmRedPlatform(Columns::Standard))?,
-            velocities: ask(Function::JointVelocities)?,
-            twist: states.twist,
+            regressors: [regressor(twist)?, regressor(&slow)?],
+            velocities: ask(Function::JointVelocities, twist)?,
+            twist: twist.to_vec(),
+            other: None,
         })
     }
 
-    /// vᵀ W of a column at a state.
-    fn power(&self, sample: usize, column: usize) -> f64 {
+    /// vᵀ W of a column at a state, of friction at its speed or at a small part of it.
+    fn power(&self, slow: bool, sample: usize, column: usize) -> f64 {
         let rows = sample * self.dof..(sample + 1) * self.dof;
-        rows.map(|row| self.twist[row] * self.regressor[row * self.parameters + column])
+        let regressor = &self.regressors[usize::from(slow)];
+        rows.map(|row| self.twist[row] * regressor[row * self.parameters + column])
             .sum()
     }
 
@@ -82,22 +159,50 @@ impl FrictionPower {
         &self.velocities[sample * self.joints..(sample + 1) * self.joints]
     }
 
-    /// |u| of a friction column at a state.
+    /// The part of u that a friction column is about, at a state.
     fn speed(&self, sample: usize, column: usize, symbol: StandardParameter) -> f64 {
-        let power = self.power(sample, column).max(0.0);
-        match symbol {
-            StandardParameter::Fv => power.sqrt(),
-            _ => power,
+        let power = self.power(true, sample, column).max(0.0);
+        match symbol.is_viscous() {
+            true => (power / SLOW).sqrt(),
+            false => power,
         }
     }
 
     /// Whether a friction column is that of a rate.
     fn matches(&self, rate: &Rate, column: usize, symbol: StandardParameter) -> bool {
         (0..self.samples).all(|sample| {
-            let expected = rate.of(self.joints(sample)).abs();
+            let expected = part(rate.of(self.joints(sample)), symbol);
             let difference = self.speed(sample, column, symbol) - expected;
             difference.abs() <= RECOGNITION_TOLERANCE * expected.max(1e-3)
         })
+    }
+
+    /// Whether a column of friction under a load is that of a rate.
+    fn matches_load(&self, rate: &Rate, column: usize) -> bool {
+        let Some(other) = self.other.as_deref() else {
+            return false;
+        };
+        (0..self.samples).all(|sample| {
+            let [own, others] = [self, other].map(|all| {
+                let speed = rate.of(all.joints(sample)).abs();
+                [speed, all.power(true, sample, column)]
+            });
+            let (a, b) = (own[0] * others[1], own[1] * others[0]);
+            (a - b).abs() <= RECOGNITION_TOLERANCE * a.abs().max(b.abs()).max(1e-3)
+        })
+    }
+
+    /// The Stribeck velocity of a column: at speed u friction is 1/(1 + (u/v)²) of what it is at standstill.
+    fn stribeck(&self, rate: &Rate, column: usize) -> Option<f64> {
+        let velocity = |sample: usize| {
+            let speed = rate.of(self.joints(sample)).abs();
+            let fallen = speed / self.power(false, sample, column) - 1.0;
+            (fallen > 1e-6).then(|| speed / fallen.sqrt())
+        };
+        let found = (0..self.samples).filter_map(velocity);
+        found
+            .reduce(f64::min)
+            .filter(|velocity| velocity.is_normal())
     }
 
     /// The combination of joint rates that a friction column is about; its first factor is positive.
@@ -112,6 +217,10 @@ impl FrictionPower {
         let squares = DVector::from_fn(self.samples, |sample, _| {
             self.speed(sample, column, symbol).powi(2)
         });
+        // Where friction is of the other direction its rate is not seen.
+        let seen = (0..self.samples).filter(|&sample| squares[sample] > 0.0);
+        let seen: Vec<usize> = seen.collect();
+        let (products, squares) = (products.select_rows(&seen), squares.select_rows(&seen));
         let found = products.svd(true, true).solve(&squares, 1e-10).ok()?;
         let mut matrix = DMatrix::zeros(self.joints, self.joints);
         for (&(i, j), value) in pairs.iter().zip(found.iter()) {
@@ -127,33 +236,50 @@ impl FrictionPower {
             .iter()
             .enumerate()
             .filter(|(_, factor)| significant(factor));
-        let rate = Rate(all.map(|(joint, factor)| (joint, sign * factor)).collect());
-        self.matches(&rate, column, symbol).then_some(rate)
+        let rate = Rate::new(all.map(|(joint, factor)| (joint, sign * factor)).collect());
+        let mut both = [rate.clone(), rate.reversed()].into_iter();
+        both.find(|rate| self.matches(rate, column, symbol))
     }
 }
 
-/// For each robot parameter, the rate of a friction parameter fv or fs, or `None`. Joints that always move
+/// For each robot parameter, the rate of a friction parameter, or `None`. Joints that always move
 /// alike (a parallelogram) are told apart by their order.
 pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<Rate>>, Error> {
     let info = model.info();
     let friction = FrictionPower::new(model, seed)?;
     let mut problems = Vec::new();
     let mut taken: Vec<(StandardParameter, usize)> = Vec::new();
-    let mut found = vec![None; info.parameters.len()];
+    let mut found: Vec<Option<Rate>> = vec![None; info.parameters.len()];
     for (column, parameter) in info.parameters.iter().enumerate() {
         let symbol = parameter.symbol;
-        if !matches!(symbol, StandardParameter::Fv | StandardParameter::Fs) {
+        if !symbol.follows_rate() {
             continue;
         }
-        let own = |joint: usize| Rate(vec![(joint, 1.0)]);
+        let own = |joint: usize| Rate::new(vec![(joint, 1.0)]);
+        let under_load = symbol == StandardParameter::Fl;
         let joint = (0..info.sizes.joints)
             .filter(|joint| !taken.contains(&(symbol, *joint)))
-            .find(|joint| friction.matches(&own(*joint), column, symbol));
+            .find(|joint| match under_load {
+                true => friction.matches_load(&own(*joint), column),
+                false => friction.matches(&own(*joint), column, symbol),
+            });
         taken.extend(joint.map(|joint| (symbol, joint)));
-        found[column] = match joint {
+        // Of a joint that follows others, friction without a load tells the rate.
+        let same_joint = || {
+            let before = info.parameters.iter().zip(&found);
+            let mut rates = before.filter(|(one, _)| one.body == parameter.body);
+            let rate = Rate::new(rates.find_map(|(_, rate)| rate.clone())?.joints);
+            friction.matches_load(&rate, column).then_some(rate)
+        };
+        let rate = match joint {
             Some(joint) => Some(own(joint)),
+            None if under_load => same_joint(),
             None => friction.combination(column, symbol),
         };
+        found[column] = rate;
+        if let (Some(rate), StandardParameter::Fst) = (&mut found[column], symbol) {
+            rate.stribeck = friction.stribeck(rate, column);
+        }
         if found[column].is_none() {
             let message = format!(
                 "no combination of joints moves as the friction `{}` asks for",

@@ -3,10 +3,12 @@
 
 mod cross_validation;
 mod estimate;
+mod motor;
 mod run;
 mod stage;
 
 pub use cross_validation::CrossValidation;
 pub use estimate::{Estimate, Estimator, ParameterEstimate};
+pub use motor::MotorParameter;
 pub use run::RunSummary;
 pub use stage::Stage;

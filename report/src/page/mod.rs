@@ -2,7 +2,7 @@
 //! what the data could not tell.
 //!
 //! The verdict stands first, the parameters follow, and every plot says below what to look for in it.
-//! Each section is a file: `verdict`, `checks`, `calibration`, `gains`, `parameters`, `estimators`, `limits`,
+//! Each section is a file: `verdict`, `checks`, `calibration`, `gains`, `parameters`, `motors`, `estimators`, `limits`,
 //! `validation`, `inputs`, `residuals`, `elimination`, `conditioning`, `trajectories`, `tracking`, `data`.
 //! Sections that have nothing to show are left out.
 
@@ -18,6 +18,7 @@ mod header;
 mod inputs;
 mod limits;
 pub(super) mod markup;
+mod motors;
 mod parameters;
 mod residuals;
 mod select;
@@ -81,6 +82,7 @@ pub fn page(contents: &Contents<'_>) -> String {
         calibration::section(contents),
         gains::section(contents),
         parameters::section(contents),
+        motors::section(contents),
         consistent::section(contents),
         estimators::section(contents),
         limits::section(contents),

@@ -32,6 +32,7 @@ robot!(stanford: Stanford);
 robot!(two_motor_axis: TwoMotorAxis);
 robot!(tx40: Tx40);
 
+pub mod friction;
 pub mod known;
 pub mod partitions;
 

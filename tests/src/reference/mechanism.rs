@@ -51,9 +51,15 @@ pub struct Joint {
     pub actuated: bool,
     /// What its position adds to its torque.
     pub spring: Option<Spring>,
+    /// The torque of its position that is known.
+    pub known: Option<Spring>,
+    /// The velocity at which friction has fallen to half of what standstill has more, rad/s or m/s.
+    pub stribeck: Option<f64>,
+    /// The load, a part of which is dry friction.
+    pub load: Option<Spring>,
 }
 
-/// The torque of a spring per unit of its coefficient, as a function of the sum Σ c_i q_i of its joint.
+/// The torque of a spring per unit of its coefficient, or one that is known, as a function of the sum Σ c_i q_i of its joint.
 #[derive(Clone)]
 pub struct Spring(Arc<dyn Fn(f64) -> f64 + Send + Sync>);
 
@@ -106,6 +112,9 @@ impl Joint {
             terms,
             actuated: false,
             spring: None,
+            known: None,
+            stribeck: None,
+            load: None,
         }
     }
 

@@ -98,6 +98,13 @@ pub fn leg_torques(
         };
         let [rotor, viscous, dry, offset, stiffness] =
             std::array::from_fn(|at| own(j)[INERTIAL + at]);
+        let friction = friction(rates[j], &own(j)[INERTIAL + 5..], joint.stribeck)
+            + own(j)[INERTIAL + 10]
+                * joint
+                    .load
+                    .as_ref()
+                    .map_or(0.0, |load| load.torque(positions[j]).abs())
+                * sign(rates[j]);
         let spring = joint
             .spring
             .as_ref()
@@ -106,7 +113,8 @@ pub fn leg_torques(
             + viscous * rates[j]
             + dry * sign(rates[j])
             + offset
-            + stiffness * spring;
+            + stiffness * spring
+            + friction;
         for &(owner, coefficient) in &joint.terms {
             let at = owners.iter().position(|&index| index == owner);
             torques[at.unwrap_or_default()] += coefficient * (along + drive);
@@ -115,7 +123,37 @@ pub fn leg_torques(
     torques
 }
 
-/// Torques τ_t of the virtual tree for all parameters (1).
+/// Friction with the coefficients [fv_pos fs_pos fv_neg fs_neg fst]: a law of its own for each direction, their
+/// mean at rest, and what falls from its height at standstill to half of it at the Stribeck velocity.
+fn friction(rate: f64, coefficients: &[f64], stribeck: Option<f64>) -> f64 {
+    let [viscous_up, dry_up, viscous_down, dry_down, excess] =
+        std::array::from_fn(|at| coefficients[at]);
+    let directed = if rate > 0.0 {
+        dry_up + viscous_up * rate
+    } else if rate < 0.0 {
+        viscous_down * rate - dry_down
+    } else {
+        (dry_up - dry_down) / 2.0
+    };
+    let fallen = |velocity: f64| velocity * velocity / (velocity * velocity + rate * rate);
+    directed + excess * stribeck.map_or(0.0, fallen) * sign(rate)
+}
+
+/// What is known of the torques of a leg's variables, without any parameter.
+fn known_torques(leg: &Leg, q: &[f64]) -> DVector<f64> {
+    let owners = leg.variables();
+    let mut torques = DVector::zeros(owners.len());
+    for (joint, position) in leg.joints.iter().zip(leg.joint_values(q)) {
+        let Some(known) = &joint.known else { continue };
+        for &(owner, coefficient) in &joint.terms {
+            let at = owners.iter().position(|&index| index == owner);
+            torques[at.unwrap_or_default()] += coefficient * known.torque(position);
+        }
+    }
+    torques
+}
+
+/// Torques τ_t of the virtual tree for all parameters (1), and what is known of them.
 #[must_use]
 pub fn tree_torques(
     mechanism: &Mechanism,
@@ -132,7 +170,8 @@ pub fn tree_torques(
     {
         let own = &parameters.as_slice()[leg_start(mechanism, k)..leg_start(mechanism, k + 1)];
         let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[range.clone()]);
-        let torques = leg_torques(leg, &motions[k], motion, own, &mechanism.gravity);
+        let torques = leg_torques(leg, &motions[k], motion, own, &mechanism.gravity)
+            + known_torques(leg, motion[0]);
         all.rows_mut(range.start, range.len()).copy_from(&torques);
     }
     all

@@ -1,7 +1,8 @@
 //! Layout and names of the standard parameters χ.
 //!
-//! Every body of a leg has 15, in the order of (2) and (5), and the coefficient of its joint's spring:
-//! [xx xy xz yy yz zz mx my mz m ia fv fs off k]. The platform and then the payload have the first
+//! Every body of a leg has 21, in the order of (2) and (5), then the coefficient of its joint's spring and
+//! friction that differs by direction or rises towards standstill or with a load:
+//! [xx xy xz yy yz zz mx my mz m ia fv fs off k fv_pos fs_pos fv_neg fs_neg fst fl]. The platform and then the payload have the first
 //! ten. Inertial ones are taken about the origin of the body's frame, in its axes. Columns run
 //! through the legs, within a leg through the joints, within a joint through the parameters.
 
@@ -9,11 +10,12 @@ use super::mechanism::Mechanism;
 use super::motion::Motion;
 
 /// Symbols of a leg body's parameters, in column order.
-pub const SYMBOLS: [&str; 15] = [
+pub const SYMBOLS: [&str; 21] = [
     "xx", "xy", "xz", "yy", "yz", "zz", "mx", "my", "mz", "m", "ia", "fv", "fs", "off", "k",
+    "fv_pos", "fs_pos", "fv_neg", "fs_neg", "fst", "fl",
 ];
 /// Number of parameters of a leg body.
-pub const BODY: usize = 15;
+pub const BODY: usize = 21;
 /// Number of inertial parameters, those of the platform and of the payload.
 pub const INERTIAL: usize = 10;
 

@@ -67,6 +67,7 @@ pub fn is_regular(mechanism: &Mechanism, state: &State) -> bool {
 #[must_use]
 pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
     let mut generator = Pcg64::seed_from_u64(seed);
+    let mut of_directions = Pcg64::seed_from_u64(seed.wrapping_add(1 << 40));
     let mut all = Vec::with_capacity(count(mechanism));
     for joint in mechanism.legs.iter().flat_map(|leg| &leg.joints) {
         all.extend(random_body(&mut generator));
@@ -78,6 +79,10 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
             within(-0.3, 0.3),
         ]);
         all.push(joint.spring.as_ref().map_or(0.0, |_| within(1.0, 10.0)));
+        let mut friction = || of_directions.random_range(0.1..1.0);
+        all.extend([friction(), friction(), friction(), friction()]);
+        all.push(joint.stribeck.map_or(0.0, |_| friction()));
+        all.push(joint.load.as_ref().map_or(0.0, |_| friction()));
     }
     if mechanism.motion != Motion::None {
         all.extend(random_body(&mut generator));

@@ -92,11 +92,15 @@ fn joint(joint: &mechanism::Joint) -> Joint {
             .map(|(of, factor)| (*of, factor.value()))
             .collect(),
         actuated: joint.actuated,
-        spring: joint.spring.clone().map(|spring| {
-            let formula = spring.formula;
-            Spring::new(move |q| formula.value(q))
-        }),
+        spring: joint.spring.clone().map(|spring| torque(spring.formula)),
+        known: joint.known.clone().map(torque),
+        load: joint.load.clone().map(|load| torque(load.formula)),
+        stribeck: joint.stribeck.map(Number::value),
     }
+}
+
+fn torque(formula: mechanism::Formula) -> Spring {
+    Spring::new(move |q| formula.value(q))
 }
 
 fn frame(placement: &mechanism::Placement) -> Frame {

@@ -212,10 +212,14 @@ fn every_word_of_a_value_is_documented() {
         .map(|word| word.trim_matches('"'))
         .collect();
     let words = UNITS.iter().chain(&FUNCTIONS).copied();
-    let symbols = StandardParameter::ALL.iter().map(|p| p.name());
+    let all = StandardParameter::ALL.iter();
+    let symbols = all.chain(&StandardParameter::DIRECTED).map(|p| p.name());
     let others = [
         "inertia",
         "friction",
+        "k",
+        "fst",
+        "fl",
         "all",
         "revolute",
         "prismatic",

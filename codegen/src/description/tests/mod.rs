@@ -3,6 +3,7 @@
 mod documentation;
 mod errors;
 mod experiments;
+mod friction;
 mod motors;
 mod robots;
 mod springs;

@@ -65,7 +65,7 @@ fn dry_friction(context: &Context<'_>) -> Vec<String> {
     let base = context.base.columns.iter().zip(&context.base.names);
     let is_dry = |column: usize| {
         let symbol = columns.get(column).map(|column| column.symbol);
-        matches!(symbol, Some(StandardParameter::Fs | StandardParameter::Off))
+        symbol.is_some_and(|symbol| symbol.has_sign() || symbol == StandardParameter::Off)
     };
     base.filter(|(column, _)| is_dry(**column))
         .map(|(_, name)| name.clone())

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use nalgebra::DMatrix;
-use overact::{Function, Model, StandardParameter};
+use overact::{Function, Model};
 use rayon::prelude::*;
 
 use super::{
@@ -158,7 +158,7 @@ fn narrower(runs: &[Log], settings: &Settings, (columns, lines): (usize, usize))
 fn coulomb(columns: &ColumnSet, base: &[usize]) -> Vec<usize> {
     let is_coulomb = |column: usize| {
         let column = columns.as_slice().get(column);
-        column.is_some_and(|column| column.symbol == StandardParameter::Fs)
+        column.is_some_and(|column| column.symbol.has_sign())
     };
     let places = base.iter().enumerate();
     let places = places.filter(|(_, column)| is_coulomb(**column));

@@ -291,6 +291,7 @@ pub(super) fn identification() -> Identification {
         calibration: None,
         gains: Vec::new(),
         gain_parameters: Vec::new(),
+        motors: Vec::new(),
         assumptions: vec![String::from("the gains are right")],
         verdicts: vec![
             verdict(ModelKind::Platform, Grade::UseListed, &["m_platformR"]),

@@ -301,7 +301,7 @@ fn draw_parameters(dice: &mut Dice, kind: JointKind) -> Vec<&'static str> {
         1 => Vec::new(),
         2 => vec!["inertia", "ia"],
         3 => vec!["m", "zz", "friction"],
-        // A spring's coefficient, the last symbol, belongs to joints with a spring alone.
+        // A spring's coefficient and friction of another kind, the last symbols, belong to joints with a spring alone.
         _ => dice.some(&crate::reference::parameters::SYMBOLS[..14]),
     }
 }

@@ -1,0 +1,70 @@
+//! Torques of the position that the description knows: subtracted from the measured ones, whatever is identified
+//! is the rest.
+
+use overact::{Function, Model};
+
+use super::motion::Motion;
+use crate::error::Error;
+
+/// Poses at which it is tried out whether a robot has such torques.
+const PROBES: u32 = 4;
+
+/// The torques that a robot needs at rest without any parameter.
+pub(super) struct KnownTorques<'a> {
+    model: &'a dyn Model,
+    /// Whether there are any.
+    present: bool,
+}
+
+impl<'a> KnownTorques<'a> {
+    /// Those of a model. Robots with a platform have none, and their inverse dynamics is not asked for.
+    pub(super) fn new(model: &'a dyn Model) -> Self {
+        let info = model.info();
+        let sizes = info.sizes;
+        let known = Self {
+            model,
+            present: false,
+        };
+        let probe = |number: u32| {
+            let step = |joint: usize| 0.1 * f64::from(number) * (1.0 + 0.3 * joint as f64);
+            let step: Vec<f64> = (0..sizes.dof).map(step).collect();
+            let mut pose = info.home_pose.to_vec();
+            model.displace(&mut pose, &step);
+            let found = known.at(&pose, 1);
+            found.is_ok_and(|torques| torques.iter().any(|torque| *torque != 0.0))
+        };
+        let is_serial = sizes.dof == sizes.joints && sizes.dof == sizes.actuators;
+        Self {
+            present: is_serial && (0..PROBES).any(probe),
+            ..known
+        }
+    }
+
+    /// The torques at poses.
+    fn at(&self, poses: &[f64], samples: usize) -> Result<Vec<f64>, overact::SampleError> {
+        let sizes = self.model.info().sizes;
+        let still = vec![0.0; samples * sizes.dof];
+        let parameters = vec![0.0; sizes.parameters + sizes.payload_parameters];
+        let mut torques = vec![0.0; samples * sizes.actuators];
+        let inputs: [&[f64]; 4] = [poses, &still, &still, &parameters];
+        self.model
+            .evaluate(Function::InverseDynamics, &inputs, &mut torques)?;
+        Ok(torques)
+    }
+
+    /// Subtracts them from the torques of a motion.
+    ///
+    /// # Errors
+    /// A sample at which they have no value.
+    pub(super) fn subtract(&self, motion: &mut Motion) -> Result<(), Error> {
+        if !self.present {
+            return Ok(());
+        }
+        let known = self.at(&motion.pose, motion.samples);
+        let known = known.map_err(|error| motion.outside(error.sample, error.error))?;
+        for (torque, known) in motion.torques.iter_mut().zip(known) {
+            *torque -= known;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,49 @@
+//! Parameters of the drives in front of their gears, where motors are described.
+
+use super::{
+    Contents,
+    markup::{Section, note},
+    table::{Cell, Table},
+};
+
+/// The section; empty where no motors are described.
+pub(super) fn section(contents: &Contents<'_>) -> Section {
+    let motors = &contents.identification.motors;
+    let rows = motors.iter().map(|one| {
+        vec![
+            Cell::text(&one.motor),
+            Cell::digits(Some(one.ratio), 6),
+            Cell::text(&one.name),
+            Cell::digits(Some(one.value), 5),
+            Cell::digits(Some(one.deviation), 2),
+            Cell::text(&one.unit).class("unit"),
+        ]
+    });
+    let right = |title: &str| Cell::text(title).class("n");
+    let table = Table {
+        caption: String::from("Base parameters of drives, in front of their gears"),
+        header: vec![vec![
+            Cell::text("motor"),
+            right("ratio"),
+            Cell::text("parameter"),
+            right("at the motor"),
+            right("deviation"),
+            Cell::text("unit"),
+        ]],
+        rows: rows.collect(),
+    };
+    let body = match motors.is_empty() {
+        true => String::new(),
+        false => {
+            table.html()
+                + &note(
+                    "Inertia and viscous friction are smaller by the square of the ratio, dry friction by its magnitude, an offset by the ratio. Parameters into which others are regrouped are none of the motor alone.",
+                )
+        }
+    };
+    Section {
+        id: "motors",
+        title: "Motors",
+        body,
+    }
+}
