@@ -8,6 +8,7 @@ use crate::lowering::Array;
 use crate::model::{CompiledFunction, RobotModel};
 use crate::writing::body::Body;
 use crate::writing::labels::Labels;
+use crate::writing::operations;
 use crate::writing::outline::{Outline, Table};
 use overact_core::Extent;
 
@@ -204,7 +205,8 @@ fn documented(
         false => "@return 0, or an error: an input that is not finite.",
     }.to_owned());
     lines.push(String::new());
-    lines.push(format!("{}.", function.program.cost()));
+    let operations = operations::of_function(&model.cost(function));
+    lines.extend(operations.iter().map(|line| line.trim_start().to_owned()));
     documentation(&lines)
 }
 
@@ -214,6 +216,7 @@ fn size(model: &RobotModel, argument: &str, naming: &Naming) -> String {
         "pose" | "start" => &["POSE"],
         "joints" => &["JOINTS"],
         "parameters" => &["PARAMETERS", "PAYLOAD_PARAMETERS"],
+        "base_parameters" => &["BASE_PARAMETERS", "PAYLOAD_PARAMETERS"],
         "preload" => &["REDUNDANCY"],
         "twist" | "acceleration" => &["DOF"],
         "joint_velocities" | "joint_accelerations" if model.is_tree() => &["DOF"],

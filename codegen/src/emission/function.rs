@@ -7,6 +7,7 @@ use crate::lowering::Array;
 use crate::model::{CompiledFunction, RobotModel};
 use crate::writing::body::Body;
 use crate::writing::labels::Labels;
+use crate::writing::operations;
 use crate::writing::outline::{Outline, Table};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -137,7 +138,7 @@ fn documentation(
     });
     lines.extend(table.map(|table| format!(" Columns: {table}.")));
     lines.push(String::new());
-    lines.extend(super::operations::of_function(&model.cost(function)));
+    lines.extend(operations::of_function(&model.cost(function)));
     if function.program.pieces > 0 {
         lines.push(format!(
             " Too large to be searched as a whole: fewer operations were searched in {} pieces.",

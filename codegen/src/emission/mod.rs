@@ -18,10 +18,9 @@ mod function;
 mod inverse;
 mod layout;
 mod model_impl;
-mod operations;
 
 use crate::model::RobotModel;
-use crate::writing::{labels::Labels, legend, text};
+use crate::writing::{labels::Labels, legend, operations, text};
 use function::Item;
 use layout::Sections;
 use proc_macro2::{Ident, Span, TokenStream};

@@ -13,6 +13,7 @@ mod dimensions;
 pub mod labels;
 pub mod legend;
 mod names;
+pub mod operations;
 pub mod outline;
 pub mod statement;
 #[cfg(test)]
