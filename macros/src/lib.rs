@@ -93,7 +93,9 @@ fn effort(input: ParseStream<'_>) -> syn::Result<Effort> {
 fn functions(input: ParseStream<'_>) -> syn::Result<Choice> {
     let list;
     let bracket = bracketed!(list in input);
-    let names = Punctuated::<LitStr, Token![,]>::parse_terminated(&list)?;
+    let names = Punctuated::<LitStr, Token![,]>::parse_terminated(&list);
+    let message = "expected names of functions in quotes, `[\"control\", \"jacobian\"]`";
+    let names = names.map_err(|e| syn::Error::new(e.span(), message))?;
     let texts: Vec<String> = names.iter().map(LitStr::value).collect();
     if texts.is_empty() {
         let message = "name at least one function, or leave `functions` out for all of them";
@@ -122,12 +124,11 @@ fn read(attribute: TokenStream, item: TokenStream) -> syn::Result<(Arguments, It
         let message =
             "expected the path of a robot's description: `#[redundant_robot(\"robot.toml\")]`";
         let is_path = is_empty || e.to_string().contains("string literal");
-        let message = if is_path {
-            message.to_owned()
-        } else {
-            e.to_string()
-        };
-        syn::Error::new(e.span(), message)
+        // Others may be several, which stay together.
+        match is_path {
+            true => syn::Error::new(e.span(), message),
+            false => e,
+        }
     })?;
     let item = syn::parse::<Item>(item)?;
     let message = "`#[redundant_robot]` goes on a struct without fields and generics, for instance `struct DualV;`";

@@ -14,4 +14,7 @@ pub struct Nothing;
 #[redundant_robot("descriptions/capitals.toml", functions = ["joints"], functions = ["bias"])]
 pub struct Twice;
 
+#[redundant_robot("descriptions/capitals.toml", functions = [joints])]
+pub struct Unquoted;
+
 fn main() {}
