@@ -2,7 +2,7 @@
 //! and a hundred random ones, and the runs with their limits:
 //! `cargo run --release -p overact-robot --example excitation -- robots/dualv.toml docs/excitation_dualv.svg`.
 
-use overact::{Function, Model};
+use overact::{Columns, Function, Model};
 use overact_report::{Plot, sheet};
 use overact_robot::{CaseOfRuns, Error, Excitation, ExcitationEffort, LimitKind, Robot};
 use overact_simulation::{Trajectory, sample};
@@ -144,7 +144,7 @@ fn motion(robot: &Robot, found: &Excitation, run: &str) -> Vec<Plot> {
         (LimitKind::Velocity, rates, sizes.actuators, info.actuators),
         (
             LimitKind::Torque,
-            ask(Function::InverseDynamics, &states),
+            ask(Function::InverseDynamics(Columns::Standard), &states),
             sizes.actuators,
             info.actuators,
         ),

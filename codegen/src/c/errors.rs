@@ -15,7 +15,7 @@ struct Kind {
 }
 
 /// Inputs that functions have, in the order of the numbers of their errors.
-const INPUTS: [&str; 14] = [
+const INPUTS: [&str; 15] = [
     "pose",
     "joints",
     "twist",
@@ -30,6 +30,7 @@ const INPUTS: [&str; 14] = [
     "preload",
     "start",
     "inverse_jacobian",
+    "base_parameters",
 ];
 
 /// All errors that a robot's functions may have, whichever functions are written: their numbers are those of

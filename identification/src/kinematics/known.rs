@@ -1,7 +1,7 @@
 //! Torques of the position that the description knows: subtracted from the measured ones, whatever is identified
 //! is the rest.
 
-use overact::{Function, Model};
+use overact::{Columns, Function, Model};
 
 use super::motion::Motion;
 use crate::error::Error;
@@ -47,8 +47,11 @@ impl<'a> KnownTorques<'a> {
         let parameters = vec![0.0; sizes.parameters + sizes.payload_parameters];
         let mut torques = vec![0.0; samples * sizes.actuators];
         let inputs: [&[f64]; 4] = [poses, &still, &still, &parameters];
-        self.model
-            .evaluate(Function::InverseDynamics, &inputs, &mut torques)?;
+        self.model.evaluate(
+            Function::InverseDynamics(Columns::Standard),
+            &inputs,
+            &mut torques,
+        )?;
         Ok(torques)
     }
 
