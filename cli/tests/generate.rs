@@ -244,7 +244,15 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
     ] {
         assert!(said.contains(words), "no `{words}` in\n{said}");
     }
-    bench.write("parameters.toml", "[parameters]\nm_2 = 1.0\n");
+    let joint = |j: usize| {
+        let symbols = ["zz", "mx", "my", "m", "ia", "fv", "fs", "off"];
+        let symbols = symbols.iter().filter(|symbol| j == 2 || **symbol != "m");
+        symbols
+            .map(|symbol| format!("{symbol}_{j} = 1.0\n"))
+            .collect::<String>()
+    };
+    let all = format!("[parameters]\n{}{}", joint(1), joint(2));
+    bench.write("parameters.toml", &all);
     let told = [
         "--functions",
         "idm_red_platform",

@@ -35,6 +35,7 @@ fn settings() -> Settings {
         (4, 100.0)
     );
     assert_eq!(settings.decimation, 10);
+    settings.difference_order = 2;
     settings.skip_start = 49;
     settings.normalisation = Normalisation::SampleVariance;
     settings

@@ -2,6 +2,7 @@
 
 use crate::driver::Call;
 use overact::{Error, Function, Model};
+use overact_codegen::derivation::BodyParameter;
 use overact_codegen::evaluation::Rows;
 use overact_codegen::internals::random_states;
 use overact_codegen::{CompiledFunction, RobotModel};
@@ -157,23 +158,25 @@ pub(crate) fn states(robot: &InterpretedRobot, count: usize, seed: u64) -> Vec<I
         let mut start = state.pose.clone();
         let step = dice.many(r, 0.02);
         robot.displace(&mut start, &step);
-        let standard = model
-            .selection
-            .standard
-            .iter()
-            .chain(&model.selection.payload);
-        let parameters = standard.map(|&parameter| {
-            let name = model.parameter_name(parameter);
-            let is_large = ["m_", "xx_", "yy_", "zz_", "ia_"]
-                .iter()
-                .any(|p| name.starts_with(p));
-            match is_large {
-                true => 2.0 + dice.next(),
-                false => 0.1 * dice.next(),
-            }
-        });
+        let mut numbers = |parameters: &[BodyParameter]| -> Vec<f64> {
+            let all = parameters.iter().chain(&model.selection.payload);
+            all.map(|&parameter| {
+                let name = model.parameter_name(parameter);
+                let is_large = ["m_", "xx_", "yy_", "zz_", "ia_"]
+                    .iter()
+                    .any(|p| name.starts_with(p));
+                match is_large {
+                    true => 2.0 + dice.next(),
+                    false => 0.1 * dice.next(),
+                }
+            })
+            .collect()
+        };
+        let parameters = numbers(&model.selection.standard);
+        let base_parameters = numbers(&model.selection.base);
         BTreeMap::from([
-            ("parameters", parameters.collect()),
+            ("parameters", parameters),
+            ("base_parameters", base_parameters),
             ("pose", state.pose),
             ("joints", state.joints),
             ("joint_velocities", state.twist.clone()),

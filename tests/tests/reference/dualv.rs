@@ -104,7 +104,8 @@ fn tree_torques_are_the_corrected_ones() -> Result<(), Error> {
             let start = BODY * 3 * leg;
             chi.rows_mut(start + 2 * BODY, INERTIAL).fill(0.0);
             for body in 0..3 {
-                chi[start + BODY * body + 13] = 0.0;
+                // Friction of other kinds is not in (51) either.
+                chi.rows_mut(start + BODY * body + 13, BODY - 13).fill(0.0);
                 if body > 0 {
                     chi[start + BODY * body + 10] = 0.0;
                 }

@@ -202,7 +202,8 @@ fn torques_pass_the_low_pass_once() {
     assert_eq!(
         both,
         [
-            "3:20 `filter_equations`: with `filter_torques` the torques would pass the low-pass twice"
+            "3:20 with `filter_torques` the torques would pass the low-pass twice; `filter_equations` filters \
+             torques and columns alike; leave out `filter_torques`"
         ]
     );
     let word = errors("[identification]\nfilter_equations = 6");
