@@ -143,7 +143,7 @@ fn measured(path: &Path, mapping: &Mapping, count: usize) {
     let before = ALLOCATOR.current_usage_as_mb();
     let start = Instant::now();
     let log = read(path, mapping, false).unwrap_or_else(|error| panic!("{error}"));
-    // At a third of the rate a log of the default tier is small.
+    // At a lower rate a small file has few samples.
     assert!(mapping.resample.is_some() || !log.in_memory());
     let looked = start.elapsed();
     let mut reader = log.reader().expect("a reader");
