@@ -42,7 +42,7 @@ const TWICE: [([&str; 3], &str); 3] = [
 /// Reports a list that has friction for both directions and for each.
 pub(super) fn check(item: &Item<'_, '_>, parameters: &[StandardParameter]) {
     let has = |name: &&str| parameters.iter().any(|one| one.name() == *name);
-    let Some((names, what)) = TWICE.iter().find(|(names, _)| names.iter().all(|n| has(n))) else {
+    let Some((names, what)) = TWICE.iter().find(|(names, _)| names.iter().all(&has)) else {
         return;
     };
     let [whole, positive, negative] = names;
