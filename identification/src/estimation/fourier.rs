@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::DMatrix;
 #[cfg(target_arch = "x86_64")]
 use pulp::NullaryFnOnce;
 
@@ -76,6 +77,17 @@ impl Fourier {
     pub(crate) fn single(&self, signal: &[f64]) -> Spectrum {
         let [spectrum, _] = self.pair(signal, &[]);
         spectrum
+    }
+
+    /// The spectra of the columns of a matrix.
+    pub(crate) fn columns(&self, signals: &DMatrix<f64>) -> Vec<Spectrum> {
+        let count = signals.nrows().max(1);
+        let pairs = signals.as_slice().chunks(2 * count);
+        let spectra = pairs.flat_map(|pair| {
+            let (first, second) = pair.split_at(count.min(pair.len()));
+            self.pair(first, second)
+        });
+        spectra.take(signals.ncols()).collect()
     }
 
     /// Sums Σ_k x_k x_(k+l) of a signal with the given squared magnitudes, for lags l below `lags`.

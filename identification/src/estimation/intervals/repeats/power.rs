@@ -1,0 +1,239 @@
+//! Cross spectra of the lines of a piece.
+
+use crate::estimation::fourier::Spectrum;
+
+/// A Hermitian matrix over pairs of lines for each frequency from 0 to half the sampling frequency.
+pub(super) struct Powers {
+    lines: usize,
+    /// Below the diagonal and on it, row by row: real and imaginary parts over frequency.
+    pairs: Vec<[Vec<f64>; 2]>,
+}
+
+impl Powers {
+    /// Σ ρ_j ρ_k* over the residuals of each line, which are as many for each.
+    pub(super) fn new(residuals: &[Vec<Spectrum>], bins: usize) -> Self {
+        Self::from_fn(residuals.len(), bins, |j, k, bin| {
+            let both = residuals[j].iter().zip(&residuals[k]);
+            both.fold([0.0; 2], |[real, imaginary], (a, b)| {
+                let (x, y, u, v) = (a.real[bin], a.imaginary[bin], b.real[bin], b.imaginary[bin]);
+                [real + x * u + y * v, imaginary + y * u - x * v]
+            })
+        })
+    }
+
+    /// The matrices with entries `of` row, column and frequency.
+    pub(super) fn from_fn(
+        lines: usize,
+        bins: usize,
+        of: impl Fn(usize, usize, usize) -> [f64; 2],
+    ) -> Self {
+        let below = (0..lines).flat_map(|j| (0..=j).map(move |k| (j, k)));
+        let pairs = below.map(|(j, k)| {
+            let (real, imaginary) = (0..bins).map(|bin| of(j, k, bin).into()).unzip();
+            [real, imaginary]
+        });
+        Self {
+            lines,
+            pairs: pairs.collect(),
+        }
+    }
+
+    fn pair(&self, j: usize, k: usize) -> &[Vec<f64>; 2] {
+        &self.pairs[j * (j + 1) / 2 + k]
+    }
+
+    /// Σ_jk Re(c_j* M_jk c_k) at a frequency.
+    pub(super) fn quadratic(&self, c: &[[f64; 2]], bin: usize) -> f64 {
+        let mut sum = 0.0;
+        let mut pairs = self.pairs.iter();
+        for (j, [a, b]) in c.iter().enumerate() {
+            for (([d, e], k), [real, imaginary]) in c.iter().zip(0..=j).zip(&mut pairs) {
+                let both = if k == j { 1.0 } else { 2.0 };
+                sum += both * ((a * d + b * e) * real[bin] - (a * e - b * d) * imaginary[bin]);
+            }
+        }
+        sum
+    }
+}
+
+/// The frequencies on either side of one that are its neighbours, as distances.
+pub(super) struct Neighbours {
+    padding: f64,
+    nearest: usize,
+    farthest: usize,
+}
+
+impl Neighbours {
+    /// Those of a piece of `count` equations, padded to so many frequencies, as far as `cosines` reach.
+    pub(super) fn new(count: usize, bins: usize, cosines: usize) -> Self {
+        let padding = 2.0 * bins.saturating_sub(1) as f64 / count.max(1) as f64;
+        let reach = 0.5 * cosines as f64 * padding;
+        Self {
+            padding,
+            nearest: (0.5 * padding).ceil() as usize,
+            farthest: (reach.ceil() as usize).max(1),
+        }
+    }
+
+    /// How many frequencies tell one thing.
+    pub(super) const fn padding(&self) -> f64 {
+        self.padding
+    }
+
+    /// Means of the neighbours around each frequency, freed of what the fit has taken away.
+    pub(super) fn means(&self, powers: &Powers, taken: &Powers) -> Powers {
+        let lines = powers.lines;
+        let left: Vec<Vec<f64>> = (0..lines)
+            .map(|j| {
+                let own = &taken.pair(j, j)[0];
+                own.iter().map(|part| 1.0 - part.min(1.0)).collect()
+            })
+            .collect();
+        let below = (0..lines).flat_map(|j| (0..=j).map(move |k| (j, k)));
+        let pairs = below.map(|(j, k)| {
+            let weights = left[j].iter().zip(&left[k]).map(|(a, b)| (a * b).sqrt());
+            self.mean(powers.pair(j, k), &weights.collect::<Vec<_>>())
+        });
+        Powers {
+            lines,
+            pairs: pairs.collect(),
+        }
+    }
+
+    /// The sum of the values of the neighbours over that of their weights.
+    fn mean(&self, [real, imaginary]: &[Vec<f64>; 2], weights: &[f64]) -> [Vec<f64>; 2] {
+        let bins = weights.len();
+        // Beyond either end stand the conjugates of the frequencies inside.
+        let inside = |place: isize| -> (usize, f64) {
+            let last = bins as isize - 1;
+            if place < 0 {
+                (place.unsigned_abs().min(bins - 1), -1.0)
+            } else if place > last {
+                ((2 * last - place).max(0).unsigned_abs(), -1.0)
+            } else {
+                (place.unsigned_abs(), 1.0)
+            }
+        };
+        let first = -(self.farthest as isize);
+        let mut sums = vec![[0.0; 3]];
+        for place in first..bins as isize + self.farthest as isize {
+            let (bin, sign) = inside(place);
+            let own = [real[bin], sign * imaginary[bin], weights[bin]];
+            let last = sums[sums.len() - 1];
+            sums.push([0, 1, 2].map(|part| last[part] + own[part]));
+        }
+        let between = |from: isize, to: isize| -> [f64; 3] {
+            let place = |bin: isize| (bin - first) as usize;
+            [0, 1, 2].map(|part| sums[place(to) + 1][part] - sums[place(from)][part])
+        };
+        let (near, far) = (self.nearest as isize, self.farthest as isize);
+        let mean = |bin: usize| {
+            let bin = bin as isize;
+            let before = between(bin - far, bin - near);
+            let after = between(bin + near, bin + far);
+            let [x, y, weight] = [0, 1, 2].map(|part| before[part] + after[part]);
+            (x / weight, y / weight)
+        };
+        let (real, imaginary) = (0..bins).map(mean).unzip();
+        [real, imaginary]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Neighbours, Powers};
+    use crate::estimation::fourier::Spectrum;
+    use nalgebra::Complex;
+
+    const BINS: usize = 9;
+
+    /// The residual of a line.
+    fn line(residual: impl Fn(f64) -> [f64; 2]) -> Vec<Spectrum> {
+        let parts = || (0..BINS).map(|bin| residual(bin as f64));
+        vec![Spectrum {
+            real: parts().map(|[real, _]| real).collect(),
+            imaginary: parts().map(|[_, imaginary]| imaginary).collect(),
+        }]
+    }
+
+    /// The mean of ρ_a ρ_b* around a frequency by its definition, on the whole circle of frequencies.
+    fn mean(
+        neighbours: &Neighbours,
+        [a, b]: [&Spectrum; 2],
+        taken: [fn(f64) -> f64; 2],
+        bin: usize,
+    ) -> Complex<f64> {
+        let size = 2 * (BINS as isize - 1);
+        let (mut sum, mut weight) = (Complex::ZERO, 0.0);
+        for distance in neighbours.nearest as isize..=neighbours.farthest as isize {
+            for place in [bin as isize - distance, bin as isize + distance] {
+                let place = place.rem_euclid(size);
+                let inside = place.min(size - place) as usize;
+                let of = |line: &Spectrum| {
+                    let (x, y) = (line.real[inside], line.imaginary[inside]);
+                    Complex::new(x, if inside as isize == place { y } else { -y })
+                };
+                sum += of(a) * of(b).conj();
+                let left = taken.map(|taken| 1.0 - taken(inside as f64));
+                weight += (left[0] * left[1]).sqrt();
+            }
+        }
+        sum / weight
+    }
+
+    #[test]
+    fn neighbours_are_averaged_on_the_circle_of_frequencies() {
+        // At the ends, which are their own conjugates, the transform of real numbers is real.
+        let imaginary = |bin: f64| bin * (bin - (BINS - 1) as f64);
+        let residuals = [
+            line(|k| [1.0 + k * k, 0.3 * imaginary(k)]),
+            line(|k| [5.0 - 2.0 * k, 0.7 * imaginary(k)]),
+        ];
+        let parts: [fn(f64) -> f64; 2] = [|k| 0.02 * k, |k| 0.5 - 0.03 * k];
+        let taken = Powers::from_fn(2, BINS, |j, k, bin| {
+            let own = if j == k { parts[j](bin as f64) } else { 0.0 };
+            [own, 0.0]
+        });
+        let powers = Powers::new(&residuals, BINS);
+        for (nearest, farthest) in [(1, 1), (1, 3), (2, 8)] {
+            let neighbours = Neighbours {
+                padding: 2.0,
+                nearest,
+                farthest,
+            };
+            let means = neighbours.means(&powers, &taken);
+            for (j, k) in [(0, 0), (1, 0), (1, 1)] {
+                let [real, imaginary] = means.pair(j, k);
+                let (both, taken) = ([j, k].map(|j| &residuals[j][0]), [j, k].map(|j| parts[j]));
+                for bin in 0..BINS {
+                    let expected = mean(&neighbours, both, taken, bin);
+                    let found = Complex::new(real[bin], imaginary[bin]);
+                    let miss = (found - expected).norm() / expected.norm().max(1.0);
+                    assert!(miss < 1e-12, "{bin}: {found} is not {expected}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_power_of_a_sum_of_lines_is_the_square_of_the_sum() {
+        let residuals = [
+            line(|k| [1.0 + k * k, 0.3 * k]),
+            line(|k| [5.0 - 2.0 * k, k - 3.0]),
+        ];
+        let powers = Powers::new(&residuals, BINS);
+        let c = [[0.3, -1.2], [2.0, 0.7]];
+        for bin in 0..BINS {
+            let sum: Complex<f64> = c
+                .iter()
+                .zip(&residuals)
+                .map(|([a, b], line)| {
+                    let rho = Complex::new(line[0].real[bin], line[0].imaginary[bin]);
+                    Complex::new(*a, *b).conj() * rho
+                })
+                .sum();
+            let found = powers.quadratic(&c, bin);
+            assert!((found - sum.norm_sqr()).abs() < 1e-12 * sum.norm_sqr());
+        }
+    }
+}
