@@ -12,7 +12,7 @@ use std::{
 
 use common::EMPS;
 use overact::Model;
-use overact_identification::{Gain, Log, Mapping, Time, data::read};
+use overact_identification::{Dataset, Gain, Log, Mapping, Settings, Time, data::read, identify};
 
 /// Two joints, with velocities.
 fn mapping(time: &str, [positions, velocities, torques]: [[&str; 2]; 3]) -> Mapping {
@@ -115,6 +115,66 @@ fn all_are_the_log(folder: &Path) {
     for (name, mapping) in files() {
         let log = read(&folder.join(name), &mapping, false);
         is_the_log(&log.unwrap_or_else(|error| panic!("{error}")), name);
+    }
+}
+
+/// What is estimated of a drive that moves as the second joint under the torque of the first, and what is left.
+fn estimated(path: &Path, mapping: &Mapping) -> Vec<f64> {
+    let own = Mapping {
+        positions: mapping.positions[1..].to_vec(),
+        torques: mapping.torques[..1].to_vec(),
+        torque_gain: mapping.torque_gain[..1].to_vec(),
+        position_scale: vec![0.01],
+        velocities: Vec::new(),
+        ..mapping.clone()
+    };
+    let run = read(path, &own, false).unwrap_or_else(|error| panic!("{error}"));
+    let mut settings = Settings::for_bandwidth(1.0, 100.0, &EMPS.info());
+    (settings.decimation, settings.filter_cutoff_hz) = (1, 20.0);
+    let dataset = Dataset {
+        runs: &[run],
+        validation: &[],
+        true_values: None,
+        variants: &[],
+    };
+    let result = identify(&EMPS, &dataset, &settings, &|_| {});
+    let result = result.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let first = result.estimates.first().expect("an estimate");
+    let parameters = first.parameters.iter();
+    let values = parameters.flat_map(|one| [one.value, one.standard_deviation]);
+    values.collect()
+}
+
+/// The same samples as text.
+fn text(path: &Path) {
+    let rows = (0..200_u32).map(|k| {
+        let number = f64::from(k);
+        let [t, q, tau] = [
+            number / 100.0,
+            f64::from(k % 13) / 3.0,
+            f64::from(k % 16) / 3.0,
+        ];
+        format!("{t},{q},{tau}\n")
+    });
+    let rows: String = rows.collect();
+    std::fs::write(path, format!("t,q2,tau1\n{rows}")).expect("written");
+}
+
+#[test]
+fn every_format_gives_the_same_estimates() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("same.csv");
+    text(&path);
+    let flat = [["q1", "q2"], ["dq1", "dq2"], ["tau1", "tau2"]];
+    let expected = estimated(&path, &mapping("t", flat));
+    assert!(expected.len() >= 6, "{expected:?}");
+    for (name, mapping) in files() {
+        let own = estimated(&kept().join(name), &mapping);
+        assert_eq!(own.len(), expected.len(), "{name}");
+        for (own, expected) in own.iter().zip(&expected) {
+            let off = (own / expected - 1.0).abs();
+            assert!(off < 1e-6, "{name}: {own}, as text {expected}");
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 //! Whether a robot's base was tilted when its logs were made: the direction of gravity for which the model explains
-//! the torques of one run best, what that does to the prediction of another one, and the residuals as plots:
+//! the torques of one run best, what tilts do to the prediction of another one, as plots:
 //! `cargo run --release -p overact-robot --example tilt -- robots/dvrk_mtm.toml TRAINING TEST docs/dvrk_mtm.svg`.
 //!
 //! The description's line `gravity = [...]` is taken to say how large it is.
@@ -15,6 +15,9 @@ use std::{error::Error, path::Path, process::ExitCode};
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.81;
+
+/// Steps from no tilt to twice the best one, an even number.
+const STEPS: u32 = 10;
 
 /// Tilt by which the weighted residual is explored, rad.
 const STEP: f64 = 0.03;
@@ -45,22 +48,27 @@ fn told(description: &str, logs: [&String; 2], file: &str) -> Result<(), Box<dyn
         tilt.x.to_degrees(),
         tilt.y.to_degrees()
     );
-    let mut results = Vec::new();
-    for (name, tilt) in [("as described", Vector2::zeros()), ("gravity tilted", tilt)] {
-        let robot = tilted(&text, tilt)?;
+    let (mut tilts, mut all) = (Vec::new(), Vec::new());
+    for step in 0..=STEPS {
+        let factor = 2.0 * f64::from(step) / f64::from(STEPS);
+        let robot = tilted(&text, tilt * factor)?;
         let (training, test) = logs.split_at(1);
         let result = Identifier::new(&robot)
             .runs(training)
             .validation(test)
             .run()?;
-        for stage in [Stage::Base, Stage::Consistent] {
-            let errors = errors(&result, stage);
-            let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
-            println!("{name}, {}: {errors:.1?}, mean {mean:.2} %", stage.name());
-        }
-        results.push((name, result));
+        tilts.push((tilt * factor).norm().to_degrees());
+        all.push([Stage::Base, Stage::Consistent].map(|stage| errors(&result, stage)));
     }
-    std::fs::write(file, sheet(&plots(&results), 2))?;
+    for (name, step) in [("as described", 0), ("gravity tilted", STEPS as usize / 2)] {
+        for (stage, errors) in ["base", "consistent"].iter().zip(&all[step]) {
+            let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
+            println!("{name}, {stage}: {errors:.1?}, mean {mean:.2} %");
+        }
+    }
+    let names = plain.model().info().actuators.iter();
+    let names: Vec<String> = names.map(|name| (*name).to_owned()).collect();
+    std::fs::write(file, sheet(&plots(&names, &tilts, &all), 3))?;
     Ok(())
 }
 
@@ -124,42 +132,20 @@ fn errors(result: &Identification, stage: Stage) -> Vec<f64> {
     torques.map(|one| one.relative_error_percent).collect()
 }
 
-/// What each actuator's prediction of the held-out run is off by, and the measured torque.
-fn plots(results: &[(&str, Identification)]) -> Vec<Plot> {
-    let own = |result: &Identification| {
-        let mut all = result.figures.predictions.iter();
-        let found = all.find(|one| !one.identified && one.stage == Stage::Base);
-        found.map(|one| one.torques.clone()).unwrap_or_default()
-    };
-    let all: Vec<_> = results
-        .iter()
-        .map(|(name, own_result)| (name, own(own_result)))
-        .collect();
-    let Some((_, first)) = all.first() else {
-        return Vec::new();
-    };
-    let plot = |(joint, series): (usize, &overact_identification::Series)| {
-        let residual = all.iter().filter_map(|(name, torques)| {
-            let own = torques.get(joint)?;
-            let both = own.measured.iter().zip(&own.predicted);
-            let left: Vec<f64> = both.map(|(a, b)| a - b).collect();
-            Some((
-                format!("measured - predicted, {name}"),
-                own.time.clone(),
-                left,
-            ))
+/// Errors of each actuator's prediction of the held-out run over the tilt, in the direction of the best one.
+fn plots(names: &[String], tilts: &[f64], all: &[[Vec<f64>; 2]]) -> Vec<Plot> {
+    let plot = |(joint, name): (usize, &String)| {
+        let stages = ["base parameters", "consistent"].into_iter().enumerate();
+        let curves = stages.map(|(stage, what)| {
+            let own = all.iter().filter_map(|one| one[stage].get(joint).copied());
+            (what.to_owned(), tilts.to_vec(), own.collect())
         });
-        let measured = (
-            String::from("measured"),
-            series.time.clone(),
-            series.measured.clone(),
-        );
         Plot {
-            title: format!("Joint {} of the test run", series.name),
-            axes: [String::from("t (s)"), String::from("N m")],
-            curves: std::iter::once(measured).chain(residual).collect(),
+            title: format!("Joint {name} of the test run: error, %"),
+            axes: [String::from("tilt of gravity (deg)"), String::from("%")],
+            curves: curves.collect(),
             ..Plot::default()
         }
     };
-    first.iter().enumerate().map(plot).collect()
+    names.iter().enumerate().map(plot).collect()
 }
