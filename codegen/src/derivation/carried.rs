@@ -48,7 +48,8 @@ impl<'a> Mount<'a> {
     #[must_use]
     pub fn of_leg(arena: &'a Arena, leg: &Leg) -> Vec<Option<Self>> {
         let mut mounts = vec![None; leg.joints.len()];
-        if let (Some(End::Rigid(placement)), Some(last)) = (&leg.end, mounts.last_mut()) {
+        let on_platform = leg.end.as_ref().filter(|_| leg.end_body.is_none());
+        if let (Some(End::Rigid(placement)), Some(last)) = (on_platform, mounts.last_mut()) {
             *last = Some(Self {
                 rotation: constant_rotation(arena, placement.rotation),
                 at: placement.at,
