@@ -136,11 +136,7 @@ fn columns(function: &CompiledFunction) -> Option<Table> {
 #[must_use]
 pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
     let platform = model.mechanism.platform.as_ref();
-    let coordinates = || {
-        platform
-            .map(|p| p.motion.pose_coordinates().join(", "))
-            .unwrap_or_default()
-    };
+    let coordinates = || model.mechanism.pose_coordinates().join(", ");
     let rates = || {
         platform
             .map(|p| p.motion.twist_names().join(", "))

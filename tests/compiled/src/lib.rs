@@ -14,6 +14,7 @@ macro_rules! robot {
 
 pub use overact_robots::{DualV, Emps, FiveBar, Rx90, ThreeLegPoint};
 
+robot!(ankle: Ankle);
 robot!(delta: Delta);
 robot!(delta_4: Delta4);
 robot!(dvrk_mtm: DvrkMtm);
@@ -42,6 +43,7 @@ use overact::Model;
 #[must_use]
 pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
     Some(match stem {
+        "ankle" => &Ankle,
         "delta" => &Delta,
         "delta_4" => &Delta4,
         "dualv" => &DualV,
