@@ -168,6 +168,19 @@ pub(super) fn blocked(
     let place = &description.legs[index];
     let columns = missed.column_iter().map(|column| column.amax());
     let blocked: Vec<f64> = columns.collect();
+    if mechanism.skeleton().is_some() {
+        let names = mechanism.coordinates().into_iter().zip(&blocked);
+        let names: Vec<String> = names
+            .filter(|(_, size)| **size > 1e-6)
+            .map(|(name, _)| format!("`{name}`"))
+            .collect();
+        return Diagnostic::new(
+            format!("chain `{}` cannot follow the skeleton's motion", place.name.value),
+            place.span.clone(),
+        )
+        .label(format!("it blocks {}", listed(&names)))
+        .help("add a passive joint to the chain, or an end that leaves more free (`type`, `along`)");
+    }
     Diagnostic::new(
         format!("leg `{}` cannot follow the platform's motion", place.name.value),
         place.span.clone(),
