@@ -33,6 +33,8 @@ robot!(scotch_yoke: ScotchYoke);
 robot!(spherical_3rrr: Spherical3Rrr);
 robot!(spherical_4rrr: Spherical4Rrr);
 robot!(stanford: Stanford);
+robot!(tricept: Tricept);
+robot!(tricept_4: Tricept4);
 robot!(two_motor_axis: TwoMotorAxis);
 robot!(tx40: Tx40);
 
@@ -70,6 +72,8 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
         "spherical_4rrr" => &Spherical4Rrr,
         "stanford" => &Stanford,
         "three_leg_point" => &ThreeLegPoint,
+        "tricept" => &Tricept,
+        "tricept_4" => &Tricept4,
         "two_motor_axis" => &TwoMotorAxis,
         "tx40" => &Tx40,
         _ => return None,

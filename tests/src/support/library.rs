@@ -38,6 +38,8 @@ macro_rules! library {
             spherical_4rrr: Spherical4Rrr,
             stanford: Stanford,
             three_leg_point: ThreeLegPoint,
+            tricept: Tricept,
+            tricept_4: Tricept4,
             two_motor_axis: TwoMotorAxis,
             tx40: Tx40,
         }
