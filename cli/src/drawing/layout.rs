@@ -3,10 +3,7 @@
 use super::scene::{NOTHING, Part, Point, Scene};
 use super::{sphere, walk};
 use nalgebra::Vector3;
-use overact_codegen::mechanism::{
-    End, Mechanism,
-    numeric::platform_frame,
-};
+use overact_codegen::mechanism::{End, Mechanism, numeric::platform_frame};
 
 /// The scene of a mechanism; `pixel` is the length of one pixel, m, where it is known.
 pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {

@@ -87,7 +87,9 @@ impl<'a> Robot<'a> {
         for (joint, body) in motion.bodies[index].iter().enumerate() {
             let own = |p: BodyParameter| p.of_joint(index, joint);
             let inertia = Inertia::of(self.arena, values, &own);
-            let rotor = values.iter().filter(|(p, _)| own(*p) == Some(StandardParameter::Ia));
+            let rotor = values
+                .iter()
+                .filter(|(p, _)| own(*p) == Some(StandardParameter::Ia));
             let rotor = rotor.fold(self.arena.zero(), |sum, (_, value)| sum + *value);
             let rate = &state.rates.joint[joint];
             for (j, [v, o]) in body.partials.iter().enumerate() {

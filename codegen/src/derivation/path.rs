@@ -94,10 +94,13 @@ impl<'a> Path<'a> {
         };
         let count = skeleton.independent().count();
         path.columns = (0..count).map(|i| path.column(i)).collect();
-        path.origin = path.steps.iter().fold(path.origin, |sum, step| match step.is_forward {
-            true => sum + step.link,
-            false => sum - step.link,
-        });
+        path.origin = path
+            .steps
+            .iter()
+            .fold(path.origin, |sum, step| match step.is_forward {
+                true => sum + step.link,
+                false => sum - step.link,
+            });
         Some(path)
     }
 

@@ -28,11 +28,7 @@ pub(super) enum Directions<'a> {
 impl<'a> Directions<'a> {
     /// The components of a force that acts at `arm` from the platform's origin, with a moment, on the
     /// independent coordinates.
-    pub(super) fn components(
-        &self,
-        arm: Vector3<'a>,
-        wrench: [Vector3<'a>; 2],
-    ) -> Vec<Expr<'a>> {
+    pub(super) fn components(&self, arm: Vector3<'a>, wrench: [Vector3<'a>; 2]) -> Vec<Expr<'a>> {
         match self {
             Self::Axes(motion) => on_twist(&motion.twist(), arm, wrench),
             Self::Joints(path) => {
@@ -48,7 +44,10 @@ impl<'a> Directions<'a> {
 
     /// Velocity of the point at `arm` and angular velocity per independent rate.
     pub(super) fn columns(&self, arena: &'a Arena, arm: Vector3<'a>) -> Vec<[Vector3<'a>; 2]> {
-        let (unit, zero) = (|axis: usize| Vector3::unit(arena, axis), Vector3::zero(arena));
+        let (unit, zero) = (
+            |axis: usize| Vector3::unit(arena, axis),
+            Vector3::zero(arena),
+        );
         match self {
             Self::Axes(motion) => {
                 let column = |c: &TwistCoordinate| match c {

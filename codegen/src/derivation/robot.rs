@@ -223,7 +223,10 @@ impl<'a> Robot<'a> {
         for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
             self.arena.enter(&leg.name);
             let own = match (&state.closure, &platform) {
-                (Some(_), None) => state.platform.as_ref().map(|p| p.motion(twist, acceleration)),
+                (Some(_), None) => state
+                    .platform
+                    .as_ref()
+                    .map(|p| p.motion(twist, acceleration)),
                 _ => None,
             };
             let (u, u_dot) = match (&state.closure, own.as_ref().or(platform.as_ref())) {

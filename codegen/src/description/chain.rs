@@ -7,7 +7,12 @@ use super::shape::Shape;
 use crate::diagnostic::{Diagnostic, Span, did_you_mean};
 
 /// Looks up the bodies that chains join, and reports those that are not there.
-pub(super) fn attach(shapes: &[Shape<'_, '_>], has_platform: bool, legs: &mut [Leg], context: &Context) {
+pub(super) fn attach(
+    shapes: &[Shape<'_, '_>],
+    has_platform: bool,
+    legs: &mut [Leg],
+    context: &Context,
+) {
     if has_platform {
         refuse_bodies(shapes, context);
         return;
@@ -18,12 +23,16 @@ pub(super) fn attach(shapes: &[Shape<'_, '_>], has_platform: bool, legs: &mut [L
     };
     let skeleton = legs[at].clone();
     if legs.len() == 1 {
-        refuse_bodies(shapes, context);
+        // After another error a chain may be missing that was meant.
+        if context.is_clean() {
+            refuse_bodies(shapes, context);
+        }
         return;
     }
     if at > 0 {
         let message = format!("the skeleton `{}` is not placed first", skeleton.name.value);
-        let help = "its joints are the robot's coordinates: put its [[place]] before those of the chains";
+        let help =
+            "its joints are the robot's coordinates: put its [[place]] before those of the chains";
         context.report(Diagnostic::new(message, skeleton.name.span.clone()).help(help));
         return;
     }
@@ -57,13 +66,15 @@ pub(super) fn attach(shapes: &[Shape<'_, '_>], has_platform: bool, legs: &mut [L
             Some(body) => match body_of(&skeleton, body) {
                 Ok(Some(found)) if Some(found) != leg.base_body => leg.end_body = Some(found),
                 Ok(Some(_)) => {
-                    let message = format!("the chain `{name}` starts from and ends on the same body");
+                    let message =
+                        format!("the chain `{name}` starts from and ends on the same body");
                     let help = "name another body in `base.body` or `end.body`: a chain joins two";
                     report(Diagnostic::new(message, body.span.clone()).help(help));
                 }
                 Ok(None) => {
                     let message = format!("the chain `{name}` ends on the ground");
-                    let help = "write it from the other side: its base on the ground, its end on the body";
+                    let help =
+                        "write it from the other side: its base on the ground, its end on the body";
                     report(Diagnostic::new(message, body.span.clone()).help(help));
                 }
                 Err(error) => report(error),
@@ -77,12 +88,25 @@ fn body_of(skeleton: &Leg, name: &Spanned<String>) -> Result<Option<usize>, Diag
     if name.value == GROUND {
         return Ok(None);
     }
-    let names = || skeleton.joints.iter().map(|joint| joint.name.value.as_str());
+    let names = || {
+        skeleton
+            .joints
+            .iter()
+            .map(|joint| joint.name.value.as_str())
+    };
     let found = names().position(|own| own == name.value);
     found.map(Some).ok_or_else(|| {
-        let message = format!("the skeleton `{}` has no body `{}`", skeleton.name.value, name.value);
+        let message = format!(
+            "the skeleton `{}` has no body `{}`",
+            skeleton.name.value, name.value
+        );
         let all = || names().chain([GROUND]);
-        let list = || format!("bodies have the names of their joints: {}", all().collect::<Vec<_>>().join(", "));
+        let list = || {
+            format!(
+                "bodies have the names of their joints: {}",
+                all().collect::<Vec<_>>().join(", ")
+            )
+        };
         let help = did_you_mean(&name.value, all()).unwrap_or_else(list);
         Diagnostic::new(message, name.span.clone()).help(help)
     })
@@ -92,7 +116,11 @@ fn body_of(skeleton: &Leg, name: &Spanned<String>) -> Result<Option<usize>, Diag
 const GROUND: &str = "ground";
 
 fn no_body(name: &str, skeleton: &Leg, span: Span) -> Diagnostic {
-    let names: Vec<&str> = skeleton.joints.iter().map(|joint| joint.name.value.as_str()).collect();
+    let names: Vec<&str> = skeleton
+        .joints
+        .iter()
+        .map(|joint| joint.name.value.as_str())
+        .collect();
     let message = format!("the chain `{name}` does not say on which body it ends");
     let help = format!(
         "body = \"NAME\" of a joint of the skeleton `{}`: {}",

@@ -100,8 +100,7 @@ impl Mechanism {
         for (index, leg) in self.legs.iter().enumerate() {
             let range = self.leg_range(index);
             let Some(velocities) = shared_velocities(self, index, &self.home.pose) else {
-                all.rows_mut(range.start, range.len())
-                    .fill_with_identity();
+                all.rows_mut(range.start, range.len()).fill_with_identity();
                 continue;
             };
             let rates = rates_per_velocity(leg, &self.home.joints[range.clone()])? * velocities;

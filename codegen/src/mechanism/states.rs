@@ -139,7 +139,11 @@ fn joints_towards(mechanism: &Mechanism, direction: &[f64], length: f64) -> Vec<
     });
     let home = mechanism.home.pose.iter().zip(kinds);
     let moved = home.zip(direction).map(|((home, kind), d)| {
-        let unit = if kind == JointKind::Prismatic { scale } else { 1.0 };
+        let unit = if kind == JointKind::Prismatic {
+            scale
+        } else {
+            1.0
+        };
         home + d * length * unit
     });
     moved.collect()

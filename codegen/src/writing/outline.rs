@@ -148,7 +148,9 @@ pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
             "x = `[{}]` (m), in the base frame; the quaternion is scaled to length 1",
             coordinates()
         ),
-        "pose" if of_skeleton => format!("x = `[{}]` (m, rad), joints of the skeleton", coordinates()),
+        "pose" if of_skeleton => {
+            format!("x = `[{}]` (m, rad), joints of the skeleton", coordinates())
+        }
         "twist" if of_skeleton => "v, velocities of the skeleton's joints (m/s, rad/s)".to_owned(),
         "pose" => format!("x = `[{}]` (m, rad), in the base frame", coordinates()),
         "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),

@@ -10,9 +10,7 @@ use super::Error;
 use super::closure::State;
 use super::frame::{Frame, logarithm};
 use super::jacobians::{Jacobians, end_rows};
-use super::kinematics::{
-    BodyMotion, all_legs, end_components, end_from_leg, end_from_platform,
-};
+use super::kinematics::{BodyMotion, all_legs, end_components, end_from_leg, end_from_platform};
 use super::linear::pseudo_inverse;
 use super::mechanism::{Leg, Mechanism};
 use nalgebra::{DMatrix, DVector, Vector6};

@@ -183,14 +183,17 @@ pub fn tree_torques(
     let mut all = DVector::zeros(mechanism.joints());
     let motions = state.legs(mechanism);
     let mut loads = Vec::new();
-    let legs = mechanism.legs.iter().zip(mechanism.leg_ranges()).enumerate();
+    let legs = mechanism
+        .legs
+        .iter()
+        .zip(mechanism.leg_ranges())
+        .enumerate();
     // Chains come before the bodies that carry them.
     for (k, (leg, range)) in legs.rev() {
         let own = &parameters.as_slice()[leg_start(mechanism, k)..leg_start(mechanism, k + 1)];
         let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[range.clone()]);
         let borne: &[_] = if k == 0 { &loads } else { &[] };
-        let (torques, base) =
-            leg_torques(leg, &motions[k], motion, own, &mechanism.gravity, borne);
+        let (torques, base) = leg_torques(leg, &motions[k], motion, own, &mechanism.gravity, borne);
         let torques = torques + known_torques(leg, motion[0]);
         all.rows_mut(range.start, range.len()).copy_from(&torques);
         loads.extend(leg.carrier.map(|body| (body, base)));

@@ -175,11 +175,16 @@ pub(super) fn blocked(
             .map(|(name, _)| format!("`{name}`"))
             .collect();
         return Diagnostic::new(
-            format!("chain `{}` cannot follow the skeleton's motion", place.name.value),
+            format!(
+                "chain `{}` cannot follow the skeleton's motion",
+                place.name.value
+            ),
             place.span.clone(),
         )
         .label(format!("it blocks {}", listed(&names)))
-        .help("add a passive joint to the chain, or an end that leaves more free (`type`, `along`)");
+        .help(
+            "add a passive joint to the chain, or an end that leaves more free (`type`, `along`)",
+        );
     }
     Diagnostic::new(
         format!("leg `{}` cannot follow the platform's motion", place.name.value),
