@@ -9,7 +9,8 @@
 use super::configuration::Configuration;
 use super::joint::link_vector;
 use super::leg::LegState;
-use super::platform::{centripetal, constant_rotation};
+use super::orientation::constant_rotation;
+use super::platform::centripetal;
 use super::turn::Turn;
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::description::StandardParameter;

@@ -8,7 +8,8 @@
 
 use super::body::second_moment;
 use super::inertia::Inertia;
-use super::platform::{PlatformMotion, PlatformPose, centripetal, constant_rotation, on_twist};
+use super::orientation::constant_rotation;
+use super::platform::{PlatformMotion, PlatformPose, centripetal, on_twist};
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::description::StandardParameter;
 use crate::mechanism::{End, Leg, TwistCoordinate};

@@ -8,7 +8,7 @@
 
 use super::configuration::Configuration;
 use super::joint::link_vector;
-use super::orientation::Orientation;
+use super::orientation::{Orientation, constant_rotation};
 use super::rates::{Form, Rates};
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::mechanism::{JointKind, Leg};
@@ -73,7 +73,7 @@ impl<'a> Path<'a> {
             if antecedent.is_none() {
                 // The skeleton's own base frame stands in the ground.
                 let base = &skeleton.base;
-                let turned = super::platform::constant_rotation(arena, base.rotation);
+                let turned = constant_rotation(arena, base.rotation);
                 before = seen(None)?;
                 link = Vector3::constant(arena, base.at) + turned * link;
             }

@@ -1,8 +1,9 @@
 //! The platform: pose, twist t = D v and acceleration as vectors in the base frame, eq. (14). For a chain of
 //! a skeleton it is the body that the chain ends on, seen from the one that it starts from.
 
+use super::orientation::constant_rotation;
 use super::path::Path;
-use crate::cas::{Angle, Arena, Expr, Matrix3, Number, Vector3};
+use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::mechanism::{Motion, Placement, TwistCoordinate};
 
 /// Position and orientation of the platform frame in the base frame.
@@ -248,14 +249,4 @@ fn quaternion_rotation([w, x, y, z]: [Expr<'_>; 4]) -> Matrix3<'_> {
         [x2 * y + z2 * w, one - x2 * x - z2 * z, y2 * z - x2 * w],
         [x2 * z - y2 * w, y2 * z + x2 * w, one - x2 * x - y2 * y],
     ])
-}
-
-/// Rz(rz) Ry(ry) Rx(rx) of constant angles.
-#[must_use]
-pub(crate) fn constant_rotation(arena: &Arena, rotation: [Angle; 3]) -> Matrix3<'_> {
-    let about = |axis: usize| {
-        let (cosine, sine) = rotation[axis].cosine_and_sine();
-        Matrix3::rotation(axis, arena.number(cosine), arena.number(sine))
-    };
-    about(2) * about(1) * about(0)
 }

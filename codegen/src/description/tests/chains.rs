@@ -90,11 +90,11 @@ fn skeletons_in_the_wrong_place() {
     // A platform leaves no room for a skeleton.
     let errors = listed(&text.replace("[leg.arm]", "[platform]\nmotion = \"planar\"\n[leg.arm]"));
     assert!(
-        errors[0].contains("there is no skeleton with a body `fore`"),
+        errors[1].contains("there is no skeleton with a body `fore`"),
         "{errors:?}"
     );
     assert!(
-        errors[1].contains("the leg `arm` has no end on the platform"),
+        errors[0].contains("the leg `arm` has no end on the platform"),
         "{errors:?}"
     );
     // One leg alone is no chain.
