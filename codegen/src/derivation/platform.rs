@@ -23,7 +23,7 @@ pub(super) enum Directions<'a> {
     /// Along and about axes of the base frame.
     Axes(Motion),
     /// With the joints of a skeleton.
-    Joints(Path<'a>),
+    Joints(Box<Path<'a>>),
 }
 
 impl<'a> Directions<'a> {
@@ -134,7 +134,7 @@ impl<'a> PlatformPose<'a> {
             arena,
             origin: path.origin,
             rotation: path.rotation,
-            directions: Directions::Joints(path),
+            directions: Directions::Joints(Box::new(path)),
         }
     }
 
