@@ -89,10 +89,10 @@ const fn is_kinematic(function: Function) -> bool {
 }
 
 /// From what functions are evaluated that are given plain states.
-const fn plain(mechanism: &Mechanism) -> MotionInput {
-    match mechanism.platform {
-        Some(_) => MotionInput::Pose,
-        None => MotionInput::Joints,
+fn plain(mechanism: &Mechanism) -> MotionInput {
+    match mechanism.is_tree() {
+        false => MotionInput::Pose,
+        true => MotionInput::Joints,
     }
 }
 
@@ -204,7 +204,7 @@ impl Choice {
         joints: JointsBy,
         inventory: &[(Function, MotionInput)],
     ) -> Result<Chosen, Vec<String>> {
-        let tree = mechanism.platform.is_none();
+        let tree = mechanism.is_tree();
         let mut chosen = Chosen::default();
         let mut missing = Vec::new();
         for name in &self.names {
@@ -267,7 +267,7 @@ impl Chosen {
         };
         self.forward |= self.functions.iter().any(is_found);
         let mut needed = Vec::new();
-        if self.forward && mechanism.platform.is_some() {
+        if self.forward && !mechanism.is_tree() {
             needed.extend([
                 (Function::ActuatorPositions, MotionInput::Pose),
                 (Function::InverseJacobian, MotionInput::Pose),

@@ -90,7 +90,7 @@ fn derived(
     });
     let done = AtomicUsize::new(0);
     let functions = parallel::map(&offered, |&(function, from)| {
-        let name = function_name(function, from, mechanism.platform.is_none());
+        let name = function_name(function, from, mechanism.is_tree());
         tell(done.load(Ordering::Relaxed), offered.len(), &name);
         let program = assembler.cheapest(function, from)?;
         done.fetch_add(1, Ordering::Relaxed);

@@ -31,7 +31,7 @@ impl CompiledFunction {
         program: Program,
     ) -> Self {
         Self {
-            name: function_name(function, from, mechanism.platform.is_none()),
+            name: function_name(function, from, mechanism.is_tree()),
             computes: function,
             from,
             program,
@@ -89,8 +89,8 @@ impl RobotModel {
 
     /// Whether the robot has no platform.
     #[must_use]
-    pub const fn is_tree(&self) -> bool {
-        self.mechanism.platform.is_none()
+    pub fn is_tree(&self) -> bool {
+        self.mechanism.is_tree()
     }
 
     /// Whether the function's joints are found by Newton's method before its program runs.

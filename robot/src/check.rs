@@ -199,11 +199,8 @@ fn with_info<T>(mechanism: &Mechanism, then: impl FnOnce(&Info<'_>) -> T) -> T {
     let actuator_is_revolute: Vec<bool> = actuated_joints.iter().map(is_revolute).collect();
     let actuators = mechanism.actuator_names();
     let actuators: Vec<&str> = actuators.iter().map(String::as_str).collect();
-    let joint_names: Vec<String> = joints.iter().map(|&j| mechanism.joint_name(j)).collect();
-    let coordinates: Vec<&str> = match &mechanism.platform {
-        Some(platform) => platform.motion.coordinates(),
-        None => joint_names.iter().map(String::as_str).collect(),
-    };
+    let coordinates = mechanism.coordinates();
+    let coordinates: Vec<&str> = coordinates.iter().map(String::as_str).collect();
     then(&Info {
         name: &mechanism.name,
         sizes: Sizes {

@@ -64,7 +64,8 @@ impl CompiledFile {
 pub(crate) fn note(description: &Description, mechanism: &Mechanism) -> Option<String> {
     let (n, r) = (mechanism.actuated().len(), mechanism.dof());
     let said = (description.platform.as_ref()).is_some_and(|p| p.redundancy.is_some());
-    if n <= r || said {
+    // A skeleton's description has no key to say it.
+    if n <= r || said || mechanism.skeleton().is_some() {
         return None;
     }
     Some(format!(

@@ -193,7 +193,7 @@ fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
             | Function::IdmRedActuators(Columns::Standard) => from != MotionInput::Actuators,
             _ => false,
         };
-        let name = function_name(function, from, mechanism.platform.is_none());
+        let name = function_name(function, from, mechanism.is_tree());
         let turn = name.bytes().map(u64::from).sum::<u64>() + seed / 8;
         always || turn.is_multiple_of(6)
     };

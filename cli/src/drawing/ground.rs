@@ -33,7 +33,7 @@ pub(super) fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: 
                 .parts
                 .iter()
                 .any(|(l, part)| *l == leg && matches!(part, Part::Rail { .. }));
-            let serial = mechanism.platform.is_none() && !view.planar;
+            let serial = mechanism.is_tree() && !view.planar;
             match (slides, serial) {
                 (true, _) => {}
                 (false, true) => text.push_str(&foot(place)),

@@ -37,7 +37,7 @@ fn text_width(text: &str) -> f64 {
 /// Names of the legs; of the joints, where there is one leg only.
 pub(super) fn names(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
     let mut wanted: Vec<(usize, String, [f64; 2])> = Vec::new();
-    if mechanism.platform.is_none() {
+    if mechanism.is_tree() {
         for (leg, of_leg) in mechanism.legs.iter().enumerate() {
             let moving = of_leg.joints.iter().filter(|j| !j.variable.is_empty());
             let symbols = scene.parts.iter().filter_map(|(l, part)| match part {

@@ -3,10 +3,7 @@
 use super::scene::{NOTHING, Part, Point, Scene};
 use super::{sphere, walk};
 use nalgebra::Vector3;
-use overact_codegen::mechanism::{
-    End, Mechanism,
-    numeric::{platform_frame, target},
-};
+use overact_codegen::mechanism::{End, Mechanism, numeric::platform_frame};
 
 /// The scene of a mechanism; `pixel` is the length of one pixel, m, where it is known.
 pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
@@ -27,13 +24,19 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
     };
     for (index, leg) in mechanism.legs.iter().enumerate() {
         let positions = &mechanism.home.joints[mechanism.leg_range(index)];
-        let (parts, base) = walk::parts(leg, positions, pixel, frame.is_none());
+        // Chains of a skeleton start from the body that carries them.
+        let ground = mechanism.ground_of(index, pose);
+        let (mut parts, mut base) = walk::parts(leg, positions, pixel, mechanism.is_tree());
+        if leg.base_body.is_some() {
+            parts.iter_mut().for_each(|part| part.carry(&ground));
+            base = (ground * nalgebra::Point3::from(base)).coords;
+        }
         scene
             .parts
             .extend(parts.into_iter().map(|part| (index, part)));
         scene.bases.push(base);
-        if let (Some(end), Some(frame)) = (&leg.end, &frame) {
-            let target = target(end, frame);
+        if let (Some(end), Some(target)) = (&leg.end, mechanism.target(index, pose)) {
+            let target = ground * target;
             let at = target.translation.vector;
             scene.attachments.push(at);
             if matches!(end, End::Point { .. }) {

@@ -38,6 +38,23 @@ pub(super) enum Part {
 }
 
 impl Part {
+    /// The part as it stands on a body with this frame.
+    pub(super) fn carry(&mut self, frame: &Isometry3<f64>) {
+        let point = |at: &mut Point| *at = (frame * nalgebra::Point3::from(*at)).coords;
+        match self {
+            Self::Link { path, .. } | Self::Stub { path, .. } => path.iter_mut().for_each(point),
+            Self::Revolute { at, axis, .. } | Self::Slider { at, axis, .. } => {
+                point(at);
+                *axis = frame.rotation * *axis;
+            }
+            Self::Universal { at } | Self::Ball { at } => point(at),
+            Self::Rail { from, to } | Self::Telescope { from, to, .. } => {
+                point(from);
+                point(to);
+            }
+        }
+    }
+
     /// The place of a joint.
     pub(super) fn place(&self) -> Option<&Point> {
         match self {

@@ -9,7 +9,8 @@
 use super::configuration::Configuration;
 use super::joint::link_vector;
 use super::leg::LegState;
-use super::platform::{centripetal, constant_rotation};
+use super::orientation::constant_rotation;
+use super::platform::centripetal;
 use super::turn::Turn;
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::description::StandardParameter;
@@ -139,6 +140,33 @@ pub(super) fn second_moment<'a>(
     momentum(alpha) + omega.cross(momentum(omega))
 }
 
+/// The base frame of a leg with `count` quasi-velocities: at rest in the ground, or moving with a body of the
+/// skeleton, whose own quasi-velocities follow those of the leg.
+pub(crate) fn leg_base<'a>(
+    arena: &'a Arena,
+    leg: &Leg,
+    count: usize,
+    carrier: Option<&BodyMotion<'a>>,
+    gravity: Vector3<'a>,
+) -> BodyMotion<'a> {
+    let zero = Vector3::zero(arena);
+    let into = constant_rotation(arena, leg.base.rotation).transposed();
+    let mut partials = vec![[zero; 2]; count];
+    let Some(carrier) = carrier else {
+        return BodyMotion::new(zero, zero, -(into * gravity), partials, vec![]);
+    };
+    let at = Vector3::constant(arena, leg.base.at);
+    let moved = |[v, o]: &[Vector3<'a>; 2]| [into * (*v + o.cross(at)), into * *o];
+    partials.extend(carrier.partials.iter().map(moved));
+    BodyMotion::new(
+        into * carrier.omega,
+        into * carrier.alpha,
+        into * (carrier.acceleration + carrier.u_matrix * at),
+        partials,
+        vec![],
+    )
+}
+
 /// Motion of all bodies of a leg for quasi-velocities u and their derivatives. `None` if a sine or
 /// cosine does not follow from the configuration.
 pub(crate) fn leg_bodies<'a>(
@@ -147,15 +175,12 @@ pub(crate) fn leg_bodies<'a>(
     state: &LegState<'a>,
     configuration: &Configuration<'a>,
     (u, u_dot): (&[Expr<'a>], &[Expr<'a>]),
-    gravity: Vector3<'a>,
+    base: &BodyMotion<'a>,
 ) -> Option<Vec<BodyMotion<'a>>> {
-    let zero = Vector3::zero(arena);
-    let base_gravity = constant_rotation(arena, leg.base.rotation).transposed() * gravity;
-    let still = BodyMotion::new(zero, zero, -base_gravity, vec![[zero; 2]; u.len()], vec![]);
     let (first_joint, rates) = (state.first_joint, &state.rates);
     let mut bodies: Vec<BodyMotion<'a>> = Vec::new();
     for (index, joint) in leg.joints.iter().enumerate() {
-        let from = joint.antecedent.map_or(&still, |a| &bodies[a]);
+        let from = joint.antecedent.map_or(base, |a| &bodies[a]);
         let link = link_vector(arena, leg, index, first_joint, configuration)?;
         let turn = Turn::new(arena, leg, index, first_joint, configuration)?;
         let form = &rates.joint[index];
@@ -175,7 +200,7 @@ pub(crate) fn leg_bodies<'a>(
             }
             JointKind::Fixed => {}
         }
-        let partials = (0..u.len()).map(|i| {
+        let partials = (0..from.partials.len()).map(|i| {
             let [v, o] = from.partials[i];
             let mut partial = [turn.apply(v + o.cross(link)), turn.apply(o)];
             let own = axis.scaled(arena.number(form.coefficient(i)));

@@ -8,7 +8,8 @@
 
 use super::body::second_moment;
 use super::inertia::Inertia;
-use super::platform::{PlatformMotion, PlatformPose, centripetal, constant_rotation, on_twist};
+use super::orientation::constant_rotation;
+use super::platform::{PlatformMotion, PlatformPose, centripetal, on_twist};
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::description::StandardParameter;
 use crate::mechanism::{End, Leg, TwistCoordinate};
@@ -48,7 +49,8 @@ impl<'a> Mount<'a> {
     #[must_use]
     pub fn of_leg(arena: &'a Arena, leg: &Leg) -> Vec<Option<Self>> {
         let mut mounts = vec![None; leg.joints.len()];
-        if let (Some(End::Rigid(placement)), Some(last)) = (&leg.end, mounts.last_mut()) {
+        let on_platform = leg.end.as_ref().filter(|_| leg.end_body.is_none());
+        if let (Some(End::Rigid(placement)), Some(last)) = (on_platform, mounts.last_mut()) {
             *last = Some(Self {
                 rotation: constant_rotation(arena, placement.rotation),
                 at: placement.at,

@@ -13,10 +13,10 @@
 use super::bias::BiasTerm;
 use super::elimination::{Inverse, Rows, inverse};
 use super::frames::{LegFrames, joint_columns};
-use super::platform::{PlatformMotion, PlatformPose, on_twist};
+use super::platform::{Directions, PlatformMotion, PlatformPose};
 use super::rates::Rates;
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
-use crate::mechanism::{Leg, TwistCoordinate};
+use crate::mechanism::Leg;
 
 /// A wrench as factor × (force, moment).
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +48,8 @@ pub struct LegClosure<'a> {
     pub arm: Vector3<'a>,
     /// The orientation of the leg's axes in the base frame.
     pub axes: Matrix3<'a>,
+    /// In which directions the independent coordinates move what the leg ends on.
+    directions: Directions<'a>,
 }
 
 impl<'a> LegClosure<'a> {
@@ -109,14 +111,15 @@ impl<'a> LegClosure<'a> {
             at,
             arm,
             axes: frames.axes,
+            directions: platform.directions().clone(),
         })
     }
 
     /// ∂u_i/∂v for all u, r numbers each.
     #[must_use]
-    pub(crate) fn reduced_jacobian(&self, twist: &[TwistCoordinate]) -> Rows<'a> {
+    pub(crate) fn reduced_jacobian(&self) -> Rows<'a> {
         let row = |(force, moment): (&Vector3<'a>, &Vector3<'a>)| {
-            on_twist(twist, self.arm, [*force, *moment])
+            self.directions.components(self.arm, [*force, *moment])
         };
         self.forces.iter().zip(&self.moments).map(row).collect()
     }
@@ -148,35 +151,18 @@ impl<'a> LegClosure<'a> {
 
     /// (F, p × F) of the forces s on the u, F = Σ s_i f_i.
     #[must_use]
-    pub(crate) fn project_at_end(
-        &self,
-        twist: &[TwistCoordinate],
-        forces: &[Expr<'a>],
-    ) -> Vec<Expr<'a>> {
+    pub(crate) fn project_at_end(&self, forces: &[Expr<'a>]) -> Vec<Expr<'a>> {
         let zero = Vector3::zero(self.determinant.arena());
         let parts = self.forces.iter().zip(forces);
         let force = parts.fold(zero, |sum, (f, s)| sum + f.scaled(*s));
-        on_twist(twist, self.arm, [force, zero])
+        self.directions.components(self.arm, [force, zero])
     }
 
-    /// A row of the six-vector (Ṗ, ω) of the platform point per twist coordinate.
+    /// A row of the six-vector (Ṗ, ω) of the platform point per independent coordinate.
     #[must_use]
-    pub(crate) fn platform_row(
-        &self,
-        row: usize,
-        twist: &[TwistCoordinate],
-        arena: &'a Arena,
-    ) -> Vec<Expr<'a>> {
-        let entry = |c: &TwistCoordinate| {
-            let unit = |axis: usize| Vector3::unit(arena, axis);
-            let zero = Vector3::zero(arena);
-            let (linear, angular) = match c {
-                TwistCoordinate::Linear(axis) => (unit(*axis), zero),
-                TwistCoordinate::Angular(axis) => (unit(*axis).cross(self.arm), unit(*axis)),
-            };
-            [linear, angular][row / 3].0[row % 3]
-        };
-        twist.iter().map(entry).collect()
+    pub(crate) fn platform_row(&self, row: usize, arena: &'a Arena) -> Vec<Expr<'a>> {
+        let columns = self.directions.columns(arena, self.arm);
+        columns.iter().map(|c| c[row / 3].0[row % 3]).collect()
     }
 
     /// The quasi-velocities u for a platform motion.

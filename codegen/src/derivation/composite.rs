@@ -75,7 +75,8 @@ impl<'a> Robot<'a> {
         values: &[(BodyParameter, Expr<'a>)],
     ) -> Option<Chain<'_, 'a>> {
         let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
-        let carried = matches!(leg.end, Some(End::Rigid(_))).then(|| leg.joints.len() - 1);
+        let on_platform = matches!(leg.end, Some(End::Rigid(_))) && leg.end_body.is_none();
+        let carried = on_platform.then(|| leg.joints.len() - 1);
         let mut links = Vec::new();
         for j in 0..leg.joints.len() {
             let own = |p: BodyParameter| p.of_joint(index, j);

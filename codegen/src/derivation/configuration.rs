@@ -11,6 +11,8 @@ use std::cell::RefCell;
 
 /// The input array of all joints.
 const JOINTS: &str = "joints";
+/// The input array of the platform's coordinates, or of the joints of a skeleton.
+const POSE: &str = "pose";
 
 /// Cosine and sine of an angle.
 pub type Unit<'a> = (Expr<'a>, Expr<'a>);
@@ -28,6 +30,8 @@ pub struct Configuration<'a> {
     positions: Vec<(usize, Expr<'a>)>,
     /// For every joint of q_t: its leg's name and its own name.
     names: Vec<(String, String)>,
+    /// How many joints of q_t are the pose: those of a skeleton.
+    in_pose: usize,
 }
 
 impl<'a> Configuration<'a> {
@@ -48,6 +52,7 @@ impl<'a> Configuration<'a> {
             known: Vec::new(),
             positions: Vec::new(),
             names: names.collect(),
+            in_pose: mechanism.skeleton().map_or(0, |_| mechanism.dof()),
         }
     }
 
@@ -82,15 +87,23 @@ impl<'a> Configuration<'a> {
         Some(unknown)
     }
 
+    /// The input array that a joint's position is in.
+    const fn array(&self, index: usize) -> &'static str {
+        if index < self.in_pose { POSE } else { JOINTS }
+    }
+
     /// The angle of a revolute joint.
     #[must_use]
     pub(crate) fn joint_angle(&self, index: usize) -> Direction {
-        self.arena.input_angle(JOINTS, index)
+        self.arena.input_angle(self.array(index), index)
     }
 
     /// The position of a prismatic joint, m; `None` if it is not known from the pose.
     #[must_use]
     pub(crate) fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
+        if index < self.in_pose {
+            return Some(self.arena.input(POSE, index));
+        }
         match self.from {
             MotionInput::Joints => Some(self.arena.input(JOINTS, index)),
             MotionInput::Pose | MotionInput::Actuators => {
@@ -152,6 +165,13 @@ impl<'a> Configuration<'a> {
         (element.array == JOINTS).then_some(element.index)
     }
 
+    /// The joint of a skeleton that a symbol is the position of.
+    fn pose_joint(&self, symbol: SymbolId) -> Option<usize> {
+        let element = self.arena.input_element(symbol)?;
+        let is_own = element.array == POSE && element.index < self.in_pose;
+        is_own.then_some(element.index)
+    }
+
     /// Whether the angle holds no joint.
     fn is_input(&self, angle: &Direction) -> bool {
         angle
@@ -208,7 +228,8 @@ impl<'a> Configuration<'a> {
             if *factor != Ratio::ONE {
                 return;
             }
-            match self.joint(*symbol).and_then(|i| self.names.get(i)) {
+            let own = self.joint(*symbol).or_else(|| self.pose_joint(*symbol));
+            match own.and_then(|i| self.names.get(i)) {
                 Some((of, joint)) => {
                     leg = Some(of);
                     label += joint;

@@ -16,7 +16,7 @@ pub(crate) fn derivable(mechanism: &Mechanism) -> Result<(), Underivable> {
     let arena = Arena::new();
     let plain = Formulation::default();
     let robot = Robot::new(&arena, mechanism, MotionInput::Joints, &plain)?;
-    if mechanism.platform.is_some() {
+    if !mechanism.is_tree() {
         robot.project_on_actuators(&mechanism.kept_actuators)?;
     }
     Ok(())

@@ -10,7 +10,7 @@ use overact_core::{Condition, Function};
 /// All functions of a robot with what they are evaluated from.
 #[must_use]
 pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Function, MotionInput)> {
-    let tree = mechanism.platform.is_none();
+    let tree = mechanism.is_tree();
     let payload = mechanism
         .platform
         .as_ref()

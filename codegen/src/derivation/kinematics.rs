@@ -15,7 +15,7 @@ impl<'a> Sheet<'a, '_> {
     /// Twist and acceleration under the names that the robot's kind calls for; from actuators, those
     /// that fit the actuators' rates best.
     pub(super) fn twist(&mut self) -> Vec<Expr<'a>> {
-        let tree = self.robot.platform.is_none();
+        let tree = self.robot.mechanism.is_tree();
         if self.from == MotionInput::Actuators {
             let rates = self.input("actuator_velocities", self.robot.mechanism.actuated().len());
             self.twist = self.least_squares(&rates);
@@ -30,7 +30,7 @@ impl<'a> Sheet<'a, '_> {
 
     /// The independent accelerations, an input or those that fit the actuators' accelerations best.
     pub(super) fn acceleration(&mut self) -> Vec<Expr<'a>> {
-        let tree = self.robot.platform.is_none();
+        let tree = self.robot.mechanism.is_tree();
         if self.from == MotionInput::Actuators {
             let twist = self.twist.clone();
             let acceleration = self.acceleration_of(&twist);
@@ -59,8 +59,11 @@ impl<'a> Sheet<'a, '_> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let configuration = &self.robot.configuration;
         let position = |(index, of): (usize, &JointIndex)| {
-            if mechanism.platform.is_none() || configuration.from() == MotionInput::Joints {
+            if mechanism.is_tree() || configuration.from() == MotionInput::Joints {
                 return arena.input("joints", index);
+            }
+            if mechanism.skeleton().is_some() && index < mechanism.dof() {
+                return arena.input("pose", index);
             }
             if mechanism.joint(*of).kind == JointKind::Prismatic {
                 return configuration

@@ -4,6 +4,7 @@ use super::centres::Centre;
 use super::closure::LegClosure;
 use super::elimination::Rows;
 use super::frames::LegFrames;
+use super::platform::PlatformPose;
 use super::rates::Rates;
 
 /// A leg in a derivation.
@@ -17,8 +18,11 @@ pub struct LegState<'a> {
     pub rates: Rates,
     /// Axes that share the moment about the point in which they meet.
     pub centres: Vec<Centre>,
+    /// What the leg ends on; `None` for a tree.
+    pub platform: Option<PlatformPose<'a>>,
     /// The closure; `None` for a tree.
     pub closure: Option<LegClosure<'a>>,
-    /// ∂u/∂v, r numbers per u.
+    /// ∂u/∂v, r numbers per u. Of a chain that starts from a moving body the independent coordinates follow,
+    /// as further quasi-velocities of its bodies.
     pub rows: Rows<'a>,
 }

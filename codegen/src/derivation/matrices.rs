@@ -38,7 +38,10 @@ impl<'a> Sheet<'a, '_> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let mut errors = Vec::new();
         for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
-            let (Some(closure), Some(platform)) = (&state.closure, &self.robot.platform) else {
+            let (Some(closure), Some(platform)) = (&state.closure, &state.platform) else {
+                // The skeleton's joints are the pose.
+                let own = |i: usize| arena.input("pose", i) - arena.input("joints", i);
+                errors.extend((0..state.rows.len()).map(own));
                 continue;
             };
             let frames = self.robot.base_frames(index);
@@ -71,6 +74,13 @@ impl<'a> Sheet<'a, '_> {
         for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
             let (Some(closure), Some(frames)) = (&state.closure, self.robot.base_frames(index))
             else {
+                // The rates of the skeleton's joints are the independent ones.
+                for (i, row) in state.rows.iter().enumerate() {
+                    let mut entries = vec![arena.zero(); total];
+                    entries[state.first_joint + i] = arena.one();
+                    legs.push(entries);
+                    platform.push(row.clone());
+                }
                 continue;
             };
             let columns = independent_columns(arena, leg, &frames);
@@ -80,7 +90,7 @@ impl<'a> Sheet<'a, '_> {
                     entries[state.first_joint + k] = column[row / 3].0[row % 3];
                 }
                 legs.push(entries);
-                platform.push(closure.platform_row(row, &self.robot.twist, arena));
+                platform.push(closure.platform_row(row, arena));
             }
         }
         (legs, platform)

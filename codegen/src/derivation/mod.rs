@@ -49,6 +49,7 @@ mod newton_euler;
 mod null_space;
 mod orientation;
 mod parameter;
+mod path;
 mod platform;
 mod rates;
 mod regressor;

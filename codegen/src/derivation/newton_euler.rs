@@ -26,15 +26,19 @@ impl<'a> Robot<'a> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
         for (index, leg) in self.mechanism.legs.iter().enumerate() {
             self.arena.enter(&leg.name);
-            let forces = self.summed_leg_forces(motion, values, index)?;
+            // What a chain hands down to a body that moves is projected body by body.
+            let forces = match leg.base_body {
+                Some(_) => self.leg_forces(motion, values, index, &mut []),
+                None => self.summed_leg_forces(motion, values, index)?,
+            };
             for (joint, force) in leg.independent().zip(&forces) {
                 let what = format!("force_on_u{}", leg.joints[joint].name);
                 let _ = force.named(&joined(&[&what, &leg.name]));
             }
             let state = &self.legs[index];
             let at_end = state.closure.as_ref().filter(|c| c.feels_no_moment());
-            let part = match at_end {
-                Some(closure) => closure.project_at_end(&self.twist, &forces),
+            let part = match at_end.filter(|_| self.platform.is_some()) {
+                Some(closure) => closure.project_at_end(&forces),
                 None => self.combine(&state.rows, &forces),
             };
             add(&mut total, part);

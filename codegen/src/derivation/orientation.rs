@@ -4,7 +4,6 @@
 use super::configuration::Configuration;
 use super::joint::joint_turn;
 use super::motion_input::MotionInput;
-use super::platform::constant_rotation;
 use super::rates::parallel;
 use crate::cas::{Angle, Arena, Direction, Matrix3, Ratio};
 use crate::mechanism::{Leg, Mechanism};
@@ -143,4 +142,14 @@ impl Part {
             }
         }
     }
+}
+
+/// Rz(rz) Ry(ry) Rx(rx) of constant angles.
+#[must_use]
+pub(crate) fn constant_rotation(arena: &Arena, rotation: [Angle; 3]) -> Matrix3<'_> {
+    let about = |axis: usize| {
+        let (cosine, sine) = rotation[axis].cosine_and_sine();
+        Matrix3::rotation(axis, arena.number(cosine), arena.number(sine))
+    };
+    about(2) * about(1) * about(0)
 }

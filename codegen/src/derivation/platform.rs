@@ -1,17 +1,70 @@
-//! The platform: pose, twist t = D v and acceleration as vectors in the base frame, eq. (14).
+//! The platform: pose, twist t = D v and acceleration as vectors in the base frame, eq. (14). For a chain of
+//! a skeleton it is the body that the chain ends on, seen from the one that it starts from.
 
-use crate::cas::{Angle, Arena, Expr, Matrix3, Number, Vector3};
+use super::orientation::constant_rotation;
+use super::path::Path;
+use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::mechanism::{Motion, Placement, TwistCoordinate};
 
 /// Position and orientation of the platform frame in the base frame.
 #[derive(Debug, Clone)]
 pub struct PlatformPose<'a> {
     arena: &'a Arena,
-    motion: Motion,
+    directions: Directions<'a>,
     /// Origin, m.
     pub origin: Vector3<'a>,
     /// Orientation.
     pub rotation: Matrix3<'a>,
+}
+
+/// In which directions the independent coordinates move the platform: the columns of D.
+#[derive(Debug, Clone)]
+pub(super) enum Directions<'a> {
+    /// Along and about axes of the base frame.
+    Axes(Motion),
+    /// With the joints of a skeleton.
+    Joints(Box<Path<'a>>),
+}
+
+impl<'a> Directions<'a> {
+    /// The components of a force that acts at `arm` from the platform's origin, with a moment, on the
+    /// independent coordinates.
+    pub(super) fn components(&self, arm: Vector3<'a>, wrench: [Vector3<'a>; 2]) -> Vec<Expr<'a>> {
+        match self {
+            Self::Axes(motion) => on_twist(&motion.twist(), arm, wrench),
+            Self::Joints(path) => {
+                let [force, moment] = wrench;
+                let turned = arm.cross(force) + moment;
+                let columns = path.columns.iter();
+                columns
+                    .map(|[linear, angular]| linear.dot(force) + angular.dot(turned))
+                    .collect()
+            }
+        }
+    }
+
+    /// Velocity of the point at `arm` and angular velocity per independent rate.
+    pub(super) fn columns(&self, arena: &'a Arena, arm: Vector3<'a>) -> Vec<[Vector3<'a>; 2]> {
+        let (unit, zero) = (
+            |axis: usize| Vector3::unit(arena, axis),
+            Vector3::zero(arena),
+        );
+        match self {
+            Self::Axes(motion) => {
+                let column = |c: &TwistCoordinate| match c {
+                    TwistCoordinate::Linear(axis) => [unit(*axis), zero],
+                    TwistCoordinate::Angular(axis) => [unit(*axis).cross(arm), unit(*axis)],
+                };
+                motion.twist().iter().map(column).collect()
+            }
+            Self::Joints(path) => {
+                let columns = path.columns.iter();
+                columns
+                    .map(|[linear, angular]| [*linear + angular.cross(arm), *angular])
+                    .collect()
+            }
+        }
+    }
 }
 
 /// Velocity and acceleration of the platform.
@@ -68,10 +121,26 @@ impl<'a> PlatformPose<'a> {
         }
         Self {
             arena,
-            motion,
+            directions: Directions::Axes(motion),
             origin: Vector3(origin),
             rotation,
         }
+    }
+
+    /// The body of a skeleton that a path leads to.
+    #[must_use]
+    pub(super) fn on_skeleton(arena: &'a Arena, path: Path<'a>) -> Self {
+        Self {
+            arena,
+            origin: path.origin,
+            rotation: path.rotation,
+            directions: Directions::Joints(Box::new(path)),
+        }
+    }
+
+    /// In which directions the independent coordinates move it.
+    pub(super) const fn directions(&self) -> &Directions<'a> {
+        &self.directions
     }
 
     /// The vector from the platform's origin to a platform point, in the base frame.
@@ -89,10 +158,14 @@ impl<'a> PlatformPose<'a> {
     /// Velocities and accelerations from the twist coordinates v and their derivatives.
     #[must_use]
     pub fn motion(&self, twist: &[Expr<'a>], acceleration: &[Expr<'a>]) -> PlatformMotion<'a> {
+        let own = match &self.directions {
+            Directions::Axes(motion) => motion,
+            Directions::Joints(path) => return self.carried(path, twist, acceleration),
+        };
         let spread = |values: &[Expr<'a>]| {
             let mut linear = Vector3::zero(self.arena);
             let mut angular = linear;
-            for (coordinate, &value) in self.motion.twist().iter().zip(values) {
+            for (coordinate, &value) in own.twist().iter().zip(values) {
                 match coordinate {
                     TwistCoordinate::Linear(axis) => linear.0[*axis] = value,
                     TwistCoordinate::Angular(axis) => angular.0[*axis] = value,
@@ -102,7 +175,7 @@ impl<'a> PlatformPose<'a> {
         };
         let (velocity, angular_velocity) = spread(twist);
         let (linear_acceleration, angular_acceleration) = spread(acceleration);
-        let turns_freely = self.motion.has_quaternion();
+        let turns_freely = own.has_quaternion();
         let centripetal = turns_freely
             .then(|| centripetal(angular_velocity, angular_acceleration) * self.rotation);
         PlatformMotion {
@@ -111,6 +184,25 @@ impl<'a> PlatformPose<'a> {
             angular_velocity,
             acceleration: linear_acceleration,
             angular_acceleration,
+        }
+    }
+
+    /// The motion that a skeleton gives.
+    fn carried(
+        &self,
+        path: &Path<'a>,
+        rates: &[Expr<'a>],
+        accelerations: &[Expr<'a>],
+    ) -> PlatformMotion<'a> {
+        let moved = path.motion(rates, accelerations);
+        PlatformMotion {
+            centripetal: path
+                .turns_freely()
+                .then(|| centripetal(moved.omega, moved.alpha) * self.rotation),
+            velocity: moved.velocity,
+            angular_velocity: moved.omega,
+            acceleration: moved.acceleration,
+            angular_acceleration: moved.alpha,
         }
     }
 }
@@ -157,14 +249,4 @@ fn quaternion_rotation([w, x, y, z]: [Expr<'_>; 4]) -> Matrix3<'_> {
         [x2 * y + z2 * w, one - x2 * x - z2 * z, y2 * z - x2 * w],
         [x2 * z - y2 * w, y2 * z + x2 * w, one - x2 * x - y2 * y],
     ])
-}
-
-/// Rz(rz) Ry(ry) Rx(rx) of constant angles.
-#[must_use]
-pub(crate) fn constant_rotation(arena: &Arena, rotation: [Angle; 3]) -> Matrix3<'_> {
-    let about = |axis: usize| {
-        let (cosine, sine) = rotation[axis].cosine_and_sine();
-        Matrix3::rotation(axis, arena.number(cosine), arena.number(sine))
-    };
-    about(2) * about(1) * about(0)
 }

@@ -197,8 +197,9 @@ impl<'a> Robot<'a> {
     ) -> Vec<Expr<'a>> {
         let rows = &projection.legs[leg];
         let at_end = self.legs[leg].closure.as_ref();
+        let at_end = at_end.filter(|_| self.platform.is_some());
         match at_end.filter(|c| projection.on_platform && c.is_shorter_at_end(rows, forces)) {
-            Some(closure) => closure.project_at_end(&self.twist, forces),
+            Some(closure) => closure.project_at_end(forces),
             None => self.combine(rows, forces),
         }
     }
@@ -252,7 +253,7 @@ impl<'a> Robot<'a> {
 
     /// The forces on the quasi-velocities of a leg; those of its bodies that move with the platform are added
     /// to `on_twist`.
-    fn leg_forces(
+    pub(super) fn leg_forces(
         &self,
         motion: &RobotMotion<'a>,
         values: &[(BodyParameter, Expr<'a>)],

@@ -2,7 +2,7 @@
 //! function is made of.
 
 use super::bias::end_bias;
-use super::body::leg_bodies;
+use super::body::{leg_base, leg_bodies};
 use super::carried::{CarriedBody, Mount};
 use super::centres::centres;
 use super::closure::LegClosure;
@@ -15,6 +15,7 @@ use super::leg::LegState;
 use super::motion::{Moved, RobotMotion};
 use super::motion_input::MotionInput;
 use super::names::{Accelerations, coordinate_label, joined};
+use super::path::Path;
 use super::platform::PlatformPose;
 use super::rates::Rates;
 use super::selection::Formulation;
@@ -32,7 +33,7 @@ pub struct Robot<'a> {
     pub mechanism: &'a Mechanism,
     /// Sines and cosines.
     pub configuration: Configuration<'a>,
-    /// The platform's pose; `None` for a tree.
+    /// The platform's pose; `None` for a tree and for a skeleton with chains.
     pub platform: Option<PlatformPose<'a>>,
     /// The independent twist coordinates.
     pub twist: Vec<TwistCoordinate>,
@@ -57,7 +58,7 @@ impl<'a> Robot<'a> {
     ) -> Result<Self, Underivable> {
         let motion = mechanism.platform.as_ref().map(|p| p.motion);
         // The configuration of a tree is its joints, whatever it is called.
-        let from = if motion.is_none() {
+        let from = if mechanism.is_tree() {
             MotionInput::Joints
         } else {
             from
@@ -86,8 +87,9 @@ impl<'a> Robot<'a> {
         let station = formulation.stations.get(index).copied().unwrap_or_default();
         let first_joint = self.mechanism.leg_range(index).start;
         let name = || leg.name.clone();
+        let platform = self.end_of(index);
         if let (Some(platform), MotionInput::Pose | MotionInput::Actuators) =
-            (&self.platform, self.configuration.from())
+            (&platform, self.configuration.from())
         {
             let task = Task::new(arena, self.mechanism, index, platform)
                 .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
@@ -102,12 +104,12 @@ impl<'a> Robot<'a> {
         }
         let frames = LegFrames::new(arena, leg, first_joint, &self.configuration, station)
             .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
-        let rates = Rates::new(leg, self.platform.is_some());
+        let rates = Rates::new(leg, platform.is_some());
         let centres = match formulation.meeting {
             true => centres(leg, &rates),
             false => Vec::new(),
         };
-        let (closure, rows) = match &self.platform {
+        let (closure, mut rows) = match &platform {
             None => (
                 None,
                 self.identity_rows(first_joint, leg.independent().count()),
@@ -118,7 +120,7 @@ impl<'a> Robot<'a> {
                 let closure =
                     LegClosure::new(arena, leg, &frames, &rates, platform, &selected, &home)
                         .ok_or_else(|| Underivable::SingularLeg { leg: name() })?;
-                let rows = closure.reduced_jacobian(&self.twist);
+                let rows = closure.reduced_jacobian();
                 (Some(closure), rows)
             }
         };
@@ -126,16 +128,33 @@ impl<'a> Robot<'a> {
             self.guard_leg(closure, &leg.name);
         }
         name_rows(&rows, leg, &self.twist);
+        if leg.base_body.is_some() {
+            rows.extend(self.identity_rows(0, self.mechanism.dof()));
+        }
         self.legs.push(LegState {
             first_joint,
             frames,
             rates,
             centres,
+            platform,
             closure,
             rows,
         });
         arena.enter("");
         Ok(())
+    }
+
+    /// What a leg ends on: the platform, or a body of the skeleton as it is seen from the one that the leg
+    /// starts from. `None` for a leg without an end.
+    fn end_of(&self, index: usize) -> Option<PlatformPose<'a>> {
+        if let Some(platform) = &self.platform {
+            return Some(platform.clone());
+        }
+        let (leg, skeleton) = (&self.mechanism.legs[index], self.mechanism.skeleton()?);
+        leg.end.as_ref()?;
+        let (from, to) = (leg.base_body, leg.end_body);
+        let path = Path::new(self.arena, skeleton, &self.configuration, from, to)?;
+        Some(PlatformPose::on_skeleton(self.arena, path))
     }
 
     /// The frames of a leg in the base's axes.
@@ -203,7 +222,14 @@ impl<'a> Robot<'a> {
         };
         for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
             self.arena.enter(&leg.name);
-            let (u, u_dot) = match (&state.closure, &platform) {
+            let own = match (&state.closure, &platform) {
+                (Some(_), None) => state
+                    .platform
+                    .as_ref()
+                    .map(|p| p.motion(twist, acceleration)),
+                _ => None,
+            };
+            let (u, u_dot) = match (&state.closure, own.as_ref().or(platform.as_ref())) {
                 (Some(closure), Some(platform)) => {
                     let u = closure.velocities(platform);
                     name_rates(leg, &u, "rate");
@@ -218,13 +244,15 @@ impl<'a> Robot<'a> {
                     (twist[range.clone()].to_vec(), acceleration[range].to_vec())
                 }
             };
+            let carrier = leg.base_body.map(|body| &motion.bodies[0][body]);
+            let base = leg_base(self.arena, leg, u.len(), carrier, gravity);
             let bodies = leg_bodies(
                 self.arena,
                 leg,
                 state,
                 &self.configuration,
                 (&u, &u_dot),
-                gravity,
+                &base,
             )?;
             motion.u.push(u);
             motion.u_dot.push(u_dot);

@@ -84,10 +84,10 @@ impl<'a, 's> Sheet<'a, 's> {
 fn configuration_inputs(robot: &Robot<'_>, from: MotionInput) -> Vec<(&'static str, usize)> {
     let joints = ("joints", robot.mechanism.joints().len());
     let pose = ("pose", robot.mechanism.pose_len());
-    match (&robot.platform, from) {
-        (None, _) => vec![joints],
-        (Some(_), MotionInput::Pose | MotionInput::Actuators) => vec![pose],
-        (Some(_), MotionInput::Joints) => vec![pose, joints],
+    match (robot.mechanism.is_tree(), from) {
+        (true, _) => vec![joints],
+        (false, MotionInput::Pose | MotionInput::Actuators) => vec![pose],
+        (false, MotionInput::Joints) => vec![pose, joints],
     }
 }
 

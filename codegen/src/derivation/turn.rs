@@ -2,7 +2,7 @@
 
 use super::configuration::Configuration;
 use super::joint::joint_turn;
-use super::platform::constant_rotation;
+use super::orientation::constant_rotation;
 use super::rates::parallel;
 use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};
 use crate::mechanism::Leg;

@@ -45,9 +45,11 @@ impl Inventory<'_> {
         if let Some(platform) = self.platform {
             return platform_coordinates(platform.motion.value);
         }
+        // Those of chains follow from those of the skeleton.
         let joints = self
             .legs
             .iter()
+            .filter(|leg| leg.end.is_none())
             .flat_map(|leg| leg.joints.iter().enumerate());
         let independent = joints.filter(|(index, joint)| joint.is_independent(*index));
         let named = |(_, j): (usize, &super::Joint)| {

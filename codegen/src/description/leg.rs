@@ -77,6 +77,9 @@ fn place(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], constants: &Scope) -> 
         base: placement(shape.base_at.as_ref(), shape.base_rotation.as_ref(), &scope),
         joints,
         end,
+        // Names of bodies are looked up when the skeleton is known.
+        base_body: None,
+        end_body: None,
         span: table.span.clone(),
     })
 }

@@ -9,6 +9,7 @@
 //! Numbers are exact: decimals are fractions, angles are multiples of π and fractions of a radian.
 
 mod actuator_names;
+mod chain;
 mod controller;
 mod dimension;
 mod document;

@@ -141,8 +141,13 @@ pub struct Leg {
     pub base: Placement,
     /// The joints; antecedents come first.
     pub joints: Vec<Joint>,
-    /// Where the leg ends on the platform; `None` without platform.
+    /// Where the leg ends on the platform, or on a body of the skeleton; `None` for a tree.
     pub end: Option<Spanned<End>>,
+    /// The body of the skeleton that the leg starts from, as a joint of the first leg; `None` for the
+    /// ground.
+    pub base_body: Option<usize>,
+    /// The body of the skeleton that the leg ends on; `None` for the platform.
+    pub end_body: Option<usize>,
     /// Place of its `[[place]]`.
     pub span: Span,
 }

@@ -7,7 +7,7 @@ use super::model::{Leg, Platform, Spanned, actuators};
 use super::reader::{Context, Item, Table};
 use super::scope::Scope;
 use super::shape::Shape;
-use super::{controller, excitation, experiment, leg, platform, prior, settings, shape};
+use super::{chain, controller, excitation, experiment, leg, platform, prior, settings, shape};
 use crate::cas::{Number, Ratio};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::effort::Effort;
@@ -92,11 +92,13 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         .as_ref()
         .and_then(|item| platform::read(item, &scope));
     let shapes = shapes(table, &scope);
-    let legs = legs(table, &shapes, &scope);
+    let mut legs = legs(table, &shapes, &scope);
+    chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
     check_actuators(table, platform.as_ref(), &legs);
-    check_motors(table, platform.as_ref(), &legs);
-    check_springs(table, platform.as_ref(), &legs);
+    let is_closed = legs.iter().any(|leg| leg.end.is_some());
+    check_motors(table, platform.is_some() || is_closed, &legs);
+    check_springs(table, platform.is_some() || is_closed, &legs);
     let robot = Inventory {
         platform: platform.as_ref(),
         legs: &legs,
@@ -214,6 +216,7 @@ fn legs(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], scope: &Scope) -> Vec<L
 
 /// A platform needs leg ends; without one there is a single leg, and no end.
 fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, legs: &[Leg]) {
+    let has_skeleton = !platform && shapes.iter().any(|shape| shape.end.is_none());
     for shape in shapes {
         let name = &shape.name.value;
         let diagnostic = match &shape.end {
@@ -224,16 +227,18 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
                 );
                 Diagnostic::new(message, shape.span.clone()).help(help)
             }
-            Some(end) if !platform => {
+            Some(end) if !platform && !has_skeleton => {
                 let message = format!("the leg `{name}` ends on a platform, but there is none");
-                Diagnostic::new(message, end.span.clone()).help("describe it in a table [platform]")
+                let help = "describe it in a table [platform], or a skeleton as a leg without `end`, whose bodies `end.body` names";
+                Diagnostic::new(message, end.span.clone()).help(help)
             }
             _ => continue,
         };
         table.context.report(diagnostic);
     }
-    if let (false, Some(second)) = (platform, legs.get(1)) {
-        let message = "a robot without platform has one leg";
+    let mut endless = legs.iter().filter(|leg| leg.end.is_none());
+    if let (false, Some(second)) = (platform, endless.nth(1)) {
+        let message = "a robot without platform has one leg without an end";
         let help = "branches of a tree are joints whose `antecedent` is not the joint before them";
         table
             .context
@@ -242,8 +247,8 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
 }
 
 /// Springs and known torques are described of robots without platform, whose joints are measured.
-fn check_springs(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
-    if platform.is_none() {
+fn check_springs(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
+    if !is_closed {
         return;
     }
     let joints = || legs.iter().flat_map(|leg| &leg.joints);
@@ -270,9 +275,9 @@ fn check_springs(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg
 
 /// Motors that turn several joints are known of robots without platform: the frame that ends a leg is the last
 /// joint's.
-fn check_motors(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
+fn check_motors(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
     let mut joints = legs.iter().flat_map(|leg| &leg.joints);
-    if let (Some(_), Some(motor)) = (platform, joints.find(|joint| joint.motor.is_some())) {
+    if let (true, Some(motor)) = (is_closed, joints.find(|joint| joint.motor.is_some())) {
         let message = "motors of their own are described of robots without platform only";
         let help =
             "actuate the joint itself: its `ia`, `fv`, `fs` and `off` are those of its motor";

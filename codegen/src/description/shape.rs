@@ -15,6 +15,8 @@ pub(super) struct Shape<'c, 't> {
     pub(super) variables: Vec<Spanned<String>>,
     pub(super) base_at: Option<Item<'c, 't>>,
     pub(super) base_rotation: Option<Item<'c, 't>>,
+    /// The body of the skeleton that the base is fixed on; the ground without it.
+    pub(super) base_body: Option<Spanned<String>>,
     pub(super) joints: Vec<JointShape<'c, 't>>,
     pub(super) motors: Vec<MotorShape<'c, 't>>,
     pub(super) end: Option<EndShape<'c, 't>>,
@@ -47,6 +49,8 @@ pub(super) struct EndShape<'c, 't> {
     pub(super) rotation: Option<Item<'c, 't>>,
     /// Axes of the base frame along which a point end coincides with the platform's point.
     pub(super) along: [bool; 3],
+    /// The body of the skeleton that the end meets; the platform without it.
+    pub(super) body: Option<Spanned<String>>,
     pub(super) span: Span,
 }
 
@@ -79,10 +83,11 @@ pub(super) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Sha
         .unwrap_or_default();
     let variables = valid_variables(&table, variables, constants);
     let base = table.get("base").and_then(|i| i.table("`base`"));
-    let (base_at, base_rotation) = match &base {
-        Some(base) => (base.get("at"), base.get("rotation")),
-        None => (None, None),
+    let (base_at, base_rotation, base_body) = match &base {
+        Some(base) => (base.get("at"), base.get("rotation"), base.get("body")),
+        None => (None, None, None),
     };
+    let base_body = base_body.and_then(|item| item.string());
     if let Some(base) = base {
         base.finish();
     }
@@ -99,6 +104,7 @@ pub(super) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Sha
         variables,
         base_at,
         base_rotation,
+        base_body,
         joints,
         motors: motors.unwrap_or_default(),
         end,
@@ -310,12 +316,14 @@ fn end<'c, 't>(item: &Item<'c, 't>) -> Option<EndShape<'c, 't>> {
         );
     }
     let along = along(table.get("along").as_ref(), rigid);
+    let body = table.get("body").and_then(|item| item.string());
     table.finish();
     Some(EndShape {
         rigid,
         at,
         rotation,
         along,
+        body,
         span: table.span.clone(),
     })
 }

@@ -13,9 +13,49 @@ const SINGULAR: f64 = 1e-9;
 /// Length of a row of J_p^inv, relative to the fastest joint's, below which it is rounding.
 const ROUNDING: f64 = 1e-10;
 
+/// Velocity components that a leg's end shares with what it ends on, per independent coordinate. Those of
+/// chains are relative to the body that the chain starts from, in its axes.
+#[must_use]
+pub(super) fn shared_velocities(
+    mechanism: &Mechanism,
+    leg: usize,
+    pose: &[f64],
+) -> Option<DMatrix<f64>> {
+    let end = mechanism.legs[leg].end.as_ref()?;
+    match &mechanism.platform {
+        Some(platform) => Some(on_platform(platform.motion, pose, end)),
+        None => on_skeleton(mechanism, leg, pose),
+    }
+}
+
+/// Relative velocity of the point of the skeleton that a chain ends at, per rate of the skeleton's joints.
+fn on_skeleton(mechanism: &Mechanism, leg: usize, pose: &[f64]) -> Option<DMatrix<f64>> {
+    let chain = &mechanism.legs[leg];
+    let end = chain.end.as_ref()?;
+    let skeleton = mechanism.skeleton()?;
+    let frames = skeleton.frames(pose);
+    let ground = mechanism.ground_of(leg, pose);
+    let point = ground * mechanism.target(leg, pose)?;
+    let into = ground.rotation.inverse();
+    let of = |body: Option<usize>| {
+        body.map(|body| skeleton.body_jacobian(&frames, body, point.translation.vector))
+    };
+    let mut velocities = of(chain.end_body)?;
+    if let Some(own) = of(chain.base_body) {
+        velocities -= own;
+    }
+    for mut column in velocities.column_iter_mut() {
+        for part in [0, 3] {
+            let turned = into * Vector3::new(column[part], column[part + 1], column[part + 2]);
+            column.rows_mut(part, 3).copy_from(&turned);
+        }
+    }
+    Some(velocities.select_rows(&end.shared_components()))
+}
+
 /// Velocity components that a leg's end shares with the platform, per twist coordinate.
 #[must_use]
-pub(super) fn shared_velocities(motion: Motion, pose: &[f64], end: &End) -> DMatrix<f64> {
+fn on_platform(motion: Motion, pose: &[f64], end: &End) -> DMatrix<f64> {
     let frame = platform_frame(motion, pose);
     let arm = target(end, &frame).translation.vector - frame.translation.vector;
     let twist = motion.twist();
@@ -53,13 +93,16 @@ impl Mechanism {
     /// leg is not regular there.
     #[must_use]
     pub(crate) fn rates_at_home(&self) -> Option<DMatrix<f64>> {
-        let Some(platform) = &self.platform else {
+        if self.is_tree() {
             return Some(DMatrix::identity(self.dof(), self.dof()));
-        };
+        }
         let mut all = DMatrix::zeros(self.joints().len(), self.dof());
         for (index, leg) in self.legs.iter().enumerate() {
             let range = self.leg_range(index);
-            let velocities = shared_velocities(platform.motion, &self.home.pose, leg.end.as_ref()?);
+            let Some(velocities) = shared_velocities(self, index, &self.home.pose) else {
+                all.rows_mut(range.start, range.len()).fill_with_identity();
+                continue;
+            };
             let rates = rates_per_velocity(leg, &self.home.joints[range.clone()])? * velocities;
             all.rows_mut(range.start, range.len()).copy_from(&rates);
         }

@@ -61,9 +61,10 @@ fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Resul
 /// Legs that are alike shall have the same parameters; a robot without legs side by side has nothing to
 /// be symmetric about.
 fn base_columns(description: &Description) -> BaseColumns {
-    let by_kind = match description.platform {
-        Some(_) => BaseColumns::Symmetric,
-        None => BaseColumns::Cheapest,
+    let has_loop = |leg: &crate::description::Leg| leg.end.is_some();
+    let by_kind = match description.legs.iter().any(has_loop) {
+        true => BaseColumns::Symmetric,
+        false => BaseColumns::Cheapest,
     };
     description.base_columns.unwrap_or(by_kind)
 }
@@ -95,6 +96,8 @@ fn plain(description: &Description) -> Mechanism {
         base: l.base.clone(),
         joints: l.joints.iter().map(joint).collect(),
         end: l.end.as_ref().map(|e| e.value.clone()),
+        base_body: l.base_body,
+        end_body: l.end_body,
     };
     let platform = description.platform.as_ref().map(|p| Platform {
         motion: p.motion.value,
@@ -132,7 +135,7 @@ fn on_axis(description: &Description, mut legs: Vec<Leg>) -> Vec<Leg> {
 fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
     let (n, r) = (mechanism.actuated().len(), mechanism.dof());
     let span = description.name.span.clone();
-    if mechanism.platform.is_none() && n < r {
+    if mechanism.is_tree() && n < r {
         let passive = mechanism
             .joints()
             .into_iter()
@@ -226,13 +229,12 @@ fn check_sizes(description: &Description, errors: &mut Diagnostics) {
 /// The joints of every leg must be determined by the motion of its end. Legs of one shape share their
 /// errors.
 fn check_structure(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
-    let Some(platform) = &mechanism.platform else {
-        return;
-    };
     let pose = rough_home(description).pose;
-    for (place, leg) in description.legs.iter().zip(&mechanism.legs) {
-        let Some(end) = &leg.end else { continue };
-        let velocities = shared_velocities(platform.motion, &pose, end);
+    for (index, place) in description.legs.iter().enumerate() {
+        let Some(velocities) = shared_velocities(mechanism, index, &pose) else {
+            continue;
+        };
+        let leg = &mechanism.legs[index];
         for defect in defects(leg, &velocities) {
             errors.push(explain::defect(place, &defect));
         }
@@ -250,13 +252,26 @@ fn rough_home(description: &Description) -> Home {
     });
     let joints: Vec<f64> = joints.collect();
     let pose = match &description.platform {
-        None => joints.clone(),
+        // Of a robot with chains, those of its skeleton.
+        None => joints[..coordinates(description, joints.len())].to_vec(),
         Some(platform) => home_pose(platform),
     };
     Home {
         pose,
         joints,
         actuators: Vec::new(),
+    }
+}
+
+/// How many of the joints are independent coordinates of a robot without platform.
+fn coordinates(description: &Description, joints: usize) -> usize {
+    let has_chains = description.legs.iter().any(|leg| leg.end.is_some());
+    match description.legs.first().filter(|_| has_chains) {
+        Some(skeleton) => {
+            let own = skeleton.joints.iter().enumerate();
+            own.filter(|(i, joint)| joint.is_independent(*i)).count()
+        }
+        None => joints,
     }
 }
 
@@ -289,12 +304,10 @@ fn check_mobility(
     index: usize,
     errors: &mut Diagnostics,
 ) {
-    let Some(platform) = &mechanism.platform else {
+    let leg = &mechanism.legs[index];
+    let Some(wanted) = shared_velocities(mechanism, index, &mechanism.home.pose) else {
         return;
     };
-    let leg = &mechanism.legs[index];
-    let Some(end) = &leg.end else { return };
-    let wanted = shared_velocities(platform.motion, &mechanism.home.pose, end);
     let joints = &mechanism.home.joints[mechanism.leg_range(index)];
     let jacobian = leg.closure_jacobian(joints);
     let Some(rates) = rates_per_velocity(leg, joints) else {

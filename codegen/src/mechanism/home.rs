@@ -1,6 +1,5 @@
 //! The home configuration: from rough joint positions to ones that close every leg.
 
-use super::numeric::{platform_frame, target};
 use super::singular_values::SingularValues;
 use super::{Leg, Mechanism};
 use crate::cas::{Arena, Expr, InputElement};
@@ -89,16 +88,16 @@ impl Home {
     /// # Errors
     /// Every leg that does not close, or is singular where it closes.
     pub(crate) fn refine(mechanism: &Mechanism, rough: &Self) -> Result<Self, Vec<HomeError>> {
-        let Some(platform) = &mechanism.platform else {
+        if mechanism.is_tree() {
             let joints = || rough.joints.clone();
             return Ok(Self::new(mechanism, joints(), joints()));
-        };
-        let frame = platform_frame(platform.motion, &rough.pose);
+        }
         let mut joints = rough.joints.clone();
         let mut errors = Vec::new();
         for (index, leg) in mechanism.legs.iter().enumerate() {
-            let Some(end) = &leg.end else { continue };
-            let target = target(end, &frame);
+            let Some(target) = mechanism.target(index, &rough.pose) else {
+                continue;
+            };
             let range = mechanism.leg_range(index);
             match close(leg, &rough.joints[range.clone()], &target) {
                 Ok(q) => joints[range].copy_from_slice(&q),

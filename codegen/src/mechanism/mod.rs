@@ -90,8 +90,13 @@ pub struct Leg {
     pub base: Placement,
     /// The joints; antecedents come first.
     pub joints: Vec<Joint>,
-    /// Where the leg ends on the platform; `None` for a tree.
+    /// Where the leg ends on the platform, or on a body of the skeleton; `None` for a tree.
     pub end: Option<End>,
+    /// The body of the skeleton that the leg starts from, as a joint of the first leg; `None` for the
+    /// ground. The leg's base frame stands in this body's frame.
+    pub base_body: Option<usize>,
+    /// The body of the skeleton that the leg ends on; `None` for the platform.
+    pub end_body: Option<usize>,
 }
 
 impl Leg {
@@ -176,19 +181,45 @@ impl Mechanism {
         actuated.map(|(i, _)| i).collect()
     }
 
-    /// r, the number of independent platform coordinates; for a tree, of its joints.
+    /// Whether the robot has no loop: neither a platform nor chains on a skeleton.
+    #[must_use]
+    pub fn is_tree(&self) -> bool {
+        self.platform.is_none() && self.skeleton().is_none()
+    }
+
+    /// The leg whose joints are the independent coordinates and whose bodies carry the chains: the first
+    /// of a robot without platform whose other legs have ends.
+    #[must_use]
+    pub fn skeleton(&self) -> Option<&Leg> {
+        let has_chains = self.platform.is_none() && self.legs.iter().any(|leg| leg.end.is_some());
+        self.legs.first().filter(|_| has_chains)
+    }
+
+    /// The joints that are the independent coordinates, of a robot without a platform: the first of
+    /// [`Self::joints`].
+    fn independent_joints(&self) -> Vec<JointIndex> {
+        let mut all = self.joints();
+        if let Some(skeleton) = self.skeleton() {
+            all.truncate(skeleton.independent().count());
+        }
+        all
+    }
+
+    /// r, the number of independent platform coordinates; for a tree, of its joints, and of those of a
+    /// skeleton.
     #[must_use]
     pub fn dof(&self) -> usize {
-        self.platform
-            .as_ref()
-            .map_or_else(|| self.joints().len(), |p| p.motion.twist().len())
+        self.platform.as_ref().map_or_else(
+            || self.independent_joints().len(),
+            |p| p.motion.twist().len(),
+        )
     }
 
     /// Length of a pose.
     #[must_use]
     pub fn pose_len(&self) -> usize {
         self.platform.as_ref().map_or_else(
-            || self.joints().len(),
+            || self.independent_joints().len(),
             |p| p.motion.pose_coordinates().len(),
         )
     }
@@ -231,7 +262,7 @@ impl Mechanism {
                 let names = platform.motion.coordinates();
                 names.into_iter().map(str::to_owned).collect()
             }
-            None => self.joints().iter().map(|&j| self.joint_name(j)).collect(),
+            None => self.own_names(|name| name),
         }
     }
 
@@ -244,14 +275,19 @@ impl Mechanism {
                 let names = platform.motion.pose_coordinates();
                 names.into_iter().map(str::to_owned).collect()
             }
-            None => {
-                let joints = self.joints();
-                joints
-                    .iter()
-                    .map(|&j| format!("q_{}", self.joint_name(j)))
-                    .collect()
-            }
+            None => self.own_names(|name| format!("q_{name}")),
         }
+    }
+
+    /// Names of the independent joints of a robot without a platform; those of a skeleton without the
+    /// leg's.
+    fn own_names(&self, form: impl Fn(String) -> String) -> Vec<String> {
+        let joints = self.independent_joints().into_iter();
+        let name = |j: JointIndex| match self.skeleton() {
+            Some(_) => self.joint(j).name.clone(),
+            None => self.joint_name(j),
+        };
+        joints.map(|j| form(name(j))).collect()
     }
 
     /// Name of a leg's standard parameter: `zz_2_leg3`, or `zz_2` in a robot of one leg without a

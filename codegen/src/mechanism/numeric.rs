@@ -75,20 +75,31 @@ impl Leg {
     /// [`Self::end_jacobian`] where the frames of all joints are known.
     #[must_use]
     pub fn end_jacobian_at(&self, frames: &[Isometry3<f64>]) -> DMatrix<f64> {
+        match frames.last() {
+            Some(last) => self.body_jacobian(frames, frames.len() - 1, last.translation.vector),
+            None => DMatrix::zeros(6, self.independent().count()),
+        }
+    }
+
+    /// The velocity of a point of a body and its angular velocity per independent joint rate.
+    #[must_use]
+    pub(crate) fn body_jacobian(
+        &self,
+        frames: &[Isometry3<f64>],
+        body: usize,
+        point: Vector3<f64>,
+    ) -> DMatrix<f64> {
         let independent: Vec<usize> = self.independent().collect();
         let mut jacobian = DMatrix::zeros(6, independent.len());
-        let Some(last) = frames.last() else {
-            return jacobian;
-        };
         let mut on_path = vec![false; self.joints.len()];
-        let mut at = self.joints.len().checked_sub(1);
+        let mut at = Some(body);
         while let Some(joint) = at {
             on_path[joint] = true;
             at = self.joints[joint].antecedent;
         }
         for (index, joint) in self.joints.iter().enumerate().filter(|(i, _)| on_path[*i]) {
             let axis = frames[index] * Vector3::z();
-            let arm = last.translation.vector - frames[index].translation.vector;
+            let arm = point - frames[index].translation.vector;
             let (linear, angular) = match joint.kind {
                 JointKind::Revolute => (axis.cross(&arm), axis),
                 JointKind::Prismatic => (axis, Vector3::zeros()),
@@ -146,6 +157,35 @@ pub fn target(end: &End, platform: &Isometry3<f64>) -> Isometry3<f64> {
             let [x, y, z] = at.map(crate::cas::Number::value);
             platform * Isometry3::translation(x, y, z)
         }
+    }
+}
+
+impl Mechanism {
+    /// Where a leg's last frame has to be at a pose, in the frame that the leg's base stands in: the
+    /// robot's base frame, or that of the skeleton's body that it starts from. `None` for a leg without
+    /// an end.
+    #[must_use]
+    pub fn target(&self, leg: usize, pose: &[f64]) -> Option<Isometry3<f64>> {
+        let leg = &self.legs[leg];
+        let end = leg.end.as_ref()?;
+        if let Some(platform) = &self.platform {
+            return Some(target(end, &platform_frame(platform.motion, pose)));
+        }
+        let frames = self.skeleton()?.frames(pose);
+        let carrier = frames.get(leg.end_body?)?;
+        let from = leg.base_body.and_then(|body| frames.get(body));
+        let from = from.map_or_else(Isometry3::identity, Isometry3::inverse);
+        Some(target(end, &(from * carrier)))
+    }
+
+    /// The frame in the robot's base frame that a leg's base stands in at a pose.
+    #[must_use]
+    pub fn ground_of(&self, leg: usize, pose: &[f64]) -> Isometry3<f64> {
+        let body = self.legs[leg].base_body;
+        let frames = self.skeleton().zip(body);
+        frames.map_or_else(Isometry3::identity, |(skeleton, body)| {
+            skeleton.frames(pose)[body]
+        })
     }
 }
 

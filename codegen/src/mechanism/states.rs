@@ -2,8 +2,7 @@
 //! every leg in the working mode of the home configuration.
 
 use super::home::close_from;
-use super::numeric::{platform_frame, target};
-use super::{Mechanism, Motion};
+use super::{JointKind, Mechanism, Motion};
 use crate::cas::Stream;
 
 /// A state of a robot.
@@ -88,7 +87,7 @@ fn displaced(
     spread: f64,
 ) -> Option<(Vec<f64>, Vec<f64>)> {
     let home = &mechanism.home;
-    let Some(platform) = &mechanism.platform else {
+    if mechanism.is_tree() {
         // Joints of a tree go anywhere.
         let joints: Vec<f64> = home
             .joints
@@ -97,8 +96,11 @@ fn displaced(
             .map(|(h, d)| h + 3.0 * d)
             .collect();
         return Some((joints.clone(), joints));
+    }
+    let pose = match &mechanism.platform {
+        Some(platform) => pose_towards(mechanism, platform.motion, direction, spread),
+        None => joints_towards(mechanism, direction, spread),
     };
-    let pose = pose_towards(mechanism, platform.motion, direction, spread);
     let joints = follow(mechanism, &pose)?;
     Some((pose, joints))
 }
@@ -127,10 +129,29 @@ pub fn pose_towards(
     pose
 }
 
+/// The skeleton's joints at a length from home in a direction.
+fn joints_towards(mechanism: &Mechanism, direction: &[f64], length: f64) -> Vec<f64> {
+    let scale = mechanism.length_scale();
+    let kinds = mechanism.skeleton().into_iter().flat_map(|skeleton| {
+        skeleton
+            .independent()
+            .map(|joint| skeleton.joints[joint].kind)
+    });
+    let home = mechanism.home.pose.iter().zip(kinds);
+    let moved = home.zip(direction).map(|((home, kind), d)| {
+        let unit = if kind == JointKind::Prismatic {
+            scale
+        } else {
+            1.0
+        };
+        home + d * length * unit
+    });
+    moved.collect()
+}
+
 /// Joints at a pose, followed from home in small steps so that the working mode stays.
 fn follow(mechanism: &Mechanism, pose: &[f64]) -> Option<Vec<f64>> {
     const STEPS: usize = 8;
-    let platform = mechanism.platform.as_ref()?;
     let home = &mechanism.home;
     let mut joints = home.joints.clone();
     for step in 1..=STEPS {
@@ -144,10 +165,13 @@ fn follow(mechanism: &Mechanism, pose: &[f64]) -> Option<Vec<f64>> {
         if step == STEPS {
             at.copy_from_slice(pose);
         }
-        let frame = platform_frame(platform.motion, &at);
         for (index, leg) in mechanism.legs.iter().enumerate() {
-            let target = target(leg.end.as_ref()?, &frame);
             let range = mechanism.leg_range(index);
+            let Some(target) = mechanism.target(index, &at) else {
+                // The skeleton's own joints are the pose.
+                joints[range].copy_from_slice(&at);
+                continue;
+            };
             let closed = close_from(leg, &joints[range.clone()], &target)?;
             joints[range].copy_from_slice(&closed);
         }

@@ -1,5 +1,6 @@
 //! Robots that are no robots: what is said of them, and that it names the culprit and a way out.
 
+mod chains;
 mod homes;
 mod mobility;
 

@@ -112,9 +112,9 @@ pub(super) fn joints(
     mechanism: &Mechanism,
     selection: &Selection,
 ) -> Result<JointsBy, Underivable> {
-    let from = match mechanism.platform {
-        Some(_) => MotionInput::Pose,
-        None => MotionInput::Joints,
+    let from = match mechanism.is_tree() {
+        false => MotionInput::Pose,
+        true => MotionInput::Joints,
     };
     match derive(&Arena::new(), mechanism, selection, Function::Joints, from) {
         Ok(_) => Ok(JointsBy::Rule),

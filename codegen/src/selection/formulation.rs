@@ -33,8 +33,9 @@ pub(super) fn cheapest_formulation(
         formulation: plain,
     };
     let mut shapes = BTreeSet::new();
-    if mechanism.platform.is_some() {
-        shapes.extend(mechanism.legs.iter().map(|leg| leg.shape));
+    if !mechanism.is_tree() {
+        let closed = mechanism.legs.iter().filter(|leg| leg.end.is_some());
+        shapes.extend(closed.map(|leg| leg.shape));
     }
     for shape in shapes {
         let of_shape = |l: &usize| mechanism.legs[*l].shape == shape;

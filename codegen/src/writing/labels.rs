@@ -170,11 +170,8 @@ fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
     let actuated = model.mechanism.actuated();
     match name {
         "pose" => {
-            let platform = model.mechanism.platform.as_ref();
-            let names = platform
-                .map(|p| p.motion.pose_coordinates())
-                .unwrap_or_default();
-            names.iter().map(|name| plain((*name).to_owned())).collect()
+            let names = model.mechanism.pose_coordinates();
+            names.into_iter().map(plain).collect()
         }
         "twist" => coordinates(""),
         "acceleration" => coordinates("d"),
@@ -207,8 +204,11 @@ fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
 /// `vx`, `wz`: the twist's coordinates.
 fn twist(model: &RobotModel) -> Vec<String> {
     const AXES: [&str; 3] = ["x", "y", "z"];
-    let platform = model.mechanism.platform.as_ref();
-    let coordinates = platform.map(|p| p.motion.twist()).unwrap_or_default();
+    let Some(platform) = &model.mechanism.platform else {
+        let names = model.mechanism.coordinates().into_iter();
+        return names.map(|name| format!("qd_{name}")).collect();
+    };
+    let coordinates = platform.motion.twist();
     let label = |coordinate: TwistCoordinate| match coordinate {
         TwistCoordinate::Linear(axis) => format!("v{}", AXES[axis]),
         TwistCoordinate::Angular(axis) => format!("w{}", AXES[axis]),

@@ -136,21 +136,22 @@ fn columns(function: &CompiledFunction) -> Option<Table> {
 #[must_use]
 pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
     let platform = model.mechanism.platform.as_ref();
-    let coordinates = || {
-        platform
-            .map(|p| p.motion.pose_coordinates().join(", "))
-            .unwrap_or_default()
-    };
+    let coordinates = || model.mechanism.pose_coordinates().join(", ");
     let rates = || {
         platform
             .map(|p| p.motion.twist_names().join(", "))
             .unwrap_or_default()
     };
+    let of_skeleton = model.mechanism.skeleton().is_some();
     Some(match name {
         "pose" if platform.is_some_and(|p| p.motion.has_quaternion()) => format!(
             "x = `[{}]` (m), in the base frame; the quaternion is scaled to length 1",
             coordinates()
         ),
+        "pose" if of_skeleton => {
+            format!("x = `[{}]` (m, rad), joints of the skeleton", coordinates())
+        }
+        "twist" if of_skeleton => "v, velocities of the skeleton's joints (m/s, rad/s)".to_owned(),
         "pose" => format!("x = `[{}]` (m, rad), in the base frame", coordinates()),
         "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),
         "actuators" => "q, positions of the actuated joints (m, rad)".to_owned(),

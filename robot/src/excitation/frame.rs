@@ -127,9 +127,11 @@ pub(super) fn coordinates(description: &Description) -> Vec<(String, bool)> {
             .map(|name| (name.to_owned(), matches!(name, "x" | "y" | "z")))
             .collect();
     }
+    // Those of chains follow from those of the skeleton.
     let joints = description
         .legs
         .iter()
+        .filter(|leg| leg.end.is_none())
         .flat_map(|leg| leg.joints.iter().enumerate());
     let free = joints.filter(|(index, joint)| joint.is_independent(*index));
     free.map(|(_, joint)| {

@@ -14,13 +14,17 @@ macro_rules! robot {
 
 pub use overact_robots::{DualV, Emps, FiveBar, Rx90, ThreeLegPoint};
 
+robot!(ankle: Ankle);
+robot!(ankle_offset: AnkleOffset);
 robot!(delta: Delta);
 robot!(delta_4: Delta4);
 robot!(dvrk_mtm: DvrkMtm);
+robot!(four_bar: FourBar);
 robot!(hexapod: Hexapod);
 robot!(kuka_lwr: KukaLwr);
 robot!(octopod: Octopod);
 robot!(orthoglide: Orthoglide);
+robot!(palletiser: Palletiser);
 robot!(planar_3prr: Planar3Prr);
 robot!(planar_3rrr: Planar3Rrr);
 robot!(planar_4prr: Planar4Prr);
@@ -29,6 +33,8 @@ robot!(scotch_yoke: ScotchYoke);
 robot!(spherical_3rrr: Spherical3Rrr);
 robot!(spherical_4rrr: Spherical4Rrr);
 robot!(stanford: Stanford);
+robot!(tricept: Tricept);
+robot!(tricept_4: Tricept4);
 robot!(two_motor_axis: TwoMotorAxis);
 robot!(tx40: Tx40);
 
@@ -42,16 +48,20 @@ use overact::Model;
 #[must_use]
 pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
     Some(match stem {
+        "ankle" => &Ankle,
+        "ankle_offset" => &AnkleOffset,
         "delta" => &Delta,
         "delta_4" => &Delta4,
         "dualv" => &DualV,
         "dvrk_mtm" => &DvrkMtm,
         "emps" => &Emps,
         "five_bar" => &FiveBar,
+        "four_bar" => &FourBar,
         "hexapod" => &Hexapod,
         "kuka_lwr" => &KukaLwr,
         "octopod" => &Octopod,
         "orthoglide" => &Orthoglide,
+        "palletiser" => &Palletiser,
         "planar_3prr" => &Planar3Prr,
         "planar_3rrr" => &Planar3Rrr,
         "planar_4prr" => &Planar4Prr,
@@ -62,6 +72,8 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
         "spherical_4rrr" => &Spherical4Rrr,
         "stanford" => &Stanford,
         "three_leg_point" => &ThreeLegPoint,
+        "tricept" => &Tricept,
+        "tricept_4" => &Tricept4,
         "two_motor_axis" => &TwoMotorAxis,
         "tx40" => &Tx40,
         _ => return None,

@@ -9,6 +9,7 @@
 //! J_k q̈ = J_tk v̇ + J̇_tk v - J̇_k q̇.
 
 use super::Error;
+use super::chains;
 use super::frame::logarithm;
 use super::jacobians::{Jacobians, end_jacobian, follow};
 use super::kinematics::{
@@ -83,6 +84,10 @@ impl State {
         if mechanism.motion == Motion::None {
             return Self::solve(mechanism, pose, twist, acceleration);
         }
+        if !mechanism.motion.has_platform() {
+            let q = chains::close(mechanism, pose, near)?;
+            return Self::with_joints(mechanism, pose, &q, twist, acceleration);
+        }
         let mut all = Vec::with_capacity(near.len());
         for (k, range) in mechanism.leg_ranges().into_iter().enumerate() {
             all.extend(close(mechanism, k, pose, &near.as_slice()[range])?);
@@ -155,6 +160,9 @@ impl State {
 ///
 /// If a leg can't reach the pose.
 pub fn joint_positions(mechanism: &Mechanism, pose: &[f64]) -> Result<DVector<f64>, Error> {
+    if !mechanism.motion.has_platform() {
+        return chains::positions(mechanism, pose);
+    }
     let path = mechanism.motion.displacement(&mechanism.home, pose);
     let mut all = Vec::new();
     for (k, leg) in mechanism.legs.iter().enumerate() {
@@ -249,6 +257,9 @@ pub fn closure_residual(mechanism: &Mechanism, leg: &Leg, pose: &[f64], q: &[f64
 fn joint_accelerations(mechanism: &Mechanism, state: &State) -> Result<DVector<f64>, Error> {
     if mechanism.motion == Motion::None {
         return Ok(state.acceleration.clone());
+    }
+    if !mechanism.motion.has_platform() {
+        return chains::accelerations(mechanism, state);
     }
     let platform = state.platform(mechanism);
     let mut all = Vec::new();

@@ -7,7 +7,6 @@
 use super::closure::State;
 use super::kinematics::BodyMotion;
 use super::mechanism::{JointKind, Mechanism};
-use super::motion::Motion;
 use super::newton_euler::inertia;
 use super::parameters::{BODY, INERTIAL, leg_start, platform_start};
 use nalgebra::{DVector, Vector3};
@@ -44,7 +43,7 @@ pub fn total_energy(mechanism: &Mechanism, state: &State, parameters: &DVector<f
             }
         }
     }
-    if mechanism.motion != Motion::None {
+    if mechanism.motion.has_platform() {
         let (platform, first) = (state.platform(mechanism), platform_start(mechanism));
         for start in [first, first + INERTIAL] {
             energy += body_energy(&platform, &all[start..], &mechanism.gravity);

@@ -14,6 +14,7 @@
 //! For the DualV this gives the corrected (59) and (60).
 
 use super::Error;
+use super::chains;
 use super::kinematics::{
     end_components, end_equations, end_from_leg, end_from_platform, leg_motion, platform_motion,
 };
@@ -58,6 +59,9 @@ impl Jacobians {
         let actuated = mechanism.actuated();
         if mechanism.motion == Motion::None {
             return Ok(Self::of_tree(mechanism.joints(), actuated));
+        }
+        if !mechanism.motion.has_platform() {
+            return chains::jacobians(mechanism, q);
         }
         let (total, dof) = (mechanism.joints(), mechanism.dof());
         let equations: usize = mechanism.legs.iter().map(end_equations).sum();
@@ -125,7 +129,7 @@ impl Jacobians {
 
     /// Writes the reduced closure of the actuated joints of the leg whose variables begin at
     /// `start`.
-    fn reduce(&mut self, start: usize, leg: &DMatrix<f64>, platform: &DMatrix<f64>) {
+    pub(super) fn reduce(&mut self, start: usize, leg: &DMatrix<f64>, platform: &DMatrix<f64>) {
         let (cofactors, determinant) = (adjugate(leg), determinant(leg));
         for (row, &at) in self.actuated.iter().enumerate() {
             if (start..start + leg.ncols()).contains(&at) {

@@ -74,12 +74,16 @@ impl BodyMotion {
 /// variables.
 #[must_use]
 pub fn leg_motion(leg: &Leg, q: &[f64], qd: &[f64], qdd: &[f64]) -> Vec<BodyMotion> {
+    moving_leg(leg, BodyMotion::at_rest(leg.base), [q, qd, qdd])
+}
+
+/// The same on a base that moves.
+fn moving_leg(leg: &Leg, base: BodyMotion, [q, qd, qdd]: [&[f64]; 3]) -> Vec<BodyMotion> {
     let (values, rates, growth) = (
         leg.joint_values(q),
         leg.joint_values(qd),
         leg.joint_values(qdd),
     );
-    let base = BodyMotion::at_rest(leg.base);
     let mut bodies: Vec<BodyMotion> = Vec::with_capacity(leg.joints.len());
     for (j, joint) in leg.joints.iter().enumerate() {
         let before = joint.antecedent.map_or(base, |at| bodies[at]);
@@ -113,7 +117,7 @@ pub fn platform_motion(
     acceleration: &DVector<f64>,
 ) -> BodyMotion {
     let mut body = BodyMotion::at_rest(motion.placement(pose));
-    if *motion == Motion::None {
+    if !motion.has_platform() {
         return body;
     }
     let basis = motion.twist_basis();
@@ -171,16 +175,16 @@ pub fn all_legs(
     qd: &DVector<f64>,
     qdd: &DVector<f64>,
 ) -> Vec<Vec<BodyMotion>> {
-    let of_leg = |(leg, range): (&Leg, std::ops::Range<usize>)| {
-        let slice = |all: &DVector<f64>| all.as_slice()[range.clone()].to_vec();
-        leg_motion(leg, &slice(q), &slice(qd), &slice(qdd))
-    };
-    mechanism
-        .legs
-        .iter()
-        .zip(mechanism.leg_ranges())
-        .map(of_leg)
-        .collect()
+    let mut all: Vec<Vec<BodyMotion>> = Vec::new();
+    for (leg, range) in mechanism.legs.iter().zip(mechanism.leg_ranges()) {
+        let base = match leg.carrier {
+            Some(body) => all[0][body].carried(leg.base),
+            None => BodyMotion::at_rest(leg.base),
+        };
+        let own = [q, qd, qdd].map(|all| &all.as_slice()[range.clone()]);
+        all.push(moving_leg(leg, base, own));
+    }
+    all
 }
 
 fn stacked(above: Vector3<f64>, below: Vector3<f64>) -> Vector6<f64> {

@@ -200,8 +200,12 @@ pub enum End {
 /// A chain or tree of joints between the base and the platform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leg {
-    /// Placement of the leg's base in the robot's base frame.
+    /// Placement of the leg's base in the robot's base frame, or in that of its carrier.
     pub base: Frame,
+    /// The body of the first leg that carries the base; none is the ground.
+    pub carrier: Option<usize>,
+    /// The body of the first leg that the end meets; none is the platform.
+    pub body: Option<usize>,
     /// Joints; every antecedent comes before its successors.
     pub joints: Vec<Joint>,
     /// How the leg meets the platform.

@@ -12,6 +12,9 @@ use nalgebra::{DMatrix, DVector, Quaternion, Rotation3, UnitQuaternion, Vector3,
 pub enum Motion {
     /// No platform: a serial or tree robot. Pose and twist coordinates are the joints'.
     None,
+    /// No platform, but chains between bodies of a tree: so many independent joints, the first ones.
+    /// Pose and twist coordinates are theirs.
+    Joints(usize),
     /// Translation along a fixed axis. Pose: the distance from a point of it.
     Slide {
         /// Point of the axis.
@@ -45,14 +48,23 @@ impl Motion {
     /// Number of free coordinates; none has 0 of its own.
     #[must_use]
     pub fn dof(&self) -> usize {
-        self.twist_basis().ncols()
+        match self {
+            Self::Joints(count) => *count,
+            _ => self.twist_basis().ncols(),
+        }
+    }
+
+    /// Whether there is a platform.
+    #[must_use]
+    pub const fn has_platform(&self) -> bool {
+        !matches!(self, Self::None | Self::Joints(_))
     }
 
     /// Matrix D of t = D v, 6 x r (14).
     #[must_use]
     pub fn twist_basis(&self) -> DMatrix<f64> {
         let rows: Vec<usize> = match self {
-            Self::None => Vec::new(),
+            Self::None | Self::Joints(_) => Vec::new(),
             Self::Slide { direction, .. } => return column(*direction, Vector3::zeros()),
             Self::Hinge { direction, .. } => return column(Vector3::zeros(), *direction),
             Self::Point(axis) => plane(*axis).to_vec(),
@@ -73,7 +85,7 @@ impl Motion {
     #[must_use]
     pub fn placement(&self, pose: &[f64]) -> Frame {
         match *self {
-            Self::None => Frame::identity(),
+            Self::None | Self::Joints(_) => Frame::identity(),
             Self::Slide { point, direction } => still(point + direction * pose[0]),
             Self::Hinge { point, direction } => {
                 Frame::new(Rotation3::new(direction * pose[0]).into_inner(), point)
@@ -122,7 +134,7 @@ impl Motion {
     /// Displacement, in twist coordinates, from one pose to another.
     #[must_use]
     pub fn displacement(&self, from: &[f64], to: &[f64]) -> DVector<f64> {
-        if *self == Self::None {
+        if !self.has_platform() {
             return DVector::from_iterator(from.len(), to.iter().zip(from).map(|(b, a)| b - a));
         }
         let (a, b) = (self.placement(from), self.placement(to));

@@ -15,7 +15,6 @@
 use super::closure::State;
 use super::kinematics::BodyMotion;
 use super::mechanism::{JointKind, Leg, Mechanism};
-use super::motion::Motion;
 use super::parameters::{BODY, INERTIAL, leg_start, platform_start};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -65,15 +64,30 @@ pub fn sign(velocity: f64) -> f64 {
     }
 }
 
-/// Torques of a leg's variables; `parameters` holds [`BODY`] per joint.
+impl Wrench {
+    const ZERO: Self = Self {
+        force: Vector3::new(0.0, 0.0, 0.0),
+        moment: Vector3::new(0.0, 0.0, 0.0),
+    };
+
+    /// Adds a wrench whose moment is about a point at `arm` from this one's.
+    fn add(&mut self, other: &Self, arm: &Vector3<f64>) {
+        self.force += other.force;
+        self.moment += other.moment + arm.cross(&other.force);
+    }
+}
+
+/// Torques of a leg's variables, and what its base has to bear, as a wrench about the robot's origin;
+/// `parameters` holds [`BODY`] per joint, `loads` what its bodies bear besides, about the same point.
 #[must_use]
-pub fn leg_torques(
+fn leg_torques(
     leg: &Leg,
     bodies: &[BodyMotion],
     [q, qd, qdd]: [&[f64]; 3],
     parameters: &[f64],
     gravity: &Vector3<f64>,
-) -> DVector<f64> {
+    loads: &[(usize, Wrench)],
+) -> (DVector<f64>, Wrench) {
     let (rates, growth) = (leg.joint_values(qd), leg.joint_values(qdd));
     let positions = leg.joint_values(q);
     let owners = leg.variables();
@@ -83,13 +97,19 @@ pub fn leg_torques(
         .enumerate()
         .map(|(j, body)| body_wrench(body, own(j), gravity))
         .collect();
+    for (body, load) in loads {
+        wrenches[*body].add(load, &-bodies[*body].frame.position);
+    }
+    let mut base = Wrench::ZERO;
     let mut torques = DVector::zeros(owners.len());
     for (j, joint) in leg.joints.iter().enumerate().rev() {
         let (wrench, place) = (wrenches[j], bodies[j].frame);
-        if let Some(before) = joint.antecedent {
-            let arm = place.position - bodies[before].frame.position;
-            wrenches[before].force += wrench.force;
-            wrenches[before].moment += wrench.moment + arm.cross(&wrench.force);
+        match joint.antecedent {
+            Some(before) => {
+                let arm = place.position - bodies[before].frame.position;
+                wrenches[before].add(&wrench, &arm);
+            }
+            None => base.add(&wrench, &place.position),
         }
         let along = match joint.kind {
             JointKind::Revolute => place.z().dot(&wrench.moment),
@@ -120,7 +140,7 @@ pub fn leg_torques(
             torques[at.unwrap_or_default()] += coefficient * (along + drive);
         }
     }
-    torques
+    (torques, base)
 }
 
 /// Friction with the coefficients [fv_pos fs_pos fv_neg fs_neg fst]: a law of its own for each direction, their
@@ -162,17 +182,21 @@ pub fn tree_torques(
 ) -> DVector<f64> {
     let mut all = DVector::zeros(mechanism.joints());
     let motions = state.legs(mechanism);
-    for (k, (leg, range)) in mechanism
+    let mut loads = Vec::new();
+    let legs = mechanism
         .legs
         .iter()
         .zip(mechanism.leg_ranges())
-        .enumerate()
-    {
+        .enumerate();
+    // Chains come before the bodies that carry them.
+    for (k, (leg, range)) in legs.rev() {
         let own = &parameters.as_slice()[leg_start(mechanism, k)..leg_start(mechanism, k + 1)];
         let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[range.clone()]);
-        let torques = leg_torques(leg, &motions[k], motion, own, &mechanism.gravity)
-            + known_torques(leg, motion[0]);
+        let borne: &[_] = if k == 0 { &loads } else { &[] };
+        let (torques, base) = leg_torques(leg, &motions[k], motion, own, &mechanism.gravity, borne);
+        let torques = torques + known_torques(leg, motion[0]);
         all.rows_mut(range.start, range.len()).copy_from(&torques);
+        loads.extend(leg.carrier.map(|body| (body, base)));
     }
     all
 }
@@ -184,7 +208,7 @@ pub fn platform_wrench(
     state: &State,
     parameters: &DVector<f64>,
 ) -> DVector<f64> {
-    if mechanism.motion == Motion::None {
+    if !mechanism.motion.has_platform() {
         return DVector::zeros(0);
     }
     let body = state.platform(mechanism);
@@ -208,10 +232,24 @@ pub fn projected_platform_wrench(
     state: &State,
     parameters: &DVector<f64>,
 ) -> DVector<f64> {
-    if mechanism.motion == Motion::None {
+    if !mechanism.motion.has_platform() {
         return DVector::zeros(mechanism.dof());
     }
     mechanism.motion.twist_basis().transpose() * platform_wrench(mechanism, state, parameters)
+}
+
+/// Torques of the first leg that bears a load and has no parameters of its own.
+fn carried_torques(
+    mechanism: &Mechanism,
+    state: &State,
+    bodies: &[BodyMotion],
+    load: (usize, Wrench),
+) -> DVector<f64> {
+    let leg = &mechanism.legs[0];
+    let count = leg.variables().len();
+    let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[..count]);
+    let none = vec![0.0; BODY * leg.joints.len()];
+    leg_torques(leg, bodies, motion, &none, &mechanism.gravity, &[load]).0
 }
 
 /// Right-hand side [τ_t; τ_pr] of (16) for every unit parameter, (n_t + r) x n_st.
@@ -231,11 +269,18 @@ pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
         for at in 0..BODY * leg.joints.len() {
             let mut unit = vec![0.0; BODY * leg.joints.len()];
             unit[at] = 1.0;
-            let torques = leg_torques(leg, &motions[k], motion, &unit, &mechanism.gravity);
-            let place = (range.start, leg_start(mechanism, k) + at);
+            let gravity = &mechanism.gravity;
+            let (torques, base) = leg_torques(leg, &motions[k], motion, &unit, gravity, &[]);
+            let column = leg_start(mechanism, k) + at;
             columns
-                .view_mut(place, (range.len(), 1))
+                .view_mut((range.start, column), (range.len(), 1))
                 .copy_from(&torques);
+            if let Some(body) = leg.carrier {
+                let borne = carried_torques(mechanism, state, &motions[0], (body, base));
+                columns
+                    .view_mut((0, column), (borne.len(), 1))
+                    .copy_from(&borne);
+            }
         }
     }
     for at in platform_start(mechanism)..count {

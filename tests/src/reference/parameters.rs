@@ -7,7 +7,6 @@
 //! through the legs, within a leg through the joints, within a joint through the parameters.
 
 use super::mechanism::Mechanism;
-use super::motion::Motion;
 
 /// Symbols of a leg body's parameters, in column order.
 pub const SYMBOLS: [&str; 21] = [
@@ -23,7 +22,7 @@ pub const INERTIAL: usize = 10;
 #[must_use]
 pub fn count(mechanism: &Mechanism) -> usize {
     platform_start(mechanism)
-        + if mechanism.motion == Motion::None {
+        + if !mechanism.motion.has_platform() {
             0
         } else {
             2 * INERTIAL
@@ -58,7 +57,7 @@ pub fn names(mechanism: &Mechanism) -> Vec<String> {
             );
         }
     }
-    if mechanism.motion != Motion::None {
+    if mechanism.motion.has_platform() {
         for body in ["platform", "payload"] {
             names.extend(SYMBOLS[..INERTIAL].iter().map(|s| format!("{s}_{body}")));
         }

@@ -8,7 +8,6 @@ use super::Error;
 use super::closure::State;
 use super::linear::condition;
 use super::mechanism::Mechanism;
-use super::motion::Motion;
 use super::parameters::{BODY, INERTIAL, count, platform_start};
 use nalgebra::{DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -84,7 +83,7 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
         all.push(joint.stribeck.map_or(0.0, |_| friction()));
         all.push(joint.load.as_ref().map_or(0.0, |_| friction()));
     }
-    if mechanism.motion != Motion::None {
+    if mechanism.motion.has_platform() {
         all.extend(random_body(&mut generator));
         all.extend(random_body(&mut generator));
     }

@@ -15,6 +15,7 @@ pub fn reference(mechanism: &mechanism::Mechanism, workspace: Vec<f64>) -> Mecha
         gravity: vector(mechanism.gravity),
         motion: match &mechanism.platform {
             Some(platform) => motion(platform.motion),
+            None if mechanism.skeleton().is_some() => Motion::Joints(mechanism.dof()),
             None => Motion::None,
         },
         home: mechanism.home.pose.clone(),
@@ -66,6 +67,8 @@ fn leg(leg: &mechanism::Leg, start: &[f64]) -> Leg {
     };
     Leg {
         base: frame(&leg.base),
+        carrier: leg.base_body,
+        body: leg.end_body,
         joints,
         end,
         start: start.to_vec(),
@@ -141,7 +144,8 @@ fn same_shape(a: &Leg, b: &Leg) -> bool {
         | (End::Point { joint: a, .. }, End::Point { joint: b, .. }) => a == b,
         _ => false,
     };
-    ends && a.joints.len() == b.joints.len()
+    ends && (a.carrier, a.body) == (b.carrier, b.body)
+        && a.joints.len() == b.joints.len()
         && a.joints.iter().zip(&b.joints).all(|(a, b)| joints(a, b))
 }
 

@@ -14,16 +14,20 @@ use std::sync::{Mutex, OnceLock};
 macro_rules! library {
     ($check:path) => {
         $crate::library! { $check;
+            ankle: Ankle,
+            ankle_offset: AnkleOffset,
             delta: Delta,
             delta_4: Delta4,
             dualv: DualV,
             dvrk_mtm: DvrkMtm,
             emps: Emps,
             five_bar: FiveBar,
+            four_bar: FourBar,
             hexapod: Hexapod,
             kuka_lwr: KukaLwr,
             octopod: Octopod,
             orthoglide: Orthoglide,
+            palletiser: Palletiser,
             planar_3prr: Planar3Prr,
             planar_3rrr: Planar3Rrr,
             planar_4prr: Planar4Prr,
@@ -34,6 +38,8 @@ macro_rules! library {
             spherical_4rrr: Spherical4Rrr,
             stanford: Stanford,
             three_leg_point: ThreeLegPoint,
+            tricept: Tricept,
+            tricept_4: Tricept4,
             two_motor_axis: TwoMotorAxis,
             tx40: Tx40,
         }
@@ -124,11 +130,17 @@ fn derived(stem: &str) -> Result<Described, Failure> {
 pub fn workspace(model: &RobotModel) -> Vec<f64> {
     let mechanism = &model.mechanism;
     let Some(platform) = &mechanism.platform else {
-        let reach = |at| match mechanism.joint(at).kind {
-            JointKind::Revolute => 2.5,
-            _ => 0.3,
+        // Of a tree its joints go anywhere, of a skeleton as far as the chains let them.
+        let [turn, slide] = match mechanism.skeleton() {
+            Some(_) => [0.25, 0.1 * mechanism.length_scale()],
+            None => [2.5, 0.3],
         };
-        return mechanism.joints().into_iter().map(reach).collect();
+        let reach = |at| match mechanism.joint(at).kind {
+            JointKind::Revolute => turn,
+            _ => slide,
+        };
+        let joints = mechanism.joints().into_iter().take(mechanism.dof());
+        return joints.map(reach).collect();
     };
     let reach = |c: &TwistCoordinate| match c {
         TwistCoordinate::Linear(_) => 0.1 * mechanism.length_scale(),

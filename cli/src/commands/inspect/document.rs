@@ -85,13 +85,10 @@ impl Document {
         let mechanism = &model.mechanism;
         let joints = mechanism.joints();
         let joint_names: Vec<String> = joints.iter().map(|&at| mechanism.joint_name(at)).collect();
-        let owned = |names: Vec<&'static str>| names.into_iter().map(str::to_owned).collect();
-        let (coordinates, pose) = match &mechanism.platform {
-            None => (joint_names.clone(), joint_names.clone()),
-            Some(p) => (
-                owned(p.motion.coordinates()),
-                owned(p.motion.pose_coordinates()),
-            ),
+        let coordinates = mechanism.coordinates();
+        let pose = match &mechanism.platform {
+            None => coordinates.clone(),
+            Some(_) => mechanism.pose_coordinates(),
         };
         let actuator_names = mechanism.actuator_names();
         let standard = model

@@ -9,7 +9,7 @@
 use super::super::configuration::Configuration;
 use super::super::frames::path_to_end;
 use super::super::joint::{joint_slide, joint_turn};
-use super::super::platform::constant_rotation;
+use super::super::orientation::constant_rotation;
 use super::super::rates::parallel;
 use super::Task;
 use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};

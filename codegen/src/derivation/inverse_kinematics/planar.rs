@@ -7,7 +7,7 @@
 
 use super::super::configuration::Configuration;
 use super::super::joint::joint_turn;
-use super::super::platform::constant_rotation;
+use super::super::orientation::constant_rotation;
 use super::super::rates::parallel;
 use super::{Reach, Task};
 use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Number, Ratio, Vector3};

@@ -1,5 +1,6 @@
 //! Tests of whole descriptions; each kind of error is shown as its reader sees it.
 
+mod chains;
 mod documentation;
 mod errors;
 mod experiments;

@@ -63,7 +63,7 @@ x = 1
         "12:1 a placement has no `x`; the leg `a` leaves this value to its placements",
         "15:1 unknown key `y`; known keys: name, shape, home, x",
         "16:10 unknown key `7`; known keys: 1",
-        "17:1 a robot without platform has one leg; branches of a tree are joints whose `antecedent` is not the joint before them",
+        "17:1 a robot without platform has one leg without an end; branches of a tree are joints whose `antecedent` is not the joint before them",
         "18:8 there are two legs `l`",
     ];
     let found = listed(text);
@@ -142,7 +142,7 @@ fn platforms() {
     }
     let end = single("", "[leg.arm.end]\ntype = \"point\"\nrotation = [0, 0, 0]");
     let expected = [
-        "6:1 the leg `arm` ends on a platform, but there is none; describe it in a table [platform]",
+        "6:1 the leg `arm` ends on a platform, but there is none; describe it in a table [platform], or a skeleton as a leg without `end`, whose bodies `end.body` names",
         "8:12 an end of type \"point\" has no rotation; leave it out, or use type = \"rigid\"",
     ];
     assert_eq!(listed(&end), expected);

@@ -1,6 +1,6 @@
 //! Errors of actuators that are too few, drive too much, or do not determine the platform's motion.
 
-use super::motions::Motions;
+use super::motions::{Motions, listed};
 use crate::description::Description;
 use crate::diagnostic::{Diagnostic, DiagnosticKind};
 use crate::mechanism::mobility::Mobility;
@@ -19,8 +19,12 @@ pub(in crate::mechanism) fn too_few_actuators(
     let motion = description.platform.as_ref().map(|p| &p.motion);
     let span = motion.map_or(description.name.span.clone(), |m| m.span.clone());
     let actuators = if count == 1 { "actuator" } else { "actuators" };
+    let owner = match mechanism.skeleton() {
+        Some(_) => "the skeleton",
+        None => "the platform",
+    };
     let message =
-        format!("the platform has {dof} degrees of freedom, but the robot has {count} {actuators}");
+        format!("{owner} has {dof} degrees of freedom, but the robot has {count} {actuators}");
     let left = mobility.and_then(|m| Some((m.of(motion?.value), m.parts())));
     let help = match left {
         Some((left, parts)) if left < dof => format!(
@@ -99,13 +103,24 @@ pub(in crate::mechanism) fn underactuated(
 
 /// How the platform can move while no actuator does.
 fn free_motions(mechanism: &Mechanism, jacobian: &DMatrix<f64>) -> String {
-    let start = "with all motors locked the platform can still";
+    let start = match mechanism.skeleton() {
+        Some(_) => "with all motors locked the skeleton can still",
+        None => "with all motors locked the platform can still",
+    };
     let Some(found) = SingularValues::new(jacobian) else {
         return format!("{start} move");
     };
     let free = found.null_space(1e-5 * jacobian.amax());
     // The part of each coordinate that lies among the free motions.
     let parts: Vec<f64> = free.row_iter().map(|row| row.norm()).collect();
+    if mechanism.skeleton().is_some() {
+        let names = mechanism.coordinates().into_iter().zip(&parts);
+        let names: Vec<String> = names
+            .filter(|(_, part)| **part > 1e-3)
+            .map(|(name, _)| format!("`{name}`"))
+            .collect();
+        return format!("{start} move {}", listed(&names));
+    }
     let moves = Motions::new(mechanism, &parts, 1e-3);
     let together = if free.ncols() == moves.count() {
         ""

@@ -7,7 +7,6 @@ mod motions;
 pub(super) use actuators::{not_held, too_few_actuators, underactuated};
 
 use super::home::HomeError;
-use super::numeric::{platform_frame, target};
 use super::reach::{Reach, look, wrapped};
 use super::structure::Defect;
 use super::{Home, JointKind, Leg, Mechanism};
@@ -117,10 +116,9 @@ fn open(
     let leg = &mechanism.legs[index];
     let name = &place.name.value;
     let error = |message: String| Diagnostic::new(message, place.span.clone());
-    let (Some(platform), Some(end)) = (&mechanism.platform, &leg.end) else {
+    let Some(target) = mechanism.target(index, &rough.pose) else {
         return error(format!("leg `{name}` has no end"));
     };
-    let target = target(end, &platform_frame(platform.motion, &rough.pose));
     match look(leg, &rough.joints[mechanism.leg_range(index)], &target) {
         Reach::Elsewhere(joints) => error(format!("leg `{name}` does not close from its rough home"))
             .label("it closes elsewhere")
@@ -170,6 +168,24 @@ pub(super) fn blocked(
     let place = &description.legs[index];
     let columns = missed.column_iter().map(|column| column.amax());
     let blocked: Vec<f64> = columns.collect();
+    if mechanism.skeleton().is_some() {
+        let names = mechanism.coordinates().into_iter().zip(&blocked);
+        let names: Vec<String> = names
+            .filter(|(_, size)| **size > 1e-6)
+            .map(|(name, _)| format!("`{name}`"))
+            .collect();
+        return Diagnostic::new(
+            format!(
+                "chain `{}` cannot follow the skeleton's motion",
+                place.name.value
+            ),
+            place.span.clone(),
+        )
+        .label(format!("it blocks {}", listed(&names)))
+        .help(
+            "add a passive joint to the chain, or an end that leaves more free (`type`, `along`)",
+        );
+    }
     Diagnostic::new(
         format!("leg `{}` cannot follow the platform's motion", place.name.value),
         place.span.clone(),

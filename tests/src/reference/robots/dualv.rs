@@ -45,6 +45,8 @@ pub fn dualv() -> Mechanism {
             ..Joint::revolute(0, 0.0, DUALV_SHOULDER)
         };
         Leg {
+            carrier: None,
+            body: None,
             base: Frame::identity(),
             joints: vec![
                 shoulder.actuated(),

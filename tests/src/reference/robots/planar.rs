@@ -45,6 +45,8 @@ pub fn two_slides() -> Mechanism {
         Vector3::zeros(),
     );
     let direct = Leg {
+        carrier: None,
+        body: None,
         base: along,
         joints: vec![Joint::prismatic(0, 0.0, 0.0).actuated()],
         end: End::Rigid {
@@ -54,6 +56,8 @@ pub fn two_slides() -> Mechanism {
         start: vec![0.0],
     };
     let inclined = Leg {
+        carrier: None,
+        body: None,
         base: along * Frame::about_x(0.3),
         joints: vec![
             Joint::prismatic(0, 0.0, 0.0).actuated(),
@@ -84,6 +88,8 @@ fn rr_leg(base: [f64; 2], start_deg: [f64; 2]) -> Leg {
         ..Joint::revolute(2, 0.0, DISTAL)
     };
     Leg {
+        carrier: None,
+        body: None,
         base: Frame::at(base[0], base[1], 0.0),
         joints: vec![
             Joint::revolute(0, 0.0, 0.0).actuated(),

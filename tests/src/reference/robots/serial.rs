@@ -35,6 +35,8 @@ pub fn serial_3r() -> Mechanism {
         home: vec![0.3, -0.4, 0.7],
         workspace: vec![2.0; 3],
         legs: vec![Leg {
+            carrier: None,
+            body: None,
             base: Frame::identity(),
             joints,
             end: End::Free,
@@ -76,6 +78,8 @@ pub fn branched_arm() -> Mechanism {
         home: start.clone(),
         workspace: vec![2.0, 2.0, 2.0, 0.3],
         legs: vec![Leg {
+            carrier: None,
+            body: None,
             base: Frame::at(0.1, -0.2, 0.3) * Frame::about_x(0.5),
             joints,
             end: End::Free,

@@ -94,6 +94,8 @@ fn ups_leg(base_deg: f64, platform_deg: f64) -> Leg {
     let up = Vector3::z();
     let rotation = Matrix3::from_columns(&[up, tangential.cross(&up), tangential]);
     Leg {
+        carrier: None,
+        body: None,
         base: Frame::new(rotation, 0.5 * radial),
         joints: vec![
             Joint::revolute(0, 0.0, 0.0),

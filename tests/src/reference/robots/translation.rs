@@ -19,6 +19,8 @@ pub fn delta() -> Mechanism {
         let base = Frame::about_z(angle) * Frame::at(0.2, 0.0, 0.0) * Frame::about_x(FRAC_PI_2);
         let radial = Vector3::new(angle.cos(), angle.sin(), 0.0);
         Leg {
+            carrier: None,
+            body: None,
             joints: vec![
                 Joint::revolute(0, 0.0, 0.0).actuated(),
                 Joint::revolute(1, 0.0, 0.25),
@@ -55,6 +57,8 @@ pub fn tilted_tripteron() -> Mechanism {
         let rotation = tilt * Matrix3::from_columns(&[axis(1), axis(2), axis(0)]);
         let attachment = Frame::new(rotation, tilt * axis(1) * 0.06);
         let mut leg = Leg {
+            carrier: None,
+            body: None,
             base: Frame::new(rotation, Vector3::zeros()),
             joints: vec![
                 Joint::prismatic(0, 0.0, 0.0).actuated(),

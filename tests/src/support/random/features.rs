@@ -60,7 +60,7 @@ impl Sketch {
             }
         };
         let motion = match self.motion {
-            Motion::None => "none",
+            Motion::None | Motion::Joints(_) => "none",
             Motion::Slide { .. } => "slide",
             Motion::Hinge { .. } => "hinge",
             Motion::Point(_) => "point",

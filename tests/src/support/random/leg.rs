@@ -35,7 +35,7 @@ impl Structure {
         use Structure::{Arm, Drive, InPlane, Parallelograms, Serial, Slot, Wrist};
         let any = [Arm, Arm, Slot, Serial];
         let own: Vec<Self> = match motion {
-            Motion::None => return Self::Tree,
+            Motion::None | Motion::Joints(_) => return Self::Tree,
             Motion::Slide { direction, .. } | Motion::Hinge { direction, .. } => {
                 let axis = direction.iamax();
                 if matches!(motion, Motion::Hinge { .. }) {

@@ -32,6 +32,8 @@ impl Shape {
             },
         };
         Leg {
+            carrier: None,
+            body: None,
             base: placed.base.frame(),
             joints: self.members.iter().map(|m| m.joint.clone()).collect(),
             end,
@@ -67,7 +69,7 @@ impl Sketch {
         };
         let plane = |axis: usize| [at[(axis + 1) % 3], at[(axis + 2) % 3]];
         match self.motion {
-            Motion::None => self.shapes[0].places[0].home.clone(),
+            Motion::None | Motion::Joints(_) => self.shapes[0].places[0].home.clone(),
             Motion::Slide { point, direction } => {
                 let axis = direction.iamax();
                 vec![at[axis] - point[axis]]

@@ -42,7 +42,7 @@ impl Sketch {
 
     fn write_platform(&self, text: &mut String) {
         let (word, axis) = match self.motion {
-            Motion::None => return,
+            Motion::None | Motion::Joints(_) => return,
             Motion::Slide { direction, .. } | Motion::Hinge { direction, .. } => {
                 ("fixed axis", Some(direction.iamax()))
             }

@@ -1,0 +1,143 @@
+//! Chains: legs that start from, or end on, a body of the skeleton. The skeleton is the leg without an end
+//! of a robot without platform; it is placed first, and its joints are the independent coordinates.
+
+use super::model::{Leg, Spanned};
+use super::reader::Context;
+use super::shape::Shape;
+use crate::diagnostic::{Diagnostic, Span, did_you_mean};
+
+/// Looks up the bodies that chains join, and reports those that are not there.
+pub(super) fn attach(
+    shapes: &[Shape<'_, '_>],
+    has_platform: bool,
+    legs: &mut [Leg],
+    context: &Context,
+) {
+    if has_platform {
+        refuse_bodies(shapes, context);
+        return;
+    }
+    // Without a skeleton an end has nothing to end on: that is told of the ends.
+    let Some(at) = legs.iter().position(|leg| leg.end.is_none()) else {
+        return;
+    };
+    let skeleton = legs[at].clone();
+    if legs.len() == 1 {
+        // After another error a chain may be missing that was meant.
+        if context.is_clean() {
+            refuse_bodies(shapes, context);
+        }
+        return;
+    }
+    if at > 0 {
+        let message = format!("the skeleton `{}` is not placed first", skeleton.name.value);
+        let help =
+            "its joints are the robot's coordinates: put its [[place]] before those of the chains";
+        context.report(Diagnostic::new(message, skeleton.name.span.clone()).help(help));
+        return;
+    }
+    let mut told = Vec::new();
+    for leg in legs.iter_mut().skip(1) {
+        let (Some(shape), true) = (shapes.get(leg.shape), leg.end.is_some()) else {
+            continue;
+        };
+        let is_new = !told.contains(&leg.shape);
+        told.push(leg.shape);
+        let report = |error: Diagnostic| {
+            // Legs of one shape share its errors.
+            if is_new {
+                context.report(error);
+            }
+        };
+        let name = &shape.name.value;
+        leg.base_body = match &shape.base_body {
+            None => None,
+            Some(body) => match body_of(&skeleton, body) {
+                Ok(found) => found,
+                Err(error) => {
+                    report(error);
+                    continue;
+                }
+            },
+        };
+        let Some(end) = &shape.end else { continue };
+        match &end.body {
+            None => report(no_body(name, &skeleton, end.span.clone())),
+            Some(body) => match body_of(&skeleton, body) {
+                Ok(Some(found)) if Some(found) != leg.base_body => leg.end_body = Some(found),
+                Ok(Some(_)) => {
+                    let message =
+                        format!("the chain `{name}` starts from and ends on the same body");
+                    let help = "name another body in `base.body` or `end.body`: a chain joins two";
+                    report(Diagnostic::new(message, body.span.clone()).help(help));
+                }
+                Ok(None) => {
+                    let message = format!("the chain `{name}` ends on the ground");
+                    let help =
+                        "write it from the other side: its base on the ground, its end on the body";
+                    report(Diagnostic::new(message, body.span.clone()).help(help));
+                }
+                Err(error) => report(error),
+            },
+        }
+    }
+}
+
+/// The joint of the skeleton whose body has a name; `None` for the ground.
+fn body_of(skeleton: &Leg, name: &Spanned<String>) -> Result<Option<usize>, Diagnostic> {
+    if name.value == GROUND {
+        return Ok(None);
+    }
+    let names = || {
+        skeleton
+            .joints
+            .iter()
+            .map(|joint| joint.name.value.as_str())
+    };
+    let found = names().position(|own| own == name.value);
+    found.map(Some).ok_or_else(|| {
+        let message = format!(
+            "the skeleton `{}` has no body `{}`",
+            skeleton.name.value, name.value
+        );
+        let all = || names().chain([GROUND]);
+        let list = || {
+            format!(
+                "bodies have the names of their joints: {}",
+                all().collect::<Vec<_>>().join(", ")
+            )
+        };
+        let help = did_you_mean(&name.value, all()).unwrap_or_else(list);
+        Diagnostic::new(message, name.span.clone()).help(help)
+    })
+}
+
+/// The body that chains start from without a name.
+const GROUND: &str = "ground";
+
+fn no_body(name: &str, skeleton: &Leg, span: Span) -> Diagnostic {
+    let names: Vec<&str> = skeleton
+        .joints
+        .iter()
+        .map(|joint| joint.name.value.as_str())
+        .collect();
+    let message = format!("the chain `{name}` does not say on which body it ends");
+    let help = format!(
+        "body = \"NAME\" of a joint of the skeleton `{}`: {}",
+        skeleton.name.value,
+        names.join(", ")
+    );
+    Diagnostic::new(message, span).help(help)
+}
+
+/// Bodies are named of a skeleton only.
+fn refuse_bodies(shapes: &[Shape<'_, '_>], context: &Context) {
+    for shape in shapes {
+        let of_end = shape.end.as_ref().and_then(|end| end.body.as_ref());
+        for body in shape.base_body.iter().chain(of_end) {
+            let message = format!("there is no skeleton with a body `{}`", body.value);
+            let help = "leave `body` out: legs start from the ground and end on the platform; a skeleton is a leg without `end` of a robot without platform";
+            context.report(Diagnostic::new(message, body.span.clone()).help(help));
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Errors of chains: bodies that are not there, chains that join nothing, a skeleton in the wrong place.
+
+use super::{good, listed};
+
+/// An arm of two joints and a rod between two of its bodies; `base` and `end` are the lines of its tables.
+fn robot(base: &str, end: &str) -> String {
+    format!(
+        r#"name = "Arm"
+[leg.arm]
+[[leg.arm.joint]]
+name = "upper"
+type = "revolute"
+actuated = true
+[[leg.arm.joint]]
+name = "fore"
+type = "revolute"
+d = 0.3
+actuated = true
+[leg.rod]
+base = {{ {base} }}
+[[leg.rod.joint]]
+type = "revolute"
+[[leg.rod.joint]]
+type = "revolute"
+d = 0.2
+[leg.rod.end]
+{end}
+type = "point"
+[[place]]
+name = "arm"
+shape = "arm"
+[[place]]
+name = "rod"
+shape = "rod"
+"#
+    )
+}
+
+#[test]
+fn a_chain_knows_its_bodies() {
+    let description = good(&robot("body = \"upper\"", "body = \"fore\""));
+    let chain = &description.legs[1];
+    assert_eq!((chain.base_body, chain.end_body), (Some(0), Some(1)));
+    let description = good(&robot("at = [0, 0, 0]", "body = \"fore\""));
+    assert_eq!(description.legs[1].base_body, None);
+    let description = good(&robot("body = \"ground\"", "body = \"upper\""));
+    let chain = &description.legs[1];
+    assert_eq!((chain.base_body, chain.end_body), (None, Some(0)));
+}
+
+#[test]
+fn bodies_that_are_not_there() {
+    let errors = listed(&robot("body = \"uper\"", "body = \"fore\""));
+    let expected = "13:17 the skeleton `arm` has no body `uper`; did you mean `upper`?";
+    assert_eq!(errors, [expected]);
+    let errors = listed(&robot("", "body = \"hand\""));
+    let expected = "20:8 the skeleton `arm` has no body `hand`; bodies have the names of their joints: \
+                    upper, fore, ground";
+    assert_eq!(errors, [expected]);
+}
+
+#[test]
+fn chains_that_join_nothing() {
+    let errors = listed(&robot("body = \"fore\"", "body = \"fore\""));
+    let expected = "20:8 the chain `rod` starts from and ends on the same body; name another body in \
+                    `base.body` or `end.body`: a chain joins two";
+    assert_eq!(errors, [expected]);
+    let errors = listed(&robot("body = \"fore\"", "body = \"ground\""));
+    let expected = "20:8 the chain `rod` ends on the ground; write it from the other side: its base on the \
+                    ground, its end on the body";
+    assert_eq!(errors, [expected]);
+    let errors = listed(&robot("", ""));
+    let expected = "19:1 the chain `rod` does not say on which body it ends; body = \"NAME\" of a joint of \
+                    the skeleton `arm`: upper, fore";
+    assert_eq!(errors, [expected]);
+}
+
+#[test]
+fn skeletons_in_the_wrong_place() {
+    let text = robot("", "body = \"fore\"");
+    let (places, rod) = text
+        .split_once("[[place]]\nname = \"rod\"")
+        .expect("two places");
+    let (before, arm) = places.split_once("[[place]]").expect("a place");
+    let turned = format!("{before}[[place]]\nname = \"rod\"{rod}[[place]]{arm}");
+    let errors = listed(&turned);
+    let expected = "26:8 the skeleton `arm` is not placed first; its joints are the robot's coordinates: put \
+                    its [[place]] before those of the chains";
+    assert_eq!(errors, [expected]);
+    // A platform leaves no room for a skeleton.
+    let errors = listed(&text.replace("[leg.arm]", "[platform]\nmotion = \"planar\"\n[leg.arm]"));
+    assert!(
+        errors[1].contains("there is no skeleton with a body `fore`"),
+        "{errors:?}"
+    );
+    assert!(
+        errors[0].contains("the leg `arm` has no end on the platform"),
+        "{errors:?}"
+    );
+    // One leg alone is no chain.
+    let (alone, _) = text
+        .split_once("[[place]]\nname = \"rod\"")
+        .expect("two places");
+    let (head, tail) = alone.split_once("[leg.rod]").expect("a chain");
+    let (_, arm) = tail.split_once("[[place]]").expect("a place");
+    let text = format!("{head}[leg.arm.base]\nbody = \"upper\"\n[[place]]{arm}");
+    let errors = listed(&text);
+    assert!(
+        errors[0].contains("there is no skeleton with a body `upper`"),
+        "{errors:?}"
+    );
+}

@@ -1,0 +1,72 @@
+//! What is said of chains that do not fit their skeleton.
+
+use super::{assert_said, said};
+
+/// An arm of two joints in a plane and a linkage from the ground to its second body; `joints` are the linkage's.
+fn arm(joints: &str, at: &str) -> String {
+    format!(
+        r#"name = "Arm"
+[leg.arm]
+[[leg.arm.joint]]
+name = "upper"
+type = "revolute"
+actuated = true
+[[leg.arm.joint]]
+name = "fore"
+type = "revolute"
+d = 0.4
+[leg.linkage]
+base = {{ at = [0.1, 0.1, 0] }}
+{joints}
+[leg.linkage.end]
+type = "point"
+body = "fore"
+at = {at}
+[[place]]
+name = "arm"
+shape = "arm"
+home = {{ upper = 1.2, fore = -1.0 }}
+[[place]]
+name = "linkage"
+shape = "linkage"
+home = {{ 1 = 2.5, 2 = -1.5 }}
+"#
+    )
+}
+
+const TURN: &str = "[[leg.linkage.joint]]\ntype = \"revolute\"\nd = 0.3\n";
+const DRIVEN: &str = "[[leg.linkage.joint]]\ntype = \"revolute\"\nactuated = true\n";
+const TIP: &str = "[[leg.linkage.joint]]\ntype = \"fixed\"\nd = 0.4\n";
+
+#[test]
+fn a_chain_that_blocks_its_skeleton() {
+    let text = arm(&format!("{DRIVEN}{TIP}"), "[-0.1, 0, 0]").replace(", 2 = -1.5", "");
+    assert_said(
+        &text,
+        "16:1",
+        &["leg `linkage` has too few joints to follow the platform's motion"],
+    );
+}
+
+#[test]
+fn a_chain_that_never_closes() {
+    let text = arm(&format!("{DRIVEN}{TURN}{TIP}"), "[3, 0, 0]");
+    assert_said(&text, "31:1", &["leg `linkage` never reaches its place"]);
+}
+
+#[test]
+fn a_skeleton_with_too_few_motors() {
+    let text = arm(&format!("{DRIVEN}{TURN}{TIP}"), "[-0.1, 0, 0]");
+    let text = text.replacen("actuated = true\n", "", 1);
+    assert_said(
+        &text,
+        "1:8",
+        &["the skeleton has 2 degrees of freedom, but the robot has 1 actuator"],
+    );
+}
+
+#[test]
+fn an_arm_with_a_linkage_is_right() {
+    let text = arm(&format!("{DRIVEN}{TURN}{TIP}"), "[-0.1, 0, 0]");
+    assert_eq!(said(&text), "a robot");
+}

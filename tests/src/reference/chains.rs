@@ -1,0 +1,248 @@
+//! Robots whose loops are closed between bodies of a tree: all joints move freely at first, and every loop
+//! is a cut that closes again by equations between two bodies of the whole tree.
+//!
+//! Nothing is solved loop by loop: the equations of all cuts, Φ q̇ = 0, stand above those that give the
+//! independent joints their rates, and are solved together by least squares. The positions of the other
+//! joints come from Newton's method on the same equations. A cut's equations are written in the axes of the
+//! body that its chain starts from.
+
+use super::Error;
+use super::closure::State;
+use super::frame::{Frame, logarithm};
+use super::jacobians::{Jacobians, end_rows};
+use super::kinematics::{BodyMotion, all_legs, end_components, end_from_leg, end_from_platform};
+use super::linear::pseudo_inverse;
+use super::mechanism::{Leg, Mechanism};
+use nalgebra::{DMatrix, DVector, Vector6};
+
+/// Largest relative residual of the equations that counts as rounding.
+const CONSISTENCY: f64 = 1e-9;
+/// Largest distance of the two sides of a cut, metres and radians.
+const CLOSED: f64 = 1e-12;
+/// Distance at which Newton's method stops: rounding.
+const EXACT: f64 = 3e-16;
+/// Steps from the home pose.
+const STEPS: usize = 8;
+
+/// A six-vector in other axes.
+fn turned(axes: &Frame, of: &Vector6<f64>) -> Vector6<f64> {
+    let into = axes.rotation.transpose();
+    let (linear, angular) = (into * of.fixed_rows::<3>(0), into * of.fixed_rows::<3>(3));
+    Vector6::new(
+        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
+    )
+}
+
+/// The two sides of a chain's cut, and the frame in whose axes its equations are.
+fn sides(leg: &Leg, k: usize, bodies: &[Vec<BodyMotion>]) -> (BodyMotion, BodyMotion, Frame) {
+    let skeleton = &bodies[0];
+    let other = leg.body.map_or(skeleton[0], |body| skeleton[body]);
+    let axes = leg
+        .carrier
+        .map_or_else(Frame::identity, |body| skeleton[body].frame);
+    let own = end_from_leg(leg, &bodies[k]);
+    (own, end_from_platform(leg, &other), axes)
+}
+
+/// For all cuts in turn, a quantity of both sides in the components that they share.
+fn of_cuts(
+    mechanism: &Mechanism,
+    bodies: &[Vec<BodyMotion>],
+    difference: impl Fn(&BodyMotion, &BodyMotion) -> Vector6<f64>,
+) -> DVector<f64> {
+    let mut all = Vec::new();
+    for (k, leg) in mechanism.legs.iter().enumerate() {
+        let components = end_components(leg);
+        if components.is_empty() {
+            continue;
+        }
+        let (own, other, axes) = sides(leg, k, bodies);
+        let values = turned(&axes, &difference(&own, &other));
+        all.extend(components.into_iter().map(|at| values[at]));
+    }
+    DVector::from_vec(all)
+}
+
+/// Φ: velocities by which the sides of all cuts part, per unit rate of every joint.
+fn cuts(mechanism: &Mechanism, q: &DVector<f64>) -> DMatrix<f64> {
+    let zero = DVector::zeros(q.len());
+    let columns: Vec<DVector<f64>> = (0..q.len())
+        .map(|at| {
+            let mut unit = zero.clone();
+            unit[at] = 1.0;
+            let bodies = all_legs(mechanism, q, &unit, &zero);
+            of_cuts(mechanism, &bodies, |own, other| own.twist() - other.twist())
+        })
+        .collect();
+    DMatrix::from_columns(&columns)
+}
+
+/// The equations of the cuts above those of the independent joints.
+fn equations(mechanism: &Mechanism, cuts: &DMatrix<f64>) -> DMatrix<f64> {
+    let dof = mechanism.dof();
+    let mut all = DMatrix::zeros(cuts.nrows() + dof, cuts.ncols());
+    all.rows_mut(0, cuts.nrows()).copy_from(cuts);
+    for at in 0..dof {
+        all[(cuts.nrows() + at, at)] = 1.0;
+    }
+    all
+}
+
+/// All joints from what the cuts and the independent joints ask for.
+fn solve(matrix: &DMatrix<f64>, sides: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+    let found = pseudo_inverse(matrix) * sides;
+    let residual = (matrix * &found - sides).amax() / (1.0 + sides.amax() + found.amax());
+    if residual < CONSISTENCY {
+        Ok(found)
+    } else {
+        Err(Error::Inconsistent { leg: 0, residual })
+    }
+}
+
+/// Jacobians at joint positions that close all loops.
+///
+/// # Errors
+///
+/// If a chain's Jacobian isn't square, or its equations contradict the independent joints.
+pub fn jacobians(mechanism: &Mechanism, q: &DVector<f64>) -> Result<Jacobians, Error> {
+    let (total, dof) = (mechanism.joints(), mechanism.dof());
+    let actuated = mechanism.actuated();
+    let cuts = cuts(mechanism, q);
+    let mut wanted = DMatrix::zeros(cuts.nrows() + dof, dof);
+    wanted.rows_mut(cuts.nrows(), dof).fill_with_identity();
+    let joints = solve(&equations(mechanism, &cuts), &wanted)?;
+    let mut all = Jacobians {
+        attachments: DMatrix::zeros(cuts.nrows(), dof),
+        legs: DMatrix::zeros(total, total),
+        platform: DMatrix::zeros(total, dof),
+        inverse: joints.select_rows(&actuated),
+        joints,
+        a_p: DMatrix::zeros(actuated.len(), dof),
+        b_p: DMatrix::zeros(actuated.len(), actuated.len()),
+        actuated,
+        ends: cuts,
+    };
+    let mut first = 0;
+    for (k, (leg, range)) in mechanism
+        .legs
+        .iter()
+        .zip(mechanism.leg_ranges())
+        .enumerate()
+    {
+        let count = end_components(leg).len();
+        let (square, kept) = if count == 0 {
+            (DMatrix::identity(dof, dof), DMatrix::identity(dof, dof))
+        } else {
+            let own = all.ends.rows(first, count).select_rows(&end_rows(k, leg)?);
+            let square = own.columns(range.start, range.len()).into_owned();
+            (square, -own.columns(0, dof))
+        };
+        all.legs
+            .view_mut((range.start, range.start), square.shape())
+            .copy_from(&square);
+        all.platform
+            .rows_mut(range.start, range.len())
+            .copy_from(&kept);
+        all.reduce(range.start, &square, &kept);
+        first += count;
+    }
+    Ok(all)
+}
+
+/// Accelerations of all joints: the cuts stay closed, the independent joints have theirs.
+///
+/// # Errors
+///
+/// If the equations contradict each other.
+pub fn accelerations(mechanism: &Mechanism, state: &State) -> Result<DVector<f64>, Error> {
+    let cuts = cuts(mechanism, &state.q);
+    let still = DVector::zeros(state.q.len());
+    let bodies = all_legs(mechanism, &state.q, &state.qd, &still);
+    let bias = of_cuts(mechanism, &bodies, |own, other| {
+        own.twist_derivative() - other.twist_derivative()
+    });
+    let wanted: Vec<f64> = (-bias).iter().chain(&state.acceleration).copied().collect();
+    let sides = DMatrix::from_vec(wanted.len(), 1, wanted);
+    let found = solve(&equations(mechanism, &cuts), &sides)?;
+    Ok(found.column(0).into_owned())
+}
+
+/// How far the two sides of all cuts are apart.
+#[must_use]
+pub fn gaps(mechanism: &Mechanism, q: &DVector<f64>) -> DVector<f64> {
+    let still = DVector::zeros(q.len());
+    let bodies = all_legs(mechanism, q, &still, &still);
+    of_cuts(mechanism, &bodies, |own, other| {
+        let shift = own.frame.position - other.frame.position;
+        let turn = logarithm(&(own.frame.rotation * other.frame.rotation.transpose()));
+        Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z)
+    })
+}
+
+/// Positions of all joints at a pose, reached from home in steps.
+///
+/// # Errors
+///
+/// If a loop does not close.
+pub fn positions(mechanism: &Mechanism, pose: &[f64]) -> Result<DVector<f64>, Error> {
+    let start = mechanism.legs.iter().flat_map(|leg| leg.start.clone());
+    let mut q = DVector::from_iterator(mechanism.joints(), start);
+    let path = mechanism.motion.displacement(&mechanism.home, pose);
+    for step in 1..STEPS {
+        let part = &path * (step as f64 / STEPS as f64);
+        let between = mechanism.motion.displace(&mechanism.home, &part);
+        q = newton(mechanism, &between, &q, 1e-5).0;
+    }
+    close(mechanism, pose, &q)
+}
+
+/// Positions of all joints at a pose, near known ones.
+///
+/// # Errors
+///
+/// If a loop does not close.
+pub fn close(
+    mechanism: &Mechanism,
+    pose: &[f64],
+    near: &DVector<f64>,
+) -> Result<DVector<f64>, Error> {
+    let (q, residual) = newton(mechanism, pose, near, EXACT);
+    if residual < CLOSED {
+        Ok(q)
+    } else {
+        Err(Error::NoConvergence { leg: 0, residual })
+    }
+}
+
+/// Damped Newton on all cuts at once, the independent joints held at the pose.
+fn newton(
+    mechanism: &Mechanism,
+    pose: &[f64],
+    near: &DVector<f64>,
+    enough: f64,
+) -> (DVector<f64>, f64) {
+    let dof = mechanism.dof();
+    let mut q = near.clone();
+    q.rows_mut(0, dof)
+        .copy_from(&DVector::from_column_slice(pose));
+    let mut gap = gaps(mechanism, &q);
+    for _ in 0..60 {
+        if gap.norm() < enough {
+            break;
+        }
+        let chains = q.len() - dof;
+        let jacobian = cuts(mechanism, &q).columns(dof, chains).into_owned();
+        let mut step = pseudo_inverse(&jacobian) * -&gap;
+        step *= (0.5 / step.amax()).min(1.0);
+        let better = (0..12).find_map(|halvings| {
+            let mut moved = q.clone();
+            let mut own = moved.rows_mut(dof, chains);
+            own += 0.5_f64.powi(halvings) * &step;
+            let left = gaps(mechanism, &moved);
+            (left.norm() < gap.norm()).then_some((moved, left))
+        });
+        let Some((moved, left)) = better else { break };
+        (q, gap) = (moved, left);
+    }
+    (q, gap.norm())
+}

@@ -1,0 +1,205 @@
+//! Chains between any two bodies of a branched skeleton agree with the numeric reference: from the ground and
+//! from moving bodies, along a branch, from branch to branch, and against slides; with ends that coincide in a
+//! point and with rigid ones; more than one at once, and motors too many.
+//!
+//! The reference cuts every loop, keeps all joints of the tree free and closes the cuts by Lagrange multipliers.
+
+use overact::Function;
+use overact_codegen::{Effort, Request, Source};
+use overact_tests::support::conversion::reference;
+use overact_tests::support::expected::Expected;
+use overact_tests::support::library::workspace;
+use overact_tests::support::sample::samples;
+use overact_tests::support::{Comparison, Evaluated, Failure, model_with};
+use overact_tier::by_tier;
+
+const TOLERANCE: f64 = 1e-9;
+/// States of each robot in the default tier and in the full one.
+const STATES: [usize; 2] = [3, 60];
+
+/// A tree of five joints: a slide and a revolute joint on the first body, two revolute joints on another branch.
+const SKELETON: &str = r#"name = "Tree"
+gravity = ["1 m/s^2", "-2 m/s^2", "-9 m/s^2"]
+[leg.tree]
+base = { at = ["0.1 m", "-0.2 m", "0.3 m"], rotation = ["20 deg", "-35 deg", "50 deg"] }
+[[leg.tree.joint]]
+name = "a"
+type = "revolute"
+alpha = "30 deg"
+d = "0.1 m"
+actuated = true
+[[leg.tree.joint]]
+name = "b"
+type = "prismatic"
+gamma = "40 deg"
+alpha = "-70 deg"
+d = "0.2 m"
+theta = "25 deg"
+actuated = true
+[[leg.tree.joint]]
+name = "c"
+type = "revolute"
+alpha = "80 deg"
+d = "0.15 m"
+r = "0.05 m"
+actuated = true
+[[leg.tree.joint]]
+name = "d"
+type = "revolute"
+antecedent = "a"
+gamma = "-100 deg"
+b = "0.1 m"
+alpha = "60 deg"
+d = "0.25 m"
+actuated = true
+[[leg.tree.joint]]
+name = "e"
+type = "revolute"
+alpha = "-45 deg"
+d = "0.2 m"
+actuated = true
+[[place]]
+name = "tree"
+shape = "tree"
+home = { b = "0.3 m", c = "20 deg", e = "-30 deg" }
+"#;
+
+/// A drive of two crossing axes and a slide between two bodies.
+fn drive(name: &str, from: &str, to: &str) -> String {
+    format!(
+        r#"[leg.{name}]
+base = {{ body = "{from}", at = ["0.05 m", "-0.3 m", "0.1 m"], rotation = ["15 deg", "40 deg", "-60 deg"] }}
+[[leg.{name}.joint]]
+type = "revolute"
+alpha = "90 deg"
+theta = "q + 90 deg"
+[[leg.{name}.joint]]
+type = "revolute"
+alpha = "90 deg"
+theta = "q + 90 deg"
+[[leg.{name}.joint]]
+type = "prismatic"
+alpha = "90 deg"
+actuated = true
+[leg.{name}.end]
+type = "point"
+body = "{to}"
+at = ["0.3 m", "0.2 m", "-0.15 m"]
+[[place]]
+name = "{name}"
+shape = "{name}"
+home = {{ 3 = "0.6 m" }}
+"#
+    )
+}
+
+/// Compares all functions of a description with the reference.
+fn compare(what: &str, text: String) -> Result<(), Failure> {
+    let source = Source::new("chains.toml", text);
+    let model = model_with(&source, &Request::with_effort(Effort::None))?;
+    let mechanism = reference(&model.mechanism, workspace(&model));
+    let expected = Expected::by_position(&model, mechanism);
+    let parameters = expected.parameters();
+    let states = by_tier(STATES);
+    let all = samples(&expected.mechanism, &parameters, states, 7, false)?;
+    let truths = all.iter().map(|sample| expected.at(sample));
+    let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
+    let mut comparison = Comparison::new(TOLERANCE);
+    for function in &model.functions {
+        // The closure error is what Newton's method drives to zero, not a quantity of its own.
+        if function.computes != Function::ClosureError {
+            comparison.function(function, &Evaluated(&model), &all, &truths)?;
+        }
+    }
+    assert!(comparison.lines.len() > 20, "{what}: hardly a function");
+    let failures = comparison.failures;
+    assert!(failures.is_empty(), "{what}:\n{}", failures.join("\n"));
+    Ok(())
+}
+
+fn between(from: &str, to: &str) -> Result<(), Failure> {
+    let text = format!("{SKELETON}{}", drive("drive", from, to));
+    compare(&format!("from {from} to {to}"), text)
+}
+
+#[test]
+fn from_the_ground() -> Result<(), Failure> {
+    between("ground", "c")
+}
+
+#[test]
+fn along_a_branch() -> Result<(), Failure> {
+    between("a", "c")
+}
+
+#[test]
+fn back_along_a_branch() -> Result<(), Failure> {
+    between("c", "a")
+}
+
+#[test]
+fn from_branch_to_branch_against_a_slide() -> Result<(), Failure> {
+    between("c", "e")
+}
+
+#[test]
+fn from_branch_to_branch_along_a_slide() -> Result<(), Failure> {
+    between("e", "b")
+}
+
+#[test]
+fn two_at_once() -> Result<(), Failure> {
+    let text = format!(
+        "{SKELETON}{}{}",
+        drive("one", "d", "c"),
+        drive("two", "ground", "e")
+    );
+    compare("two chains", text)
+}
+
+/// A four-bar whose coupler is fixed on the crank by a pin of its own, on an arm that moves.
+#[test]
+fn rigid_ends() -> Result<(), Failure> {
+    let text = r#"name = "RigidEnd"
+[leg.arm]
+[[leg.arm.joint]]
+name = "shoulder"
+type = "revolute"
+alpha = "70 deg"
+actuated = true
+[[leg.arm.joint]]
+name = "crank"
+type = "revolute"
+alpha = "-30 deg"
+d = "0.3 m"
+actuated = true
+[leg.loop]
+base = { body = "shoulder", at = ["0.6 m", 0, 0], rotation = ["-30 deg", 0, 0] }
+[[leg.loop.joint]]
+name = "rocker"
+type = "revolute"
+actuated = true
+[[leg.loop.joint]]
+name = "coupler"
+type = "revolute"
+d = "0.22 m"
+[[leg.loop.joint]]
+name = "pin"
+type = "revolute"
+d = "0.28 m"
+parameters = ["fs"]
+[leg.loop.end]
+body = "crank"
+at = ["0.1 m", 0, 0]
+rotation = [0, 0, "30 deg"]
+[[place]]
+name = "arm"
+shape = "arm"
+home = { crank = "90 deg" }
+[[place]]
+name = "loop"
+shape = "loop"
+home = { rocker = "102 deg", coupler = "102 deg", pin = "-84 deg" }
+"#;
+    compare("a rigid end", text.to_owned())
+}
