@@ -9,7 +9,12 @@ use std::fmt::Write;
 /// A plate through the legs' bases in space, a hatched pivot below each in a
 /// plane, a foot below a serial robot.
 pub(super) fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
-    let places: Vec<[f64; 2]> = scene.bases.iter().map(|p| flat(p, view, sheet)).collect();
+    // Chains of a skeleton that start from a moving body do not stand on the ground.
+    let legs = scene.bases.iter().zip(&mechanism.legs).enumerate();
+    let standing = legs.filter(|(_, (_, leg))| leg.base_body.is_none());
+    let places: Vec<(usize, [f64; 2])> = standing
+        .map(|(leg, (place, _))| (leg, flat(place, view, sheet)))
+        .collect();
     if let Some(radius) = scene.sphere {
         let [x, y] = flat(&Point::zeros(), view, sheet);
         let radius = radius / sheet.pixel();
@@ -26,13 +31,16 @@ pub(super) fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: 
         .iter()
         .any(|(_, part)| matches!(part, Part::Rail { .. }));
     if !view.planar && places.len() > 2 && !rails {
-        text = polygon("base", &hull(places));
+        text = polygon(
+            "base",
+            &hull(places.into_iter().map(|(_, place)| place).collect()),
+        );
     } else {
-        for (leg, place) in places.iter().enumerate() {
+        for (leg, place) in &places {
             let slides = scene
                 .parts
                 .iter()
-                .any(|(l, part)| *l == leg && matches!(part, Part::Rail { .. }));
+                .any(|(l, part)| l == leg && matches!(part, Part::Rail { .. }));
             let serial = mechanism.is_tree() && !view.planar;
             match (slides, serial) {
                 (true, _) => {}

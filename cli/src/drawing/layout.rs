@@ -34,10 +34,12 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
         scene
             .parts
             .extend(parts.into_iter().map(|part| (index, part)));
+        scene.parts.extend(branch(mechanism, leg.base_body, base));
         scene.bases.push(base);
         if let (Some(end), Some(target)) = (&leg.end, mechanism.target(index, pose)) {
             let target = ground * target;
             let at = target.translation.vector;
+            scene.parts.extend(branch(mechanism, leg.end_body, at));
             scene.attachments.push(at);
             if matches!(end, End::Point { .. }) {
                 scene.parts.push((index, Part::Ball { at }));
@@ -46,6 +48,15 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
     }
     part_sliders(&mut scene, pixel);
     scene
+}
+
+/// The part of a skeleton's body that reaches from its joint to a chain, with the number of its leg.
+fn branch(mechanism: &Mechanism, body: Option<usize>, to: Point) -> Option<(usize, Part)> {
+    let frames = mechanism.skeleton()?.frames(&mechanism.home.pose);
+    let body = body?;
+    let from = frames[body].translation.vector;
+    let path = vec![from, to];
+    ((to - from).norm() > NOTHING).then_some((0, Part::Link { body, path }))
 }
 
 /// Sliders of several legs at one place are drawn side by side.
