@@ -13,8 +13,7 @@ use overact_tests::support::sample::samples;
 use overact_tests::support::{Comparison, Evaluated, Failure, model_with};
 use overact_tier::by_tier;
 
-/// Of the 60 states of the full tier one is so near to a singularity that accelerations agree to 1.4e-9 only.
-const TOLERANCE: f64 = 3e-9;
+const TOLERANCE: f64 = 1e-9;
 /// States of each robot in the default tier and in the full one.
 const STATES: [usize; 2] = [3, 60];
 

@@ -69,6 +69,8 @@ pub(crate) enum HomeError {
 
 /// Largest gap that counts as closed, m and rad.
 const CLOSED: f64 = 1e-10;
+/// The gap of a leg that is closed but for rounding, m.
+const FINELY: f64 = 1e-15;
 /// Condition number of a leg's Jacobian above which the leg counts as singular.
 const SINGULAR: f64 = 1e7;
 /// Condition number above which a leg is looked at more closely.
@@ -229,6 +231,13 @@ pub(super) fn close_from(
 ) -> Option<Vec<f64>> {
     let q = close(leg, start, target).ok()?;
     (condition(&leg.closure_jacobian(&q)) < 50.0).then_some(q)
+}
+
+/// Joint positions that close a leg as well as numbers can, from some that close it. Columns that depend on
+/// each other through the closure do so no better than it is closed.
+#[must_use]
+pub(super) fn close_finely(leg: &Leg, q: &[f64], target: &nalgebra::Isometry3<f64>) -> Vec<f64> {
+    iterate(leg, q, target, FINELY).0
 }
 
 /// Ratio of the largest and smallest singular value; infinite for entries that are not finite.

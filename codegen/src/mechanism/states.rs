@@ -1,7 +1,7 @@
 //! Random regular states of a mechanism, found numerically: poses around home with joints that close
 //! every leg in the working mode of the home configuration.
 
-use super::home::close_from;
+use super::home::{close_finely, close_from};
 use super::{JointKind, Mechanism, Motion};
 use crate::cas::Stream;
 
@@ -172,7 +172,10 @@ fn follow(mechanism: &Mechanism, pose: &[f64]) -> Option<Vec<f64>> {
                 joints[range].copy_from_slice(&at);
                 continue;
             };
-            let closed = close_from(leg, &joints[range.clone()], &target)?;
+            let mut closed = close_from(leg, &joints[range.clone()], &target)?;
+            if step == STEPS {
+                closed = close_finely(leg, &closed, &target);
+            }
             joints[range].copy_from_slice(&closed);
         }
     }
