@@ -12,7 +12,7 @@
 //! - `functions`: which functions are generated;
 //! - `names`: names of results in names of files;
 //! - `note`: what a description says that may not be meant;
-//! - `report`: an identification as a page, a document or a flat table;
+//! - [`report`]: an identification as a page, a document or a flat table;
 //! - `states`: states of a robot from JSON or CSV.
 
 mod commands;
@@ -25,38 +25,46 @@ mod names;
 mod note;
 mod output;
 mod progress;
-mod report;
+pub mod report;
 mod states;
 
 use clap::Parser;
-use std::process::ExitCode;
+use std::{ffi::OsString, process::ExitCode};
 
 /// Runs the command that the process was started with.
 #[must_use]
 pub fn run() -> ExitCode {
-    let arguments = match commands::Arguments::try_parse() {
+    ExitCode::from(run_with(std::env::args_os().collect()))
+}
+
+/// Runs the command of these arguments, the first of which is the program's name; returns the exit code.
+#[must_use]
+pub fn run_with(arguments: Vec<OsString>) -> u8 {
+    let wants_json = arguments.iter().any(|argument| argument == "--json");
+    let arguments = match commands::Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => return misused(&error),
+        Err(error) => return misused(&error, wants_json),
     };
     let json = arguments.json;
     match guarded::run(&arguments.command, json) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => {
             failure.report(json);
-            ExitCode::from(failure.exit_code())
+            failure.exit_code()
         }
     }
 }
 
 /// Help and the version go to stdout; what is wrong with the arguments is told as everything else is.
-fn misused(error: &clap::Error) -> ExitCode {
-    let wants_json = std::env::args_os().any(|argument| argument == "--json");
+fn misused(error: &clap::Error, wants_json: bool) -> u8 {
     if !(error.use_stderr() && wants_json) {
-        error.exit();
+        // There is nobody left to tell that the output is closed.
+        let _ = error.print();
+        return u8::try_from(error.exit_code()).unwrap_or(2);
     }
     let said = error.render().to_string();
     let message = said.strip_prefix("error: ").unwrap_or(&said).trim_end();
     let failure = failure::Failure::Usage(message.to_owned());
     failure.report(true);
-    ExitCode::from(failure.exit_code())
+    failure.exit_code()
 }

@@ -126,16 +126,24 @@ impl Reports {
         for (path, format) in self.files {
             let text = match format {
                 Format::Csv => numbers(result)?,
-                Format::Json => output::json(&Document {
-                    identification: result,
-                    figures: &result.figures,
-                })?,
+                Format::Json => document(result)?,
                 Format::Html => html(robot, info, result, self.published.as_ref())?,
             };
             written.push((path, text.into_bytes()));
         }
         Ok(written)
     }
+}
+
+/// The document of a report: all numbers and plotted series.
+///
+/// # Errors
+/// A result that is no JSON, which does not happen.
+pub fn document(result: &Identification) -> Result<String, Failure> {
+    output::json(&Document {
+        identification: result,
+        figures: &result.figures,
+    })
 }
 
 /// What the extension asks for.
@@ -153,7 +161,10 @@ fn format(path: &Path) -> Result<Format, Failure> {
 }
 
 /// The page, with its numbers as files within it.
-fn html(
+///
+/// # Errors
+/// A result that is no JSON, which does not happen.
+pub fn html(
     robot: &Robot,
     info: &Info<'_>,
     result: &Identification,
@@ -196,14 +207,18 @@ fn html(
 }
 
 /// The file of published results that lies beside a description.
-fn beside(description: &Path) -> Option<PathBuf> {
+#[must_use]
+pub fn beside(description: &Path) -> Option<PathBuf> {
     let folder = description.parent()?.join("published");
     let file = folder.join(description.file_name()?);
     file.is_file().then_some(file)
 }
 
 /// Reads published results.
-fn published(path: &Path) -> Result<Published, Failure> {
+///
+/// # Errors
+/// A file that can't be read, unknown keys, lists of different lengths.
+pub fn published(path: &Path) -> Result<Published, Failure> {
     let file = path.display().to_string();
     let text = fs::read_to_string(path).map_err(|error| {
         Problem::new(format!("the published results can't be read: {error}")).file(file.as_str())

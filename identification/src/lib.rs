@@ -20,6 +20,7 @@
 //! | `estimation` | base parameters (42)-(43), least squares with standard deviations (44)-(48), elimination |
 //! | `calibration` | encoder offsets and lengths from the closure of redundant loops |
 //! | `gains` | gains of the drives, from parameters whose values are known |
+//! | `gravity` | the direction of gravity, together with the parameters |
 //! | `validation` | prediction against measurement, on any run |
 //! | `result` | what is told of estimates and runs |
 //! | `consistent` | standard parameters that a robot can have, the nearest to a prior that the data allow |
@@ -35,6 +36,7 @@ mod error;
 mod estimation;
 pub mod filters;
 mod gains;
+mod gravity;
 mod identify;
 mod kinematics;
 mod monitor;
@@ -50,14 +52,14 @@ mod validation;
 pub use assessment::{
     check::{About, Check, CheckKind, Detectable, Grade},
     evidence::{Axis, Curve, Evidence},
-    verdict::{StageVerdict, Verdict},
+    verdict::{Objections, StageVerdict, Verdict, objections},
 };
 pub use calibration::{
     CalibratedParameter, Calibration, CalibrationScope, ChangedGeometry, DescribedGeometry,
     Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
 pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
-pub use data::{Dataset, Gain, Log, Mapping, Periods, Time, Variant};
+pub use data::{Dataset, Gain, Load, Log, Mapping, Periods, Time, Variant};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
@@ -68,11 +70,12 @@ pub use estimation::{
     },
 };
 pub use gains::{DriveGain, Gains, JointParameter, drive_gains};
+pub use gravity::{Fields, GravityDirection, gravity_direction};
 pub use identify::{
-    BaseParameter, Identification, Outcome, Prepared, Progress, RankedProjection, Regrouping,
-    Study, estimate_projection,
+    BaseParameter, Before, Identification, Outcome, Prepared, Progress, RankedProjection,
+    Regrouping, Study, estimate_projection,
     figures::{Figures, PredictionFigures, ResidualFigures},
-    identify, identify_with_gains, prepare, study,
+    identify, identify_after, prepare, study,
     tracking::TrackingError,
 };
 pub use kinematics::{Motion, Motions, motion};

@@ -52,6 +52,7 @@ mod tests {
             relative_standard_deviation_percent: 10.0,
             correlated_standard_deviation: 0.1,
             interval_95,
+            outside: false,
             true_value,
             error_percent: None,
         }

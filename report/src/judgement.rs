@@ -13,20 +13,6 @@ pub(crate) const fn grade_words(grade: Grade) -> &'static str {
     }
 }
 
-/// The checks that speak against an estimate, most serious first, with their numbers among all checks.
-pub(crate) fn objections(
-    identification: &Identification,
-    model: ModelKind,
-    stage: Stage,
-) -> Vec<(usize, &Check)> {
-    let checks = identification.checks.iter().enumerate();
-    let mut found: Vec<(usize, &Check)> = checks
-        .filter(|(_, check)| !check.passed && check.concerns(model, stage))
-        .collect();
-    found.sort_by_key(|(_, check)| std::cmp::Reverse(check.grade));
-    found
-}
-
 /// How many checks of an estimate found nothing.
 pub(crate) fn passed(identification: &Identification, model: ModelKind, stage: Stage) -> usize {
     let checks = identification.checks.iter();

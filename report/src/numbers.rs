@@ -36,6 +36,7 @@ pub fn numbers(identification: &Identification) -> Result<String, Error> {
             rows.add("base_parameter", &base.name, "true_value", value);
         }
     }
+    add_gravity(&mut rows, identification);
     add_gains(&mut rows, identification);
     for estimate in identification.by_least_squares() {
         (rows.model, rows.stage) = (estimate.model.name(), estimate.stage.name());
@@ -83,6 +84,19 @@ pub fn numbers(identification: &Identification) -> Result<String, Error> {
         }
     }
     rows.csv()
+}
+
+/// The direction of gravity.
+fn add_gravity<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
+    if let Some(own) = &identification.gravity {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            rows.add("gravity", name, "described", own.described[axis]);
+            rows.add("gravity", name, "estimated", own.estimated[axis]);
+            rows.add("gravity", name, "deviation", own.deviations[axis]);
+        }
+        rows.add("gravity", "", "tilt", own.tilt);
+        rows.add("gravity", "", "tilt_deviation", own.tilt_deviation);
+    }
 }
 
 /// The gains of the drives and what was estimated together with them.

@@ -25,7 +25,7 @@ pub struct Plot {
     pub axes: [String; 2],
     /// Whether the vertical axis is logarithmic.
     pub logarithmic: bool,
-    /// Its lines, four at most: name, places and heights.
+    /// Its lines, of which seven have colours of their own: name, places and heights.
     pub curves: Vec<(String, Vec<f64>, Vec<f64>)>,
     /// Whether the lines are dots alone.
     pub dots: bool,

@@ -3,14 +3,14 @@
 
 use crate::{
     choice::{answers, projection, stage_name},
-    intervals::half_width_percent,
-    judgement::{grade_words, objections, passed},
+    intervals::{excludes_zero, half_width_percent, is_outside},
+    judgement::{grade_words, passed},
     layout::{line, table},
-    terminal::{calibration, gains, motors},
+    terminal::{calibration, gains, gravity, motors},
     text::{fitted, visible},
 };
 use overact_identification::{
-    Estimate, Grade, Identification, ParameterEstimate, Verdict, significant,
+    Estimate, Grade, Identification, ParameterEstimate, Verdict, objections, significant,
 };
 
 /// Characters of a line of prose.
@@ -25,6 +25,9 @@ pub fn summary(identification: &Identification, page: Option<&str>) -> String {
         for told in calibration::calibration(calibration).lines() {
             line(&mut text, told);
         }
+    }
+    for told in gravity::gravity(identification.gravity.as_ref()).lines() {
+        line(&mut text, told);
     }
     for told in gains::gains(&identification.gains).lines() {
         line(&mut text, told);
@@ -99,11 +102,12 @@ fn model(identification: &Identification, estimate: &Estimate) -> String {
         &mut text,
         "  ",
         &format!(
-            "{} {} leave {:.4} % of the torques unexplained.{}",
+            "{} {} leave {:.4} % of the torques unexplained.{}{}",
             estimate.parameters.len(),
             stage_name(estimate.stage),
             estimate.relative_error_percent,
-            held_out(identification, estimate)
+            held_out(identification, estimate),
+            sureness(estimate)
         ),
     );
     if let Some(verdict) = verdict {
@@ -120,8 +124,28 @@ fn held_out(identification: &Identification, estimate: &Estimate) -> String {
         .filter(|one| one.model == estimate.model && one.stage == estimate.stage)
         .map(|one| one.relative_error_percent);
     errors.reduce(f64::max).map_or_else(String::new, |worst| {
-        format!(" Of held-out runs: at most {} %.", significant(worst, 3))
+        format!(
+            " Of the runs that were held out they leave at most {} %.",
+            significant(worst, 3)
+        )
     })
+}
+
+/// How well the parameters are known, where some are hardly known at all.
+fn sureness(estimate: &Estimate) -> String {
+    let all = estimate.parameters.len();
+    let count = |most: f64| {
+        let known = |one: &&ParameterEstimate| half_width_percent(one).is_some_and(|x| x <= most);
+        estimate.parameters.iter().filter(known).count()
+    };
+    let signs = estimate.parameters.iter().filter(|one| excludes_zero(one));
+    match all - signs.count() {
+        0 => String::new(),
+        unsure => format!(
+            " {} of them are known to 10 % or better; of {unsure} not even the sign is known.",
+            count(10.0)
+        ),
+    }
 }
 
 /// What speaks against an estimate, or that nothing does.
@@ -134,12 +158,15 @@ fn reasons(identification: &Identification, verdict: &Verdict) -> String {
             &format!("To be used: {}.", verdict.listed.join(", ")),
         );
     }
-    let objections = objections(identification, verdict.model, verdict.stage);
-    for (_, check) in &objections {
+    let found = objections(&identification.checks, verdict.model, verdict.stage);
+    for (_, check) in &found.told {
         paragraph(&mut text, "  - ", &check.located());
     }
+    if let Some(rest) = found.rest() {
+        paragraph(&mut text, "  - ", &rest);
+    }
     let count = passed(identification, verdict.model, verdict.stage);
-    if objections.is_empty() && count > 0 {
+    if found.told.is_empty() && count > 0 {
         let s = if count == 1 { "" } else { "s" };
         line(&mut text, &format!("  {count} check{s} found nothing."));
     }
@@ -162,12 +189,14 @@ fn parameters(identification: &Identification) -> String {
     }
     let base = &identification.base_parameters;
     names.sort_by_key(|name| base.iter().position(|one| one.name == *name));
+    // Two answers side by side have to fit into a line.
+    let value_digits = if answers.len() > 1 { 5 } else { 6 };
     let mut header = vec!["parameter"];
     if truth {
         header.push("true value");
     }
     for answer in &answers {
-        header.extend([answer.model.case(), "+-%"]);
+        header.extend([answer.model.case(), "95 % interval"]);
     }
     header.push("unit");
     let rows = names.iter().map(|name| {
@@ -188,8 +217,8 @@ fn parameters(identification: &Identification) -> String {
         }
         for answer in &answers {
             let own = find(answer);
-            row.push(number(own.as_ref().map(|one| one.value), 6));
-            row.push(number(own.as_ref().and_then(half_width_percent), 2));
+            row.push(number(own.as_ref().map(|one| one.value), value_digits));
+            row.push(own.as_ref().map_or_else(|| String::from("-"), interval));
         }
         row.push(some.map_or_else(String::new, |one| one.unit));
         row
@@ -198,10 +227,37 @@ fn parameters(identification: &Identification) -> String {
         Some((letter, rest)) => letter.to_uppercase() + rest,
         None => String::new(),
     };
+    let mut text = format!("\n{title}\n{}", table(&header, rows.collect()));
+    if all().any(is_outside) {
+        paragraph(
+            &mut text,
+            "",
+            "* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it",
+        );
+    }
+    text
+}
+
+/// The ends of an interval, marked where the estimate lies outside.
+fn interval(one: &ParameterEstimate) -> String {
+    let [low, high] = one.interval_95;
+    let digits = digits(one);
+    let mark = if is_outside(one) { " *" } else { "" };
     format!(
-        "\n{title}, with half the 95 % interval in percent\n{}",
-        table(&header, rows.collect())
+        "{} .. {}{mark}",
+        significant(low, digits),
+        significant(high, digits)
     )
+}
+
+/// Digits at which the ends of an interval differ.
+fn digits(one: &ParameterEstimate) -> usize {
+    let [low, high] = one.interval_95;
+    let ratio = low.abs().max(high.abs()) / (high - low).abs();
+    match ratio.is_finite() && ratio > 1.0 {
+        true => (ratio.log10().ceil() as usize + 1).min(7),
+        false => 2,
+    }
 }
 
 /// Warnings that no check tells of, and what to do next.

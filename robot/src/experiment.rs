@@ -4,9 +4,10 @@ pub(crate) mod errors;
 
 use crate::{
     error::{Error, Problem},
+    prior::{is_of_payload, of_load},
     robot::Robot,
 };
-use overact::{Info, Model};
+use overact::{Info, Model, Parameter};
 use overact_codegen::{description, diagnostic::did_you_mean};
 use overact_identification::is_carried;
 use overact_simulation::{Drives, Experiment, Record, Run, Term, Trajectory, simulate};
@@ -17,6 +18,8 @@ use std::collections::BTreeMap;
 pub struct VirtualExperiment<'a> {
     robot: &'a Robot,
     plan: Experiment,
+    /// Of each payload that has a name, its parameters by their names in the model.
+    loads: BTreeMap<String, BTreeMap<&'static str, f64>>,
     without_effect: Vec<String>,
 }
 
@@ -40,10 +43,17 @@ impl Robot {
         let truth = true_values(table);
         let mut without_effect: Vec<String> = truth.keys().cloned().collect();
         let all = || info.parameters.iter().chain(info.payload_parameters);
-        without_effect.retain(|name| all().all(|parameter| parameter.name != *name));
+        let has = |parameter: &Parameter, name: &String| {
+            let loads = self.payloads().into_iter();
+            let mut loads = loads.filter(|_| is_of_payload(parameter));
+            parameter.name == name || loads.any(|load| of_load(parameter.name, load) == *name)
+        };
+        without_effect.retain(|name| !all().any(|parameter| has(parameter, name)));
+        let value = |name: &str, kept: f64| truth.get(name).copied().unwrap_or(kept);
         Ok(VirtualExperiment {
             robot: self,
             plan: plan(table, &info),
+            loads: loads(self, &value, &BTreeMap::new()),
             without_effect,
         })
     }
@@ -57,6 +67,20 @@ impl Robot {
         held.map(|run| run.name.value.clone()).collect()
     }
 
+    /// Names of the payloads, where there are several.
+    #[must_use]
+    pub fn payloads(&self) -> Vec<&str> {
+        let names = self.description().payloads.iter();
+        names.map(|name| name.value.as_str()).collect()
+    }
+
+    /// The name of the payload that a run of the virtual experiment carries, where there are several.
+    pub(crate) fn payload_of(&self, run: &str) -> Option<&str> {
+        let table = self.description().experiment.as_ref()?;
+        let run = table.runs.iter().find(|one| one.name.value == run)?;
+        run.payload_name.as_deref()
+    }
+
     /// True values of all parameters of the virtual robot: one that the description leaves out is zero.
     /// None without a virtual experiment.
     #[must_use]
@@ -64,7 +88,13 @@ impl Robot {
         let table = self.description().experiment.as_ref()?;
         let info = self.model().info();
         let all = info.parameters.iter().chain(info.payload_parameters);
-        let mut truth: BTreeMap<String, f64> = all.map(|p| (p.name.to_owned(), 0.0)).collect();
+        let names = |one: &Parameter| {
+            let loads = self.payloads().into_iter().filter(|_| is_of_payload(one));
+            let loads = loads.map(|load| of_load(one.name, load));
+            loads.chain([one.name.to_owned()]).collect::<Vec<_>>()
+        };
+        let mut truth: BTreeMap<String, f64> =
+            { all.flat_map(names) }.map(|name| (name, 0.0)).collect();
         truth.extend(true_values(table));
         Some(truth)
     }
@@ -96,6 +126,8 @@ impl VirtualExperiment<'_> {
         for (parameter, own) in all.zip(&mut self.plan.parameters) {
             *own = values.get(parameter.name).copied().unwrap_or(*own);
         }
+        let value = |name: &str, kept: f64| values.get(name).copied().unwrap_or(kept);
+        self.loads = loads(self.robot, &value, &self.loads);
     }
 
     /// Names of true parameters that have no effect on the model.
@@ -132,30 +164,36 @@ impl VirtualExperiment<'_> {
     /// An experiment that can't be made, all that is wrong at once, or runs that could not be finished.
     pub fn records(&self, progress: &dyn Fn(f64, &str)) -> Result<Vec<Record>, Error> {
         let info = self.robot.model().info();
-        if info.parameters.iter().any(is_carried) {
-            return self.records_with_carried(progress);
+        if info.parameters.iter().any(is_carried) || !self.loads.is_empty() {
+            return self.records_by_load(progress);
         }
         simulate(self.robot.model(), &self.plan, progress)
             .map_err(|error| located(self.robot, &error))
     }
 
-    /// Makes all runs of a robot without platform one by one: its payload is a body that is there in runs
-    /// with payload alone.
-    fn records_with_carried(&self, progress: &dyn Fn(f64, &str)) -> Result<Vec<Record>, Error> {
+    /// Makes all runs one by one, each of a robot with what it carries: one of several payloads, or, of a robot
+    /// without platform, a body that is there in runs with payload alone.
+    fn records_by_load(&self, progress: &dyn Fn(f64, &str)) -> Result<Vec<Record>, Error> {
         let info = self.robot.model().info();
+        let of_robot = info.parameters.iter().any(is_carried);
         let mut records = Vec::new();
         for run in &self.plan.runs {
             let mut plan = self.plan.clone();
             plan.runs = vec![Run {
-                payload: false,
+                payload: run.payload && !of_robot,
                 ..run.clone()
             }];
-            if !run.payload {
-                let both = [Some(&mut plan.parameters), plan.nominal_parameters.as_mut()];
-                for values in both.into_iter().flatten() {
-                    let own = info.parameters.iter().zip(values);
-                    own.filter(|(parameter, _)| is_carried(parameter))
-                        .for_each(|(_, value)| *value = 0.0);
+            let load = self.robot.payload_of(&run.name);
+            let own = load.and_then(|name| self.loads.get(name));
+            let both = [Some(&mut plan.parameters), plan.nominal_parameters.as_mut()];
+            for values in both.into_iter().flatten() {
+                let all = info.parameters.iter().chain(info.payload_parameters);
+                for (parameter, value) in all.zip(values).filter(|(one, _)| is_of_payload(one)) {
+                    if !run.payload {
+                        *value = 0.0;
+                    } else if let Some(own) = own {
+                        *value = own.get(parameter.name).copied().unwrap_or(0.0);
+                    }
                 }
             }
             let made = simulate(self.robot.model(), &plan, progress)
@@ -168,6 +206,29 @@ impl VirtualExperiment<'_> {
         }
         Ok(records)
     }
+}
+
+/// For each payload that has a name its parameters, by their names in the model; `value` gives them by their own
+/// names, or keeps one.
+fn loads(
+    robot: &Robot,
+    value: &dyn Fn(&str, f64) -> f64,
+    before: &BTreeMap<String, BTreeMap<&'static str, f64>>,
+) -> BTreeMap<String, BTreeMap<&'static str, f64>> {
+    let info = robot.model().info();
+    let all = info.parameters.iter().chain(info.payload_parameters);
+    let own: Vec<&Parameter> = all.filter(|one| is_of_payload(one)).collect();
+    let of = |load: &str| {
+        let known = before.get(load);
+        let each = own.iter().map(|one| {
+            let kept = known.and_then(|known| known.get(one.name)).copied();
+            let value = value(&of_load(one.name, load), kept.unwrap_or(0.0));
+            (one.name, value)
+        });
+        each.collect()
+    };
+    let names = robot.payloads().into_iter();
+    names.map(|name| (name.to_owned(), of(name))).collect()
 }
 
 /// The plan of an experiment.

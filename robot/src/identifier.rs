@@ -8,10 +8,10 @@ use crate::{
     runs::Runs,
 };
 use overact::Model;
-use overact_codegen::description::{COUPLED_MOTORS, KNOWN_TORQUES, Leg};
+use overact_codegen::description::{COUPLED_MOTORS, GAINS_AND_GRAVITY, KNOWN_TORQUES, Leg};
 use overact_identification::{
-    Calibration, CalibrationScope, Dataset, Gains, Identification, Instruments, Log, Progress,
-    Settings, Stage, Study, drive_gains, identify_with_gains, study,
+    Before, Calibration, CalibrationScope, Dataset, Gains, GravityDirection, Identification,
+    Instruments, Log, Progress, Settings, Stage, Study, drive_gains, identify_after, study,
 };
 use std::collections::BTreeMap;
 
@@ -40,6 +40,7 @@ pub struct Identifier<'a> {
     settings: Option<Settings>,
     calibration: Option<CalibrationScope>,
     gains: bool,
+    gravity_direction: bool,
     progress: &'a dyn Fn(Progress<'_>),
 }
 
@@ -66,6 +67,7 @@ impl<'a> Identifier<'a> {
             settings: None,
             calibration: None,
             gains: robot.description().identification.gains,
+            gravity_direction: robot.description().identification.gravity_direction,
             progress: &|_| {},
         }
     }
@@ -118,6 +120,16 @@ impl<'a> Identifier<'a> {
         Self { gains, ..self }
     }
 
+    /// With the direction of gravity, identified together with the parameters, or as it is described, whatever
+    /// the description says.
+    #[must_use]
+    pub fn gravity_direction(self, gravity_direction: bool) -> Self {
+        Self {
+            gravity_direction,
+            ..self
+        }
+    }
+
     /// With someone who hears what is being done.
     #[must_use]
     pub fn progress(self, progress: &'a dyn Fn(Progress<'_>)) -> Self {
@@ -168,10 +180,18 @@ impl<'a> Identifier<'a> {
     /// The identification of the robot as it is described, with the gains of its drives where they are asked
     /// for.
     fn identified(&self) -> Result<Identification, Error> {
-        if !self.gains {
-            return self.estimated(None);
+        if self.gravity_direction {
+            let made = self.in_gravity(|own, found| own.estimated(Before::Gravity(found)))?;
+            let (mut result, found) = made;
+            result.warnings.splice(0..0, found.warnings());
+            result.gravity = Some(found);
+            return Ok(result);
         }
-        let (mut result, gains) = self.with_gains(|own, gains| own.estimated(Some(gains)))?;
+        if !self.gains {
+            return self.estimated(Before::Nothing);
+        }
+        let (mut result, gains) =
+            self.with_gains(|own, gains| own.estimated(Before::Gains(gains)))?;
         let others = std::mem::take(&mut result.warnings);
         result.warnings = [gains.warnings(), others].concat();
         result.gains = gains.drives;
@@ -220,8 +240,40 @@ impl<'a> Identifier<'a> {
         Ok((make(&own, &gains)?, gains))
     }
 
-    /// The identification with the torques as they are, by which gains they have been multiplied.
-    fn estimated(&self, gains: Option<&Gains>) -> Result<Identification, Error> {
+    /// What is made of the robot in the gravity whose direction the runs tell, and the direction.
+    fn in_gravity<T>(
+        &self,
+        make: impl FnOnce(&Identifier<'_>, &GravityDirection) -> Result<T, Error>,
+    ) -> Result<(T, GravityDirection), Error> {
+        if self.gains {
+            let help = "identify the gains first, put them into `torque_gain` of [data], then ask for the direction";
+            let problem = Problem::new(GAINS_AND_GRAVITY).file(self.robot.file());
+            return Err(problem.help(help).into());
+        }
+        let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });
+        let settings = self.with_defaults();
+        let found = self.robot.gravity_direction(self.runs, &settings, &tell)?;
+        let turned = match found.significant {
+            true => Some(self.robot.in_gravity(found.used())?),
+            false => None,
+        };
+        let robot = turned.as_ref().unwrap_or(self.robot);
+        // What is believed beforehand is told for the parameters that have an effect now.
+        let frequency = self.runs.first().map_or(0.0, Log::sampling_frequency);
+        let settings = Settings {
+            prior: robot.settings(frequency).prior,
+            ..settings
+        };
+        let own = Identifier {
+            robot,
+            settings: Some(settings),
+            ..self.clone()
+        };
+        Ok((make(&own, &found)?, found))
+    }
+
+    /// The identification as everything is now, after what was identified before.
+    fn estimated(&self, before: Before<'_>) -> Result<Identification, Error> {
         self.robot.check_prior()?;
         let settings = self.with_defaults();
         let essential = self.essential();
@@ -235,10 +287,10 @@ impl<'a> Identifier<'a> {
             variants: &variants.lent(),
             ..self.dataset()
         };
-        let mut result = identify_with_gains(
+        let mut result = identify_after(
             self.robot.model(),
             &dataset,
-            gains,
+            before,
             &without_elimination(&settings, essential),
             self.progress,
         )?;
@@ -255,6 +307,11 @@ impl<'a> Identifier<'a> {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn study(&self) -> Result<Study, Error> {
+        if self.gravity_direction {
+            let (mut study, found) = self.in_gravity(|own, _| own.studied())?;
+            study.warnings.splice(0..0, found.warnings());
+            return Ok(study);
+        }
         if !self.gains {
             return self.studied();
         }

@@ -5,7 +5,7 @@
 //! by least squares are good enough for the simulation, although errors may bias them: a good controller
 //! keeps any such robot near its reference.
 
-use crate::{error::Error, robot::Robot};
+use crate::{error::Error, prior::of_load, robot::Robot};
 use overact::{Info, Model};
 use overact_identification::{
     Estimate, Instruments, Log, Prepared, Projection, Settings, estimate_projection, is_carried,
@@ -37,12 +37,25 @@ pub fn beside_simulated(
                 .unwrap_or(&plan.parameters)
                 .clone(),
         ),
-        parameters,
+        parameters: parameters(None),
         ..plan.clone()
     };
     plan.runs
         .retain(|run| runs.iter().any(|log| log.name() == run.name));
-    let records = simulate(model, &plan, &|_, _| ()).map_err(failed)?;
+    let mut records = Vec::new();
+    if runs.iter().all(|log| log.payload_name().is_none()) {
+        records = simulate(model, &plan, &|_, _| ()).map_err(failed)?;
+    } else {
+        for run in &plan.runs {
+            let own = runs.iter().find(|log| log.name() == run.name);
+            let plan = Experiment {
+                parameters: parameters(own.and_then(Log::payload_name)),
+                runs: vec![run.clone()],
+                ..plan.clone()
+            };
+            records.extend(simulate(model, &plan, &|_, _| ()).map_err(failed)?);
+        }
+    }
     let mut beside = Vec::new();
     for log in runs {
         let own = records.iter().find(|record| record.name == log.name());
@@ -93,7 +106,7 @@ fn along_references(
     for log in runs {
         let reference = log.instruments().map(Log::load).transpose()?;
         let (positions, _) = reference.unwrap_or_default();
-        let mut parameters = whole.clone();
+        let mut parameters = whole(log.payload_name());
         if !log.payload() {
             parameters[robot..].fill(0.0);
             // Of a robot without platform, where some runs carry its payload and some do not.
@@ -113,8 +126,13 @@ fn along_references(
     Ok(beside)
 }
 
-/// Standard parameters with the model of the base estimate by least squares, the payload's last.
-fn estimated(model: &dyn Model, runs: &[Log], settings: &Settings) -> Result<Vec<f64>, Error> {
+/// Standard parameters with the model of the base estimate by least squares, the payload's last: those of the
+/// payload that is asked for, where there are several.
+fn estimated<'a>(
+    model: &'a dyn Model,
+    runs: &[Log],
+    settings: &Settings,
+) -> Result<impl Fn(Option<&str>) -> Vec<f64> + 'a, Error> {
     let sizes = model.info().sizes;
     let projection = if sizes.actuators > sizes.dof {
         Projection::Platform
@@ -128,11 +146,16 @@ fn estimated(model: &dyn Model, runs: &[Log], settings: &Settings) -> Result<Vec
     };
     let prepared = prepare(model, runs, &[projection], &settings, &|_| {})?;
     let outcome = estimate_projection(&prepared, 0, &settings, None)?;
-    Ok(standard(&model.info(), &prepared, &outcome.base))
+    Ok(move |load: Option<&str>| standard(&model.info(), &prepared, &outcome.base, load))
 }
 
 /// Each base parameter stands on the one that is kept, the regrouped ones are zero.
-fn standard(info: &Info<'_>, prepared: &Prepared, estimate: &Estimate) -> Vec<f64> {
+fn standard(
+    info: &Info<'_>,
+    prepared: &Prepared,
+    estimate: &Estimate,
+    load: Option<&str>,
+) -> Vec<f64> {
     let columns = prepared.columns.as_slice();
     let value = |name: &str| {
         let own = estimate.parameters.iter().find(|one| {
@@ -143,7 +166,12 @@ fn standard(info: &Info<'_>, prepared: &Prepared, estimate: &Estimate) -> Vec<f6
         own.map_or(0.0, |one| one.value)
     };
     let all = info.parameters.iter().chain(info.payload_parameters);
-    all.map(|parameter| value(parameter.name)).collect()
+    all.map(|parameter| {
+        let own = load.map(|load| value(&of_load(parameter.name, load)));
+        own.filter(|own| *own != 0.0)
+            .unwrap_or_else(|| value(parameter.name))
+    })
+    .collect()
 }
 
 /// A record as a run of instruments.

@@ -4,6 +4,7 @@
 //! A tree (a robot without platform) is served like any other: its pose are its joint positions and
 //! its twist their velocities.
 
+mod follow;
 mod names;
 mod newton;
 

@@ -28,9 +28,11 @@
 //!   simulation; `runs`: logs and virtual runs;
 //! - `check`: everything that is wrong with a description, found without its model;
 //! - `excitation`: runs that determine the parameters best inside limits;
+//! - `gravity`: the direction of gravity from runs, and the robot in another one;
 //! - `variants`: the robot with other lengths, by which wrong ones are told;
 //! - `instruments`: the motion of the simulated robot beside runs, by which errors of theirs are told;
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
+//! - `kept`: kept actuators of case 2 by name;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
 
 mod body;
@@ -40,9 +42,11 @@ mod compiled_file;
 mod error;
 mod excitation;
 mod experiment;
+mod gravity;
 mod identifier;
 mod instruments;
 mod interpreted;
+mod kept;
 mod motors;
 mod parameters;
 mod partitions;
@@ -64,6 +68,7 @@ pub use experiment::VirtualExperiment;
 pub use identifier::Identifier;
 pub use instruments::beside_simulated;
 pub use interpreted::InterpretedRobot;
+pub use kept::kept_actuators;
 pub use parameters::{GivenParameters, read_parameters};
 pub use partitions::partitions;
 pub use robot::Robot;

@@ -118,7 +118,12 @@ fn complete(
     payload: Vec<String>,
 ) -> Result<(), Error> {
     let lacking = |mut names: Vec<String>| {
-        names.retain(|name| !values.contains_key(name));
+        // Of several payloads each has its own.
+        let of_loads = |name: &String| {
+            let mut given = values.keys();
+            name.ends_with("_payload") && given.any(|own| own.starts_with(&format!("{name}_")))
+        };
+        names.retain(|name| !values.contains_key(name) && !of_loads(name));
         names
     };
     let count = payload.len();

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use crate::body::leg_body;
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use overact::{Body, Info, StandardParameter};
+use overact::{Body, Info, Parameter, StandardParameter};
 use overact_codegen::description::{Description, Joint, JointKind};
-use overact_identification::Prior;
+use overact_identification::{Prior, is_carried};
 
 /// A body is at least this part as long as the robot's bodies are on average.
 const SHORTEST: f64 = 0.3;
@@ -18,16 +18,34 @@ const SQUARE_WIDTH: f64 = 0.01;
 /// A standard parameter of a robot: its name, what it is, and of which body.
 pub(crate) type Named<'a> = (&'a str, StandardParameter, Body);
 
-/// The standard parameters of a robot and its payload.
-pub(crate) fn named<'a>(info: &Info<'a>) -> Vec<Named<'a>> {
-    let all = info.parameters.iter().chain(info.payload_parameters);
-    all.map(|one| (one.name, one.symbol, one.body)).collect()
+/// The standard parameters of a robot and its payload, and of each payload that has a name.
+pub(crate) fn with_loads(
+    description: &Description,
+    info: &Info<'_>,
+) -> Vec<(String, StandardParameter, Body)> {
+    let all = || info.parameters.iter().chain(info.payload_parameters);
+    let own = all().map(|one| (one.name.to_owned(), one.symbol, one.body));
+    let loads = description.payloads.iter().flat_map(|load| {
+        let loads = all().filter(|one| is_of_payload(one));
+        loads.map(|one| (of_load(one.name, &load.value), one.symbol, one.body))
+    });
+    own.chain(loads).collect()
+}
+
+/// Whether a parameter is one of the payload.
+pub(crate) fn is_of_payload(parameter: &Parameter) -> bool {
+    parameter.body == Body::Payload || is_carried(parameter)
+}
+
+/// The name of a parameter of the payload, as one of the payload with this name.
+pub(crate) fn of_load(parameter: &str, load: &str) -> String {
+    format!("{parameter}_{load}")
 }
 
 /// The prior of a description of a robot with these standard parameters and this home configuration.
-pub(crate) fn prior(
+pub(crate) fn prior<N: AsRef<str>>(
     description: &Description,
-    parameters: &[Named<'_>],
+    parameters: &[(N, StandardParameter, Body)],
     home_joints: &[f64],
 ) -> Prior {
     let mut prior = Prior {
@@ -42,7 +60,10 @@ pub(crate) fn prior(
     let mean = if mean > 0.0 { mean } else { 0.1 };
     let inertial = parameters.iter();
     for (name, symbol, body) in inertial.filter(|(_, symbol, _)| symbol.is_inertial()) {
-        let suffix = name.strip_prefix(symbol.name()).unwrap_or_default();
+        let suffix = name
+            .as_ref()
+            .strip_prefix(symbol.name())
+            .unwrap_or_default();
         let name = |symbol: StandardParameter| format!("{}{suffix}", symbol.name());
         let link = links.get(body).copied().unwrap_or_default();
         let values = rod(link, mean);

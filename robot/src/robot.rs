@@ -75,7 +75,7 @@ impl Robot {
 }
 
 /// What is compiled of a robot that runs.
-fn served() -> Request<'static> {
+pub(crate) fn served() -> Request<'static> {
     Request {
         wanted: &InterpretedRobot::serves,
         ..Request::with_effort(Effort::None)

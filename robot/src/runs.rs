@@ -2,7 +2,10 @@
 
 use crate::{error::Error, experiment::VirtualExperiment, robot::Robot};
 use overact_codegen::description::Instruments;
-use overact_identification::{Gain, Log, Mapping, data};
+use overact_identification::{
+    Gain, Log, Mapping,
+    data::{self, Array},
+};
 use overact_simulation::Record;
 use std::{collections::BTreeMap, path::Path};
 
@@ -57,6 +60,27 @@ impl Robot {
 }
 
 impl Robot {
+    /// A log of arrays in memory, whose columns are those that the description names; `name` is what messages
+    /// call it.
+    ///
+    /// # Errors
+    /// Missing arrays, numbers that are not finite, a time that is not uniform.
+    pub fn log_of_arrays(
+        &self,
+        name: &str,
+        arrays: &[Array<'_>],
+        payload: bool,
+    ) -> Result<Log, Error> {
+        let mapping = self.mapping();
+        let log = data::read_arrays(name, arrays, &mapping, payload)?;
+        match self.references(&mapping) {
+            None => Ok(log),
+            Some(mapping) => {
+                Ok(log.with_instruments(data::read_arrays(name, arrays, &mapping, payload)?))
+            }
+        }
+    }
+
     /// Where the references of runs stand, if the robot is to be simulated along them.
     fn references(&self, own: &Mapping) -> Option<Mapping> {
         let description = self.description();
@@ -98,6 +122,17 @@ impl VirtualExperiment<'_> {
         let records = self.records(progress)?.into_iter();
         let (validation, identified): (Vec<Record>, Vec<Record>) =
             records.partition(|record| held_out.contains(&record.name));
+        let log = |record: Record| {
+            let load = self
+                .robot()
+                .payload_of(&record.name)
+                .filter(|_| record.payload);
+            let own = log(record)?;
+            Ok::<_, Error>(match load {
+                Some(name) => own.with_payload_name(name),
+                None => own,
+            })
+        };
         let logs =
             |records: Vec<Record>| records.into_iter().map(log).collect::<Result<Vec<_>, _>>();
         Ok(Runs {

@@ -1,7 +1,7 @@
 //! A description's tables `[data]` and `[identification]` as settings of the identification.
 
 use crate::{
-    prior::{named, prior},
+    prior::{prior, with_loads},
     robot::Robot,
 };
 use overact::{Info, Model};
@@ -75,7 +75,11 @@ pub(crate) fn settings(description: &Description, info: &Info<'_>, frequency: f6
             description::Instruments::None => Instruments::None,
         },
         period_s: table.period,
-        prior: prior(description, &named(info), info.home_joints),
+        prior: prior(
+            description,
+            &with_loads(description, info),
+            info.home_joints,
+        ),
         known: table.known.iter().cloned().collect(),
         ..usual
     };

@@ -60,10 +60,11 @@ impl Robot {
 }
 
 /// What an identification asks of a mechanism for its columns.
-fn regressor(mechanism: Mechanism) -> Option<InterpretedRobot> {
+pub(crate) fn regressor(mechanism: Mechanism) -> Option<InterpretedRobot> {
     let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
         let asked = match function {
             Function::IdmRedPlatform(columns) => columns == Columns::Standard,
+            Function::IdmRedPayload => true,
             Function::JointVelocities | Function::JointAccelerations => true,
             _ => false,
         };

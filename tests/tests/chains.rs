@@ -4,13 +4,8 @@
 //!
 //! The reference cuts every loop, keeps all joints of the tree free and closes the cuts by Lagrange multipliers.
 
-use overact::Function;
-use overact_codegen::{Effort, Request, Source};
-use overact_tests::support::conversion::reference;
-use overact_tests::support::expected::Expected;
-use overact_tests::support::library::workspace;
-use overact_tests::support::sample::samples;
-use overact_tests::support::{Comparison, Evaluated, Failure, model_with};
+use overact_codegen::Source;
+use overact_tests::support::{Failure, whole::against_reference};
 use overact_tier::by_tier;
 
 const TOLERANCE: f64 = 1e-9;
@@ -95,24 +90,11 @@ home = {{ 3 = "0.6 m" }}
 
 /// Compares all functions of a description with the reference.
 fn compare(what: &str, text: String) -> Result<(), Failure> {
-    let source = Source::new("chains.toml", text);
-    let model = model_with(&source, &Request::with_effort(Effort::None))?;
-    let mechanism = reference(&model.mechanism, workspace(&model));
-    let expected = Expected::by_position(&model, mechanism);
-    let parameters = expected.parameters();
-    let states = by_tier(STATES);
-    let all = samples(&expected.mechanism, &parameters, states, 7, false)?;
-    let truths = all.iter().map(|sample| expected.at(sample));
-    let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
-    let mut comparison = Comparison::new(TOLERANCE);
-    for function in &model.functions {
-        // The closure error is what Newton's method drives to zero, not a quantity of its own.
-        if function.computes != Function::ClosureError {
-            comparison.function(function, &Evaluated(&model), &all, &truths)?;
-        }
-    }
-    assert!(comparison.lines.len() > 20, "{what}: hardly a function");
-    let failures = comparison.failures;
+    let failures = against_reference(
+        Source::new("chains.toml", text),
+        by_tier(STATES),
+        [TOLERANCE; 2],
+    )?;
     assert!(failures.is_empty(), "{what}:\n{}", failures.join("\n"));
     Ok(())
 }
@@ -155,6 +137,29 @@ fn two_at_once() -> Result<(), Failure> {
         drive("two", "ground", "e")
     );
     compare("two chains", text)
+}
+
+/// Chains on the bodies of a chain that stands on the ground: from it, to it, and in between.
+#[test]
+fn on_a_chain_from_the_ground() -> Result<(), Failure> {
+    let first = drive("one", "ground", "c");
+    for (from, to) in [("one.2", "e"), ("d", "one.2"), ("one.3", "one.1")] {
+        let text = format!("{SKELETON}{first}{}", drive("two", from, to));
+        compare(&format!("from {from} to {to}"), text)?;
+    }
+    Ok(())
+}
+
+/// Chains on a chain that moves, and on a chain that stands on such a one.
+#[test]
+fn on_a_chain_that_is_carried() -> Result<(), Failure> {
+    let text = format!(
+        "{SKELETON}{}{}{}",
+        drive("one", "a", "c"),
+        drive("two", "one.2", "e"),
+        drive("three", "two.3", "one.3"),
+    );
+    compare("a chain on a chain on a chain", text)
 }
 
 /// A four-bar whose coupler is fixed on the crank by a pin of its own, on an arm that moves.

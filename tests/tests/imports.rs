@@ -58,6 +58,7 @@ const HOUSES: [House; 6] = [
             "estimation",
             "calibration",
             "gains",
+            "gravity",
             "validation",
             "result",
             "consistent",
@@ -107,6 +108,7 @@ const HOUSES: [House; 6] = [
         folder: "robot",
         order: &[
             "error",
+            "kept",
             "body",
             "interpreted",
             "compiled_file",
@@ -117,6 +119,7 @@ const HOUSES: [House; 6] = [
             "settings",
             "calibration",
             "variants",
+            "gravity",
             "experiment",
             "check",
             "runs",

@@ -168,7 +168,7 @@ fn with_kept(
     names: &[String],
     request: &Request<'_>,
 ) -> Result<RobotModel, Failure> {
-    let kept = super::kept_actuators(&model, names)?;
+    let kept = overact_robot::kept_actuators(&model, names)?;
     let mut mechanism = model.mechanism;
     mechanism.kept_actuators = kept;
     model_with(mechanism, request).map_err(|_| {

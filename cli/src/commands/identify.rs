@@ -55,6 +55,10 @@ pub(crate) struct Arguments {
     /// torques multiplied by them [default: what the description says]
     #[arg(long)]
     gains: bool,
+    /// Identify the direction of gravity together with the parameters, for a base that stands off the vertical
+    /// [default: what the description says]
+    #[arg(long, conflicts_with = "gains")]
+    gravity_direction: bool,
     /// Write the description with the calibrated offsets and lengths
     #[arg(long, value_name = "TOML", requires = "calibrate")]
     calibrated_robot: Option<PathBuf>,
@@ -103,7 +107,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let robot = Robot::from_toml(&arguments.file)?;
     let reports = reports.read()?;
     let kept = match &arguments.kept {
-        Some(names) => Some(super::kept_actuators(robot.model().model(), names)?),
+        Some(names) => Some(overact_robot::kept_actuators(robot.model().model(), names)?),
         None => None,
     };
     let runs = arguments.runs.runs(&robot, as_json)?;
@@ -113,6 +117,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let identifier = Identifier::new(&robot).data(&runs).settings(settings);
     let identifier = match arguments.gains {
         true => identifier.gains(true),
+        false => identifier,
+    };
+    let identifier = match arguments.gravity_direction {
+        true => identifier.gravity_direction(true),
         false => identifier,
     };
     let mut result = identified(identifier, scope, as_json)?;

@@ -8,13 +8,13 @@ mod identify;
 mod inspect;
 mod new;
 mod partitions;
+mod payloads;
 mod runs;
 mod same;
 mod simulate;
 
-use crate::failure::{Failure, Problem};
+use crate::failure::Failure;
 use clap::{Parser, Subcommand};
-use overact_codegen::RobotModel;
 use std::{path::PathBuf, slice};
 
 /// Dynamic models and parameter identification of overactuated parallel robots.
@@ -100,44 +100,6 @@ impl Command {
         };
         let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
         names.join(", ")
-    }
-}
-
-/// Indices of kept actuators that are given by name: as many different ones as there are degrees of
-/// freedom.
-///
-/// # Errors
-/// Every name that no actuator has, names that are given twice, or a wrong number of them.
-fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Failure> {
-    let known = model.mechanism.named_actuators();
-    let mut kept = Vec::new();
-    let mut problems = Vec::new();
-    for name in names {
-        match known.find(name) {
-            Some(index) if kept.contains(&index) => {
-                problems.push(Problem::new(format!(
-                    "the actuator `{name}` is listed twice"
-                )));
-            }
-            Some(index) => kept.push(index),
-            None => {
-                let message = format!("there is no actuator `{name}`");
-                problems.push(Problem::new(message).help(known.help(name)));
-            }
-        }
-    }
-    let dof = model.mechanism.dof();
-    if problems.is_empty() && kept.len() != dof {
-        let message = format!(
-            "case 2 keeps {dof} actuators, one for each degree of freedom, not {}",
-            kept.len()
-        );
-        problems.push(Problem::new(message));
-    }
-    if problems.is_empty() {
-        Ok(kept)
-    } else {
-        Err(problems.into())
     }
 }
 

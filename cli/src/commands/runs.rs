@@ -1,9 +1,12 @@
 //! The runs of an identification: measured logs, or the virtual experiment.
 
-use super::{same, simulate};
+use super::{
+    payloads::{self, Payloads},
+    same, simulate,
+};
 use crate::{failure::Failure, progress::Progress};
 use clap::ValueEnum;
-use overact_identification::{Progress as Doing, Settings, data};
+use overact_identification::{Log, Progress as Doing, Settings, data};
 use overact_robot::{Robot, Runs};
 use std::path::{Path, PathBuf};
 
@@ -15,7 +18,7 @@ pub(super) struct Arguments {
     /// `a.csv+b.csv` one run whose columns stand in two files; without any, the virtual experiment is made
     #[arg(long, value_name = "LOG", num_args = 1..)]
     data: Vec<PathBuf>,
-    /// Logs of runs with the payload on the platform
+    /// Logs of runs with the payload on the platform; `NAME=LOG` where the description names several payloads
     #[arg(long, value_name = "LOG", num_args = 1..)]
     payload_data: Vec<PathBuf>,
     /// Logs to compare predictions with; names of runs where the experiment is virtual [default: those
@@ -56,7 +59,7 @@ impl Arguments {
         let held_out = held_out.into_iter().filter(|_| !self.are_virtual());
         let all = logs.into_iter().chain(held_out).flatten();
         std::iter::once(description)
-            .chain(all.flat_map(|path| data::parts(path)))
+            .chain(all.flat_map(|path| data::parts(payloads::file(path))))
             .collect()
     }
 
@@ -83,21 +86,23 @@ impl Arguments {
 
     /// Reads logs; the problems of all of them are reported together.
     fn measured(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
-        let of = |paths: &'_ [PathBuf], payload| -> Vec<(PathBuf, bool)> {
-            paths.iter().map(|path| (path.clone(), payload)).collect()
-        };
-        let own = [of(&self.data, false), of(&self.payload_data, true)].concat();
+        let payloads = Payloads::new(robot);
+        let own = [
+            payloads.without(&self.data),
+            payloads.with(&self.payload_data),
+        ]
+        .concat();
         let (plain, loaded) = (&self.cross_validate, &self.cross_validate_payload);
-        let others = [of(plain, false), of(loaded, true)].concat();
-        let files: Vec<(&Path, bool)> = own
-            .iter()
-            .chain(&others)
-            .map(|(path, payload)| (path.as_path(), *payload))
-            .collect();
+        let others = [payloads.without(plain), payloads.with(loaded)].concat();
+        let all = || own.iter().chain(&others);
+        payloads.check(all())?;
+        let files: Vec<(&Path, bool)> = all().map(|one| (one.path.as_path(), one.loaded)).collect();
         let logs: Vec<&Path> = files.iter().map(|(path, _)| *path).collect();
         same::check(&logs, own.len())?;
         let bar = Progress::new("reading", as_json);
-        let mut identified = robot.read_logs(&files, &|part: f64| bar.at(part, ""))?;
+        let logs = robot.read_logs(&files, &|part: f64| bar.at(part, ""))?;
+        let logs = logs.into_iter().zip(all());
+        let mut identified: Vec<Log> = logs.map(|(log, one)| one.label(log)).collect();
         let validation = identified.split_off(own.len());
         Ok(Runs {
             identified,

@@ -3,7 +3,7 @@
 use super::scene::{NOTHING, Part, Point, Scene};
 use super::{sphere, walk};
 use nalgebra::Vector3;
-use overact_codegen::mechanism::{End, Mechanism, numeric::platform_frame};
+use overact_codegen::mechanism::{BodyIndex, End, Mechanism, numeric::platform_frame};
 
 /// The scene of a mechanism; `pixel` is the length of one pixel, m, where it is known.
 pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
@@ -24,8 +24,8 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
     };
     for (index, leg) in mechanism.legs.iter().enumerate() {
         let positions = &mechanism.home.joints[mechanism.leg_range(index)];
-        // Chains of a skeleton start from the body that carries them.
-        let ground = mechanism.ground_of(index, pose);
+        // Chains start from the body that carries them.
+        let ground = mechanism.ground_of(index, pose, &mechanism.home.joints);
         let (mut parts, mut base) = walk::parts(leg, positions, pixel, mechanism.is_tree());
         if leg.base_body.is_some() {
             parts.iter_mut().for_each(|part| part.carry(&ground));
@@ -36,7 +36,10 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
             .extend(parts.into_iter().map(|part| (index, part)));
         scene.parts.extend(branch(mechanism, leg.base_body, base));
         scene.bases.push(base);
-        if let (Some(end), Some(target)) = (&leg.end, mechanism.target(index, pose)) {
+        if let (Some(end), Some(target)) = (
+            &leg.end,
+            mechanism.target(index, pose, &mechanism.home.joints),
+        ) {
             let target = ground * target;
             let at = target.translation.vector;
             scene.parts.extend(branch(mechanism, leg.end_body, at));
@@ -50,13 +53,14 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
     scene
 }
 
-/// The part of a skeleton's body that reaches from its joint to a chain, with the number of its leg.
-fn branch(mechanism: &Mechanism, body: Option<usize>, to: Point) -> Option<(usize, Part)> {
-    let frames = mechanism.skeleton()?.frames(&mechanism.home.pose);
-    let body = body?;
-    let from = frames[body].translation.vector;
+/// The part of a body that reaches from its joint to a chain, with the number of its leg.
+fn branch(mechanism: &Mechanism, body: Option<BodyIndex>, to: Point) -> Option<(usize, Part)> {
+    let BodyIndex { leg, joint } = body?;
+    let home = &mechanism.home;
+    let frame = mechanism.body_frame(BodyIndex { leg, joint }, &home.pose, &home.joints);
+    let from = frame.translation.vector;
     let path = vec![from, to];
-    ((to - from).norm() > NOTHING).then_some((0, Part::Link { body, path }))
+    ((to - from).norm() > NOTHING).then_some((leg, Part::Link { body: joint, path }))
 }
 
 /// Sliders of several legs at one place are drawn side by side.

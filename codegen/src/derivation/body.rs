@@ -140,8 +140,8 @@ pub(super) fn second_moment<'a>(
     momentum(alpha) + omega.cross(momentum(omega))
 }
 
-/// The base frame of a leg with `count` quasi-velocities: at rest in the ground, or moving with a body of the
-/// skeleton, whose own quasi-velocities follow those of the leg.
+/// The base frame of a leg with `count` quasi-velocities: at rest in the ground, or moving with a body, whose
+/// own quasi-velocities follow those of the leg.
 pub(crate) fn leg_base<'a>(
     arena: &'a Arena,
     leg: &Leg,

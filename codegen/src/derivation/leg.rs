@@ -22,7 +22,7 @@ pub struct LegState<'a> {
     pub platform: Option<PlatformPose<'a>>,
     /// The closure; `None` for a tree.
     pub closure: Option<LegClosure<'a>>,
-    /// ∂u/∂v, r numbers per u. Of a chain that starts from a moving body the independent coordinates follow,
-    /// as further quasi-velocities of its bodies.
+    /// ∂u/∂v, r numbers per u. Of a chain that starts from a moving body those of the leg follow that
+    /// carries it, whose quasi-velocities move its bodies, too.
     pub rows: Rows<'a>,
 }

@@ -73,7 +73,7 @@ impl<'a> Robot<'a> {
     }
 
     /// The upper triangle of the mass matrix of a chain that starts from a moving body, in the chain's
-    /// quasi-velocities and those of the skeleton: Σ Vᵀ m V + … of the bodies' partial velocities.
+    /// quasi-velocities and those of what carries it: Σ Vᵀ m V + … of the bodies' partial velocities.
     fn moving_masses(
         &self,
         index: usize,

@@ -54,6 +54,21 @@ impl Orientation {
         Some(all)
     }
 
+    /// The orientation of a frame that has the orientation `next` in this one; `None` if a constant
+    /// overflows.
+    #[must_use]
+    pub(crate) fn followed_by(&self, next: &Self) -> Option<Self> {
+        let mut parts = self.0.clone();
+        let mut rest = next.0.as_slice();
+        if let (Some(Part::Turn(last)), [Part::Turn(first), others @ ..]) = (parts.last_mut(), rest)
+        {
+            *last = last.plus(first)?;
+            rest = others;
+        }
+        parts.extend_from_slice(rest);
+        Some(Self(parts))
+    }
+
     /// A constant orientation, as that of a leg's base.
     #[must_use]
     pub fn fixed(rotation: [Angle; 3]) -> Self {

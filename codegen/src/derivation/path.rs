@@ -1,24 +1,39 @@
-//! The way through the skeleton between the two bodies that a chain joins, and the motion of the one as it
-//! is seen from the other.
+//! The way between the two bodies that a chain joins, and the motion of the one as it is seen from the other.
 //!
 //! The observer stands on the body that the chain starts from, in whose frame all vectors are written. The
-//! way goes up to the body that both follow and down to the one that the chain ends on. Against its
-//! direction a joint takes its rate away: with z its axis and q̇ its rate, from the body behind it
-//! ω' = ω - z q̇, and the joint's origin belongs to both bodies but for its slide.
+//! way goes up to the body that both follow and down to the one that the chain ends on, through the skeleton
+//! and through chains before, whose rates follow from the skeleton's. Against its direction a joint takes its
+//! rate away: with z its axis and q̇ its rate, from the body behind it ω' = ω - z q̇, and the joint's origin
+//! belongs to both bodies but for its slide.
 
 use super::configuration::Configuration;
+use super::elimination::Rows;
 use super::joint::link_vector;
 use super::orientation::{Orientation, constant_rotation};
 use super::rates::{Form, Rates};
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
-use crate::mechanism::{JointKind, Leg};
+use crate::mechanism::{BodyIndex, JointKind, Mechanism};
+
+/// What is known of the skeleton and the chains before, which ways go through.
+#[derive(Debug)]
+pub(super) struct Known<'r, 'a> {
+    pub(super) arena: &'a Arena,
+    pub(super) mechanism: &'r Mechanism,
+    pub(super) configuration: &'r Configuration<'a>,
+    /// Of each leg the index of its first joint in q_t, its rates, and ∂u/∂v.
+    pub(super) legs: Vec<(usize, &'r Rates, &'r Rows<'a>)>,
+}
 
 /// A joint on the way.
 #[derive(Debug, Clone)]
 struct Step<'a> {
     kind: JointKind,
-    /// Its rate in the rates of the independent joints.
+    /// Its rate in the quasi-velocities of its leg.
     rate: Form,
+    /// The number of quasi-velocities of the legs before.
+    first: usize,
+    /// Its rate per rate of each independent coordinate.
+    row: Vec<Expr<'a>>,
     /// Whether the way goes from the joint's antecedent to the joint.
     is_forward: bool,
     /// The joint's axis.
@@ -50,50 +65,26 @@ pub(super) struct Relative<'a> {
 }
 
 impl<'a> Path<'a> {
-    /// The way between two bodies of the skeleton, joints of `skeleton`; `None` is the ground. `None` if a
-    /// sine or cosine does not follow from the configuration.
+    /// The way between two bodies of the skeleton and of the chains that are derived; `None` is the ground.
+    /// `None` if a sine or cosine does not follow from the configuration.
     #[must_use]
     pub(super) fn new(
-        arena: &'a Arena,
-        skeleton: &Leg,
-        configuration: &Configuration<'a>,
-        from: Option<usize>,
-        to: Option<usize>,
+        known: &Known<'_, 'a>,
+        from: Option<BodyIndex>,
+        to: BodyIndex,
     ) -> Option<Self> {
-        let orientations = Orientation::of_leg(skeleton, 0, configuration)?;
-        let ground = Orientation::default();
-        let of = |body: Option<usize>| body.map_or(&ground, |body| &orientations[body]);
-        let seen = |body| of(body).relative(of(from), arena, configuration);
-        let rates = Rates::new(skeleton, false);
-        let mut steps = Vec::new();
-        for (joint, is_forward) in way(skeleton, from, to) {
-            let antecedent = skeleton.joints[joint].antecedent;
-            let mut link = link_vector(arena, skeleton, joint, 0, configuration)?;
-            let mut before = seen(antecedent)?;
-            if antecedent.is_none() {
-                // The skeleton's own base frame stands in the ground.
-                let base = &skeleton.base;
-                let turned = constant_rotation(arena, base.rotation);
-                before = seen(None)?;
-                link = Vector3::constant(arena, base.at) + turned * link;
-            }
-            steps.push(Step {
-                kind: skeleton.joints[joint].kind,
-                rate: rates.joint[joint].clone(),
-                is_forward,
-                axis: seen(Some(joint))?.column(2),
-                link: before * link,
-            });
-        }
+        let (arena, mechanism) = (known.arena, known.mechanism);
+        let steps = way(mechanism, from, Some(to));
+        let step = |(joint, is_forward)| Step::new(known, from, joint, is_forward);
+        let steps = steps.into_iter().map(step).collect::<Option<Vec<_>>>()?;
         let mut path = Self {
             arena,
             steps,
             origin: Vector3::zero(arena),
-            rotation: seen(to)?,
+            rotation: seen(known, from, Some(to))?,
             columns: Vec::new(),
         };
-        let count = skeleton.independent().count();
-        path.columns = (0..count).map(|i| path.column(i)).collect();
+        path.columns = (0..mechanism.dof()).map(|i| path.column(i)).collect();
         path.origin = path
             .steps
             .iter()
@@ -108,7 +99,7 @@ impl<'a> Path<'a> {
     fn column(&self, index: usize) -> [Vector3<'a>; 2] {
         let mut sum = [Vector3::zero(self.arena); 2];
         for (at, step) in self.steps.iter().enumerate() {
-            let factor = self.arena.number(step.rate.coefficient(index));
+            let factor = step.row[index];
             if factor.is_zero() {
                 continue;
             }
@@ -146,7 +137,7 @@ impl<'a> Path<'a> {
         self.steps.iter().filter(turning).count() > 1
     }
 
-    /// The motion of the last body for rates of the skeleton and their derivatives.
+    /// The motion of the last body for the quasi-velocities of all legs before and their derivatives.
     pub(super) fn motion(&self, rates: &[Expr<'a>], accelerations: &[Expr<'a>]) -> Relative<'a> {
         let zero = Vector3::zero(self.arena);
         let mut at = Relative {
@@ -156,8 +147,11 @@ impl<'a> Path<'a> {
             alpha: zero,
         };
         for step in &self.steps {
-            let rate = step.axis.scaled(step.rate.value(self.arena, rates));
-            let rate_dot = step.axis.scaled(step.rate.value(self.arena, accelerations));
+            let of = |all: &[Expr<'a>]| {
+                let own = step.rate.value(self.arena, &all[step.first..]);
+                step.axis.scaled(own)
+            };
+            let (rate, rate_dot) = (of(rates), of(accelerations));
             at = match step.is_forward {
                 true => at.moved(step.link).joined(step.kind, rate, rate_dot),
                 false => at.left(step.kind, rate, rate_dot).moved(-step.link),
@@ -165,6 +159,61 @@ impl<'a> Path<'a> {
         }
         at
     }
+}
+
+impl<'a> Step<'a> {
+    /// The step at a joint, seen from the body `from`.
+    fn new(
+        known: &Known<'_, 'a>,
+        from: Option<BodyIndex>,
+        at: BodyIndex,
+        is_forward: bool,
+    ) -> Option<Self> {
+        let (arena, leg) = (known.arena, &known.mechanism.legs[at.leg]);
+        let (first, rates, rows) = known.legs[at.leg];
+        let own = link_vector(arena, leg, at.joint, first, known.configuration)?;
+        let before = seen(known, from, antecedent(known.mechanism, at))?;
+        let link = match leg.joints[at.joint].antecedent {
+            Some(_) => own,
+            // The leg's base frame stands in the body that carries it.
+            None => {
+                let turned = constant_rotation(arena, leg.base.rotation);
+                Vector3::constant(arena, leg.base.at) + turned * own
+            }
+        };
+        let rate = rates.joint[at.joint].clone();
+        Some(Self {
+            kind: leg.joints[at.joint].kind,
+            row: rate.row(arena, rows),
+            rate,
+            first,
+            is_forward,
+            axis: seen(known, from, Some(at))?.column(2),
+            link: before * link,
+        })
+    }
+}
+
+/// The orientation of a body in the frame of another.
+fn seen<'a>(
+    known: &Known<'_, 'a>,
+    from: Option<BodyIndex>,
+    body: Option<BodyIndex>,
+) -> Option<Matrix3<'a>> {
+    let from = orientation(known, from)?;
+    let body = orientation(known, body)?;
+    body.relative(&from, known.arena, known.configuration)
+}
+
+/// The orientation of a body in the robot's base frame.
+fn orientation(known: &Known<'_, '_>, body: Option<BodyIndex>) -> Option<Orientation> {
+    let Some(body) = body else {
+        return Some(Orientation::default());
+    };
+    let leg = &known.mechanism.legs[body.leg];
+    let (first_joint, ..) = known.legs[body.leg];
+    let all = Orientation::of_leg(leg, first_joint, known.configuration)?;
+    orientation(known, leg.base_body)?.followed_by(&all[body.joint])
 }
 
 impl<'a> Relative<'a> {
@@ -215,20 +264,27 @@ impl<'a> Relative<'a> {
     }
 }
 
+/// The body before a joint: that of its antecedent, or the one that its leg stands on; `None` is the ground.
+fn antecedent(mechanism: &Mechanism, at: BodyIndex) -> Option<BodyIndex> {
+    let leg = &mechanism.legs[at.leg];
+    match leg.joints[at.joint].antecedent {
+        Some(joint) => Some(BodyIndex { joint, ..at }),
+        None => leg.base_body,
+    }
+}
+
 /// The joints between two bodies in order, each with whether it is passed from its antecedent on.
-fn way(skeleton: &Leg, from: Option<usize>, to: Option<usize>) -> Vec<(usize, bool)> {
-    let line = |start: Option<usize>| {
-        let mut joints = Vec::new();
-        let mut at = start;
-        while let Some(joint) = at {
-            joints.push(joint);
-            at = skeleton.joints[joint].antecedent;
-        }
-        joints
+fn way(
+    mechanism: &Mechanism,
+    from: Option<BodyIndex>,
+    to: Option<BodyIndex>,
+) -> Vec<(BodyIndex, bool)> {
+    let line = |start: Option<BodyIndex>| {
+        std::iter::successors(start, |&at| antecedent(mechanism, at)).collect::<Vec<_>>()
     };
     let (up, down) = (line(from), line(to));
     let back = up.iter().filter(|joint| !down.contains(joint));
-    let mut way: Vec<(usize, bool)> = back.map(|&joint| (joint, false)).collect();
+    let mut way: Vec<(BodyIndex, bool)> = back.map(|&joint| (joint, false)).collect();
     let forth = down.iter().filter(|joint| !up.contains(joint));
     way.extend(forth.rev().map(|&joint| (joint, true)));
     way

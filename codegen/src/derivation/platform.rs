@@ -22,7 +22,7 @@ pub struct PlatformPose<'a> {
 pub(super) enum Directions<'a> {
     /// Along and about axes of the base frame.
     Axes(Motion),
-    /// With the joints of a skeleton.
+    /// With the joints on the way to a body.
     Joints(Box<Path<'a>>),
 }
 
@@ -127,9 +127,9 @@ impl<'a> PlatformPose<'a> {
         }
     }
 
-    /// The body of a skeleton that a path leads to.
+    /// The body that a path leads to.
     #[must_use]
-    pub(super) fn on_skeleton(arena: &'a Arena, path: Path<'a>) -> Self {
+    pub(super) fn on_body(arena: &'a Arena, path: Path<'a>) -> Self {
         Self {
             arena,
             origin: path.origin,
@@ -155,7 +155,8 @@ impl<'a> PlatformPose<'a> {
         self.rotation * constant_rotation(self.arena, placement.rotation)
     }
 
-    /// Velocities and accelerations from the twist coordinates v and their derivatives.
+    /// Velocities and accelerations from the twist coordinates v and their derivatives; of a body that
+    /// joints lead to, from the quasi-velocities of all legs before, one leg after the other.
     #[must_use]
     pub fn motion(&self, twist: &[Expr<'a>], acceleration: &[Expr<'a>]) -> PlatformMotion<'a> {
         let own = match &self.directions {
@@ -187,7 +188,7 @@ impl<'a> PlatformPose<'a> {
         }
     }
 
-    /// The motion that a skeleton gives.
+    /// The motion that the joints on the way give.
     fn carried(
         &self,
         path: &Path<'a>,

@@ -15,7 +15,7 @@ use super::leg::LegState;
 use super::motion::{Moved, RobotMotion};
 use super::motion_input::MotionInput;
 use super::names::{Accelerations, coordinate_label, joined};
-use super::path::Path;
+use super::path::{Known, Path};
 use super::platform::PlatformPose;
 use super::rates::Rates;
 use super::selection::Formulation;
@@ -128,8 +128,8 @@ impl<'a> Robot<'a> {
             self.guard_leg(closure, &leg.name);
         }
         name_rows(&rows, leg, &self.twist);
-        if leg.base_body.is_some() {
-            rows.extend(self.identity_rows(0, self.mechanism.dof()));
+        if let Some(carrier) = leg.base_body {
+            rows.extend(self.legs[carrier.leg].rows.clone());
         }
         self.legs.push(LegState {
             first_joint,
@@ -144,17 +144,24 @@ impl<'a> Robot<'a> {
         Ok(())
     }
 
-    /// What a leg ends on: the platform, or a body of the skeleton as it is seen from the one that the leg
-    /// starts from. `None` for a leg without an end.
+    /// What a leg ends on: the platform, or a body as it is seen from the one that the leg starts from. `None` for a leg without an end.
     fn end_of(&self, index: usize) -> Option<PlatformPose<'a>> {
         if let Some(platform) = &self.platform {
             return Some(platform.clone());
         }
-        let (leg, skeleton) = (&self.mechanism.legs[index], self.mechanism.skeleton()?);
+        let leg = &self.mechanism.legs[index];
         leg.end.as_ref()?;
-        let (from, to) = (leg.base_body, leg.end_body);
-        let path = Path::new(self.arena, skeleton, &self.configuration, from, to)?;
-        Some(PlatformPose::on_skeleton(self.arena, path))
+        let legs = self.legs.iter();
+        let known = Known {
+            arena: self.arena,
+            mechanism: self.mechanism,
+            configuration: &self.configuration,
+            legs: legs
+                .map(|own| (own.first_joint, &own.rates, &own.rows))
+                .collect(),
+        };
+        let path = Path::new(&known, leg.base_body, leg.end_body?)?;
+        Some(PlatformPose::on_body(self.arena, path))
     }
 
     /// The frames of a leg in the base's axes.
@@ -226,7 +233,7 @@ impl<'a> Robot<'a> {
                 (Some(_), None) => state
                     .platform
                     .as_ref()
-                    .map(|p| p.motion(twist, acceleration)),
+                    .map(|p| p.motion(&motion.u.concat(), &motion.u_dot.concat())),
                 _ => None,
             };
             let (u, u_dot) = match (&state.closure, own.as_ref().or(platform.as_ref())) {
@@ -244,7 +251,8 @@ impl<'a> Robot<'a> {
                     (twist[range.clone()].to_vec(), acceleration[range].to_vec())
                 }
             };
-            let carrier = leg.base_body.map(|body| &motion.bodies[0][body]);
+            let carrier = leg.base_body;
+            let carrier = carrier.map(|body| &motion.bodies[body.leg][body.joint]);
             let base = leg_base(self.arena, leg, u.len(), carrier, gravity);
             let bodies = leg_bodies(
                 self.arena,

@@ -1,7 +1,8 @@
-//! Chains: legs that start from, or end on, a body of the skeleton. The skeleton is the leg without an end
-//! of a robot without platform; it is placed first, and its joints are the independent coordinates.
+//! Chains: legs that start from, or end on, a body of the skeleton or of a chain that is placed before. The
+//! skeleton is the leg without an end of a robot without platform; it is placed first, and its joints are the
+//! independent coordinates.
 
-use super::model::{Leg, Spanned};
+use super::model::{BodyIndex, Leg, Spanned};
 use super::reader::Context;
 use super::shape::Shape;
 use crate::diagnostic::{Diagnostic, Span, did_you_mean};
@@ -37,7 +38,12 @@ pub(super) fn attach(
         return;
     }
     let mut told = Vec::new();
-    for leg in legs.iter_mut().skip(1) {
+    for index in 1..legs.len() {
+        let (before, rest) = legs.split_at_mut(index);
+        let Some((leg, after)) = rest.split_first_mut() else {
+            continue;
+        };
+        let bodies = Bodies { before, after };
         let (Some(shape), true) = (shapes.get(leg.shape), leg.end.is_some()) else {
             continue;
         };
@@ -52,7 +58,7 @@ pub(super) fn attach(
         let name = &shape.name.value;
         leg.base_body = match &shape.base_body {
             None => None,
-            Some(body) => match body_of(&skeleton, body) {
+            Some(body) => match bodies.find(body) {
                 Ok(found) => found,
                 Err(error) => {
                     report(error);
@@ -63,7 +69,7 @@ pub(super) fn attach(
         let Some(end) = &shape.end else { continue };
         match &end.body {
             None => report(no_body(name, &skeleton, end.span.clone())),
-            Some(body) => match body_of(&skeleton, body) {
+            Some(body) => match bodies.find(body) {
                 Ok(Some(found)) if Some(found) != leg.base_body => leg.end_body = Some(found),
                 Ok(Some(_)) => {
                     let message =
@@ -83,33 +89,69 @@ pub(super) fn attach(
     }
 }
 
-/// The joint of the skeleton whose body has a name; `None` for the ground.
-fn body_of(skeleton: &Leg, name: &Spanned<String>) -> Result<Option<usize>, Diagnostic> {
-    if name.value == GROUND {
-        return Ok(None);
+/// The bodies that a chain may join: those of the skeleton and of the chains before it.
+struct Bodies<'a> {
+    before: &'a [Leg],
+    after: &'a [Leg],
+}
+
+impl Bodies<'_> {
+    /// The body of a name, `JOINT` of the skeleton or `CHAIN.JOINT`; `None` for the ground.
+    fn find(&self, name: &Spanned<String>) -> Result<Option<BodyIndex>, Diagnostic> {
+        if name.value == GROUND {
+            return Ok(None);
+        }
+        if let Some((chain, joint)) = name.value.split_once('.') {
+            return self.of_chain(name, chain, joint).map(Some);
+        }
+        let (skeleton, what) = (&self.before[0], "skeleton");
+        body_of(0, skeleton, name, &name.value, what, &[GROUND]).map(Some)
     }
-    let names = || {
-        skeleton
-            .joints
-            .iter()
-            .map(|joint| joint.name.value.as_str())
-    };
-    let found = names().position(|own| own == name.value);
-    found.map(Some).ok_or_else(|| {
-        let message = format!(
-            "the skeleton `{}` has no body `{}`",
-            skeleton.name.value, name.value
-        );
-        let all = || names().chain([GROUND]);
-        let list = || {
-            format!(
-                "bodies have the names of their joints: {}",
-                all().collect::<Vec<_>>().join(", ")
-            )
+
+    /// A body of a chain.
+    fn of_chain(
+        &self,
+        name: &Spanned<String>,
+        chain: &str,
+        joint: &str,
+    ) -> Result<BodyIndex, Diagnostic> {
+        let named = |leg: &Leg| leg.name.value == chain;
+        if let Some(leg) = self.before.iter().position(named) {
+            return body_of(leg, &self.before[leg], name, joint, "chain", &[]);
+        }
+        let message = match self.after.iter().any(named) {
+            true => format!("the chain `{chain}` is not placed before the one that it carries"),
+            false => format!("no chain `{chain}` is placed before this one"),
         };
-        let help = did_you_mean(&name.value, all()).unwrap_or_else(list);
-        Diagnostic::new(message, name.span.clone()).help(help)
-    })
+        let help = "chains are solved in the order of their places, so a body that carries a chain \
+                    stands in the skeleton or in a chain that is placed before";
+        let others = self.before.iter().map(|leg| leg.name.value.as_str());
+        let help = did_you_mean(chain, others).unwrap_or_else(|| help.to_owned());
+        Err(Diagnostic::new(message, name.span.clone()).help(help))
+    }
+}
+
+/// The body of a leg that has a name, among others that would do in its place.
+fn body_of(
+    leg: usize,
+    of: &Leg,
+    name: &Spanned<String>,
+    own: &str,
+    what: &str,
+    others: &[&str],
+) -> Result<BodyIndex, Diagnostic> {
+    let names = || of.joints.iter().map(|joint| joint.name.value.as_str());
+    if let Some(joint) = names().position(|joint| joint == own) {
+        return Ok(BodyIndex { leg, joint });
+    }
+    let message = format!("the {what} `{}` has no body `{own}`", of.name.value);
+    let all = || names().chain(others.iter().copied());
+    let list = || {
+        let all = all().collect::<Vec<_>>().join(", ");
+        format!("bodies have the names of their joints: {all}")
+    };
+    let help = did_you_mean(own, all()).unwrap_or_else(list);
+    Err(Diagnostic::new(message, name.span.clone()).help(help))
 }
 
 /// The body that chains start from without a name.

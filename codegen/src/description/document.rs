@@ -1,11 +1,12 @@
 //! The whole of a description, evaluated.
 
 use super::controller::Controller;
+use super::data::Data;
 use super::excitation::Excitation;
 use super::experiment::Experiment;
 use super::model::{Leg, Platform, Spanned, actuators};
 use super::prior::Prior;
-use super::settings::{Data, Identification};
+use super::settings::Identification;
 use crate::cas::Number;
 use crate::effort::Effort;
 
@@ -24,6 +25,8 @@ pub struct Description {
     pub base_columns: Option<BaseColumns>,
     /// Acceleration of gravity in the base frame, m/s².
     pub gravity: [Number; 3],
+    /// Names of the payloads, where there are several.
+    pub payloads: Vec<Spanned<String>>,
     /// The named constants that are no angles, in SI units.
     pub constants: Vec<(String, f64)>,
     /// The platform; `None` for a serial or tree robot.

@@ -4,7 +4,8 @@ use super::dimension::Dimension;
 use super::drives::{self, Drives};
 use super::inventory::{Body, Inventory};
 use super::joint;
-use super::model::{JointKind, Leg, Spanned};
+use super::model::{JointKind, Spanned};
+use super::payloads;
 use super::per_actuator::{effort, per_actuator};
 use super::reader::{Item, Table};
 use super::scope::Scope;
@@ -68,6 +69,8 @@ pub struct Run {
     pub name: Spanned<String>,
     /// Whether the payload is on the platform.
     pub payload: bool,
+    /// Name of the payload, where there are several.
+    pub payload_name: Option<String>,
     /// Whether the run is held out: predictions are compared with it, and no parameter is estimated
     /// from it.
     pub validation: bool,
@@ -231,19 +234,9 @@ fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
             }
             Some(name)
         });
-    let payload_item = table.get("payload");
-    let payload = payload_item
-        .as_ref()
-        .and_then(Item::boolean)
-        .unwrap_or(false);
-    let has_payload = match robot.platform {
-        Some(platform) => platform.payload.is_some(),
-        None => robot.legs.iter().any(Leg::carries_payload),
-    };
-    if let (Some(item), true, false) = (&payload_item, payload, has_payload) {
-        let error = item.error("the robot has no payload");
-        table.context.report(error.help(help_payload(robot)));
-    }
+    let payload = table.get("payload");
+    let payload = payload.map(|item| payloads::of_run(&item, robot));
+    let (payload, payload_name) = payload.unwrap_or_default();
     let validation = table
         .get("validation")
         .and_then(|i| i.boolean())
@@ -268,19 +261,12 @@ fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
     Some(Run {
         name: name?,
         payload,
+        payload_name,
         validation,
         duration,
         fundamental: fundamental?,
         terms,
     })
-}
-
-/// Where a payload is described.
-fn help_payload(robot: &Inventory<'_>) -> &'static str {
-    match robot.platform {
-        Some(_) => "describe it in a table [platform.payload]",
-        None => "describe it as a joint of type \"fixed\" with the name `payload` on the last body",
-    }
 }
 
 fn term(item: &Item<'_, '_>, coordinates: &[(String, Dimension)], scope: &Scope) -> Option<Term> {

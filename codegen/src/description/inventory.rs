@@ -4,7 +4,7 @@
 use super::actuator_names::ActuatorNames;
 use super::dimension::Dimension;
 use super::joint;
-use super::model::{JointKind, Leg, Motion, Platform, actuators};
+use super::model::{JointKind, Leg, Motion, Platform, Spanned, actuators};
 use super::parameter::dimension;
 use super::scope::Scope;
 use overact_core::StandardParameter;
@@ -30,6 +30,8 @@ pub(super) struct Inventory<'r> {
     pub(super) platform: Option<&'r Platform>,
     pub(super) legs: &'r [Leg],
     pub(super) scope: &'r Scope,
+    /// Names of the payloads, where there are several.
+    pub(super) payloads: &'r [Spanned<String>],
 }
 
 impl Inventory<'_> {
@@ -102,7 +104,30 @@ impl Inventory<'_> {
                 platform.payload.as_deref().unwrap_or_default(),
             );
         }
+        let named = self.of_payloads(&all);
+        all.extend(named);
         all
+    }
+
+    /// The parameters of the payload once for each of those that have names.
+    fn of_payloads(
+        &self,
+        all: &[(String, Body, StandardParameter, Dimension)],
+    ) -> Vec<(String, Body, StandardParameter, Dimension)> {
+        let is_load = |name: &str, symbol: StandardParameter| {
+            name.strip_prefix(symbol.name()) == Some("_payload") && symbol.is_inertial()
+        };
+        let loads = all
+            .iter()
+            .filter(|(name, _, symbol, _)| is_load(name, *symbol));
+        let loads: Vec<_> = loads.collect();
+        let of = |load: &Spanned<String>| {
+            let own = loads.iter().map(|(name, body, symbol, dimension)| {
+                (format!("{name}_{}", load.value), *body, *symbol, *dimension)
+            });
+            own.collect::<Vec<_>>()
+        };
+        self.payloads.iter().flat_map(of).collect()
     }
 
     /// What the actuators are called.

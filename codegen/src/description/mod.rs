@@ -11,6 +11,7 @@
 mod actuator_names;
 mod chain;
 mod controller;
+mod data;
 mod dimension;
 mod document;
 mod drives;
@@ -21,6 +22,7 @@ mod formula;
 mod friction;
 mod function;
 mod geometry;
+mod gravity;
 mod inventory;
 mod joint;
 mod known;
@@ -30,6 +32,7 @@ mod motor;
 mod parameter;
 mod parameters;
 mod parameters_file;
+mod payloads;
 mod per_actuator;
 mod place;
 mod platform;
@@ -49,21 +52,23 @@ mod value;
 
 pub use actuator_names::ActuatorNames;
 pub use controller::Controller;
+pub use data::{Clock, Data, Factor};
 pub use document::{BaseColumns, Description};
 pub use drives::Drives;
 pub use excitation::Excitation;
 pub use experiment::{Experiment, Run, Term, TrueParameter};
 pub use formula::{Formula, Spring};
+pub use gravity::GAINS_AND_GRAVITY;
 pub use inventory::Body;
 pub use known::{COUPLED_MOTORS, KNOWN_TORQUES};
-pub use model::{End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned};
+pub use model::{
+    BodyIndex, End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned,
+};
 pub use overact_core::StandardParameter;
 pub use parameters_file::parse_parameters;
 pub use place::place;
 pub use prior::Prior;
-pub use settings::{
-    Clock, Data, Factor, Friction, Identification, Instruments, Normalisation, Reversals,
-};
+pub use settings::{Friction, Identification, Instruments, Normalisation, Reversals};
 
 use crate::diagnostic::{Diagnostics, Source};
 

@@ -127,6 +127,15 @@ pub struct Placement {
     pub rotation: [Angle; 3],
 }
 
+/// A body of a leg: that behind one of its joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BodyIndex {
+    /// The leg, in the order of their places.
+    pub leg: usize,
+    /// The joint in its leg.
+    pub joint: usize,
+}
+
 /// A placed leg.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leg {
@@ -141,13 +150,12 @@ pub struct Leg {
     pub base: Placement,
     /// The joints; antecedents come first.
     pub joints: Vec<Joint>,
-    /// Where the leg ends on the platform, or on a body of the skeleton; `None` for a tree.
+    /// Where the leg ends on the platform, or on a body; `None` for a tree.
     pub end: Option<Spanned<End>>,
-    /// The body of the skeleton that the leg starts from, as a joint of the first leg; `None` for the
-    /// ground.
-    pub base_body: Option<usize>,
-    /// The body of the skeleton that the leg ends on; `None` for the platform.
-    pub end_body: Option<usize>,
+    /// The body of the skeleton, or of a chain before, that the leg starts from; `None` for the ground.
+    pub base_body: Option<BodyIndex>,
+    /// The body of the skeleton, or of a chain before, that the leg ends on; `None` for the platform.
+    pub end_body: Option<BodyIndex>,
     /// Place of its `[[place]]`.
     pub span: Span,
 }

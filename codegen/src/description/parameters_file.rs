@@ -28,6 +28,7 @@ pub fn parse_parameters(
         platform: description.platform.as_ref(),
         legs: &description.legs,
         scope: &scope,
+        payloads: &description.payloads,
     };
     let item = table.require(
         "parameters",

@@ -7,7 +7,10 @@ use super::model::{Leg, Platform, Spanned, actuators};
 use super::reader::{Context, Item, Table};
 use super::scope::Scope;
 use super::shape::Shape;
-use super::{chain, controller, excitation, experiment, leg, platform, prior, settings, shape};
+use super::{
+    chain, controller, data, excitation, experiment, leg, payloads, platform, prior, settings,
+    shape,
+};
 use crate::cas::{Number, Ratio};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::effort::Effort;
@@ -103,8 +106,14 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         platform: platform.as_ref(),
         legs: &legs,
         scope: &scope,
+        payloads: &[],
     };
     check_parameter_names(table, &robot);
+    let payloads = payloads::read(table, &robot);
+    let robot = Inventory {
+        payloads: &payloads,
+        ..robot
+    };
     let (experiment, data) = (table.get("experiment"), table.get("data"));
     let (settings, loops) = (table.get("identification"), table.get("controller"));
     let (prior, limits) = (table.get("prior"), table.get("excitation"));
@@ -117,17 +126,19 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     }
     let experiment = experiment.and_then(|item| experiment::read(&item, &robot));
     let excitation = limits.and_then(|item| excitation::read(&item, &robot));
-    let data = data.and_then(|item| settings::data(&item, &robot));
+    let data = data.and_then(|item| data::data(&item, &robot));
     let controller = loops.and_then(|item| controller::read(&item, &robot));
     let prior = prior.and_then(|item| prior::read(&item, &robot));
-    let identification = settings::identification(settings.as_ref(), &robot);
+    let gravity = gravity.unwrap_or_else(standard_gravity);
+    let identification = settings::identification(settings.as_ref(), &robot, &gravity);
     Some(Description {
         name: name?,
         effort: effort.map(|effort| effort.value),
         base_columns: base_columns.map(|columns| columns.value),
         summary,
         source,
-        gravity: gravity.unwrap_or_else(standard_gravity),
+        gravity,
+        payloads,
         constants: scope.values(),
         platform,
         legs,
@@ -314,6 +325,7 @@ fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
         platform: Some(platform),
         legs,
         scope: &Scope::default(),
+        payloads: &[],
     };
     let names = robot.actuator_names();
     let names: Vec<&str> = names.usual().collect();

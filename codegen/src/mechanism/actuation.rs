@@ -1,6 +1,6 @@
 //! Which actuators determine the platform's motion at home.
 
-use super::{End, Leg, Mechanism, Motion, TwistCoordinate};
+use super::{BodyIndex, End, Leg, Mechanism, Motion, TwistCoordinate};
 use crate::mechanism::numeric::{platform_frame, target};
 use crate::mechanism::singular_values::SingularValues;
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -20,30 +20,33 @@ pub(super) fn shared_velocities(
     mechanism: &Mechanism,
     leg: usize,
     pose: &[f64],
+    joints: &[f64],
 ) -> Option<DMatrix<f64>> {
     let end = mechanism.legs[leg].end.as_ref()?;
     match &mechanism.platform {
         Some(platform) => Some(on_platform(platform.motion, pose, end)),
-        None => on_skeleton(mechanism, leg, pose),
+        None => on_skeleton(mechanism, leg, pose, joints),
     }
 }
 
-/// Relative velocity of the point of the skeleton that a chain ends at, per rate of the skeleton's joints.
-fn on_skeleton(mechanism: &Mechanism, leg: usize, pose: &[f64]) -> Option<DMatrix<f64>> {
+/// Relative velocity of the point that a chain ends at, per rate of the skeleton's joints.
+fn on_skeleton(
+    mechanism: &Mechanism,
+    leg: usize,
+    pose: &[f64],
+    joints: &[f64],
+) -> Option<DMatrix<f64>> {
     let chain = &mechanism.legs[leg];
     let end = chain.end.as_ref()?;
-    let skeleton = mechanism.skeleton()?;
-    let frames = skeleton.frames(pose);
-    let ground = mechanism.ground_of(leg, pose);
-    let point = ground * mechanism.target(leg, pose)?;
-    let into = ground.rotation.inverse();
-    let of = |body: Option<usize>| {
-        body.map(|body| skeleton.body_jacobian(&frames, body, point.translation.vector))
-    };
-    let mut velocities = of(chain.end_body)?;
-    if let Some(own) = of(chain.base_body) {
-        velocities -= own;
+    let ground = mechanism.ground_of(leg, pose, joints);
+    let point = (ground * mechanism.target(leg, pose, joints)?)
+        .translation
+        .vector;
+    let mut velocities = on_body(mechanism, chain.end_body?, point, pose, joints)?;
+    if let Some(own) = chain.base_body {
+        velocities -= on_body(mechanism, own, point, pose, joints)?;
     }
+    let into = ground.rotation.inverse();
     for mut column in velocities.column_iter_mut() {
         for part in [0, 3] {
             let turned = into * Vector3::new(column[part], column[part + 1], column[part + 2]);
@@ -51,6 +54,30 @@ fn on_skeleton(mechanism: &Mechanism, leg: usize, pose: &[f64]) -> Option<DMatri
         }
     }
     Some(velocities.select_rows(&end.shared_components()))
+}
+
+/// Velocity of a point of a body and its angular velocity, per rate of the skeleton's joints: of a chain's
+/// body the rates follow from those of the bodies that it joins.
+fn on_body(
+    mechanism: &Mechanism,
+    body: BodyIndex,
+    point: Vector3<f64>,
+    pose: &[f64],
+    joints: &[f64],
+) -> Option<DMatrix<f64>> {
+    let leg = &mechanism.legs[body.leg];
+    let frames = mechanism.frames_of(body.leg, pose, joints);
+    let own = leg.body_jacobian(&frames, body.joint, point);
+    let Some(shared) = shared_velocities(mechanism, body.leg, pose, joints) else {
+        return Some(own);
+    };
+    let rates = rates_per_velocity(leg, &joints[mechanism.leg_range(body.leg)])? * shared;
+    let carried = leg.base_body;
+    let carried = carried.map_or_else(
+        || Some(DMatrix::zeros(6, mechanism.dof())),
+        |base| on_body(mechanism, base, point, pose, joints),
+    );
+    Some(own * rates + carried?)
 }
 
 /// Velocity components that a leg's end shares with the platform, per twist coordinate.
@@ -99,11 +126,12 @@ impl Mechanism {
         let mut all = DMatrix::zeros(self.joints().len(), self.dof());
         for (index, leg) in self.legs.iter().enumerate() {
             let range = self.leg_range(index);
-            let Some(velocities) = shared_velocities(self, index, &self.home.pose) else {
+            let (pose, joints) = (&self.home.pose, &self.home.joints);
+            let Some(velocities) = shared_velocities(self, index, pose, joints) else {
                 all.rows_mut(range.start, range.len()).fill_with_identity();
                 continue;
             };
-            let rates = rates_per_velocity(leg, &self.home.joints[range.clone()])? * velocities;
+            let rates = rates_per_velocity(leg, &joints[range.clone()])? * velocities;
             all.rows_mut(range.start, range.len()).copy_from(&rates);
         }
         Some(all)

@@ -229,9 +229,9 @@ fn check_sizes(description: &Description, errors: &mut Diagnostics) {
 /// The joints of every leg must be determined by the motion of its end. Legs of one shape share their
 /// errors.
 fn check_structure(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
-    let pose = rough_home(description).pose;
+    let Home { pose, joints, .. } = rough_home(description);
     for (index, place) in description.legs.iter().enumerate() {
-        let Some(velocities) = shared_velocities(mechanism, index, &pose) else {
+        let Some(velocities) = shared_velocities(mechanism, index, &pose, &joints) else {
             continue;
         };
         let leg = &mechanism.legs[index];
@@ -305,10 +305,11 @@ fn check_mobility(
     errors: &mut Diagnostics,
 ) {
     let leg = &mechanism.legs[index];
-    let Some(wanted) = shared_velocities(mechanism, index, &mechanism.home.pose) else {
+    let Home { pose, joints, .. } = &mechanism.home;
+    let Some(wanted) = shared_velocities(mechanism, index, pose, joints) else {
         return;
     };
-    let joints = &mechanism.home.joints[mechanism.leg_range(index)];
+    let joints = &joints[mechanism.leg_range(index)];
     let jacobian = leg.closure_jacobian(joints);
     let Some(rates) = rates_per_velocity(leg, joints) else {
         return;

@@ -97,7 +97,7 @@ impl Home {
         let mut joints = rough.joints.clone();
         let mut errors = Vec::new();
         for (index, leg) in mechanism.legs.iter().enumerate() {
-            let Some(target) = mechanism.target(index, &rough.pose) else {
+            let Some(target) = mechanism.target(index, &rough.pose, &joints) else {
                 continue;
             };
             let range = mechanism.leg_range(index);

@@ -26,7 +26,7 @@ pub use motion::TwistCoordinate;
 
 pub use crate::cas::{Angle, Number, Ratio};
 pub use crate::description::{
-    ActuatorNames, BaseColumns, End, Formula, JointKind, Motion, Placement, Spring,
+    ActuatorNames, BaseColumns, BodyIndex, End, Formula, JointKind, Motion, Placement, Spring,
     StandardParameter,
 };
 
@@ -90,13 +90,13 @@ pub struct Leg {
     pub base: Placement,
     /// The joints; antecedents come first.
     pub joints: Vec<Joint>,
-    /// Where the leg ends on the platform, or on a body of the skeleton; `None` for a tree.
+    /// Where the leg ends on the platform, or on a body; `None` for a tree.
     pub end: Option<End>,
-    /// The body of the skeleton that the leg starts from, as a joint of the first leg; `None` for the
-    /// ground. The leg's base frame stands in this body's frame.
-    pub base_body: Option<usize>,
-    /// The body of the skeleton that the leg ends on; `None` for the platform.
-    pub end_body: Option<usize>,
+    /// The body of the skeleton, or of a chain before, that the leg starts from; `None` for the ground.
+    /// The leg's base frame stands in this body's frame.
+    pub base_body: Option<BodyIndex>,
+    /// The body of the skeleton, or of a chain before, that the leg ends on; `None` for the platform.
+    pub end_body: Option<BodyIndex>,
 }
 
 impl Leg {

@@ -1,7 +1,7 @@
 //! Numeric kinematics of a mechanism: positions, orientations and Jacobians as floats. They serve the
 //! checks at the home configuration, before any symbol is derived.
 
-use super::{End, Joint, JointKind, Leg, Mechanism, Motion, Placement};
+use super::{BodyIndex, End, Joint, JointKind, Leg, Mechanism, Motion, Placement};
 use nalgebra::{
     DMatrix, DVector, Isometry3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3,
 };
@@ -162,30 +162,50 @@ pub fn target(end: &End, platform: &Isometry3<f64>) -> Isometry3<f64> {
 
 impl Mechanism {
     /// Where a leg's last frame has to be at a pose, in the frame that the leg's base stands in: the
-    /// robot's base frame, or that of the skeleton's body that it starts from. `None` for a leg without
-    /// an end.
+    /// robot's base frame, or that of the body that it starts from. Of `joints`, the positions of all
+    /// joints, those of the legs before are read. `None` for a leg without an end.
     #[must_use]
-    pub fn target(&self, leg: usize, pose: &[f64]) -> Option<Isometry3<f64>> {
-        let leg = &self.legs[leg];
-        let end = leg.end.as_ref()?;
+    pub fn target(&self, leg: usize, pose: &[f64], joints: &[f64]) -> Option<Isometry3<f64>> {
+        let end = self.legs[leg].end.as_ref()?;
         if let Some(platform) = &self.platform {
             return Some(target(end, &platform_frame(platform.motion, pose)));
         }
-        let frames = self.skeleton()?.frames(pose);
-        let carrier = frames.get(leg.end_body?)?;
-        let from = leg.base_body.and_then(|body| frames.get(body));
-        let from = from.map_or_else(Isometry3::identity, Isometry3::inverse);
+        let carrier = self.body_frame(self.legs[leg].end_body?, pose, joints);
+        let from = self.ground_of(leg, pose, joints).inverse();
         Some(target(end, &(from * carrier)))
     }
 
-    /// The frame in the robot's base frame that a leg's base stands in at a pose.
+    /// The frame in the robot's base frame that a leg's base stands in at a pose; of `joints` those of the
+    /// legs before are read.
     #[must_use]
-    pub fn ground_of(&self, leg: usize, pose: &[f64]) -> Isometry3<f64> {
+    pub fn ground_of(&self, leg: usize, pose: &[f64], joints: &[f64]) -> Isometry3<f64> {
         let body = self.legs[leg].base_body;
-        let frames = self.skeleton().zip(body);
-        frames.map_or_else(Isometry3::identity, |(skeleton, body)| {
-            skeleton.frames(pose)[body]
+        body.map_or_else(Isometry3::identity, |body| {
+            self.body_frame(body, pose, joints)
         })
+    }
+
+    /// The frame of a body that carries chains in the robot's base frame.
+    #[must_use]
+    pub fn body_frame(&self, body: BodyIndex, pose: &[f64], joints: &[f64]) -> Isometry3<f64> {
+        self.frames_of(body.leg, pose, joints)[body.joint]
+    }
+
+    /// The frames of a leg's joints in the robot's base frame. The joints of a skeleton are the pose.
+    #[must_use]
+    pub(crate) fn frames_of(
+        &self,
+        leg: usize,
+        pose: &[f64],
+        joints: &[f64],
+    ) -> Vec<Isometry3<f64>> {
+        let own = match self.legs[leg].end {
+            None => pose,
+            Some(_) => &joints[self.leg_range(leg)],
+        };
+        let ground = self.ground_of(leg, pose, joints);
+        let frames = self.legs[leg].frames(own).into_iter();
+        frames.map(|frame| ground * frame).collect()
     }
 }
 

@@ -167,7 +167,7 @@ fn follow(mechanism: &Mechanism, pose: &[f64]) -> Option<Vec<f64>> {
         }
         for (index, leg) in mechanism.legs.iter().enumerate() {
             let range = mechanism.leg_range(index);
-            let Some(target) = mechanism.target(index, &at) else {
+            let Some(target) = mechanism.target(index, &at, &joints) else {
                 // The skeleton's own joints are the pose.
                 joints[range].copy_from_slice(&at);
                 continue;

@@ -39,6 +39,9 @@ pub struct Check {
     pub grade: Grade,
     /// What was seen, what it means, what to do: sentences.
     pub words: String,
+    /// The part of the residual's square that it would explain, of a fault that was looked for and found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explained: Option<f64>,
     /// Parameters that are not to be used, where only some are not.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub spoiled: Vec<String>,
@@ -154,6 +157,12 @@ pub enum CheckKind {
     EncoderOffset,
     /// The torques speak of another length than the described one.
     Length,
+    /// A few instants leave most unexplained.
+    Outliers,
+    /// The robot moves through too few periods.
+    ShortMotion,
+    /// The filters do not suit the motion.
+    Filters,
     /// The residual holds something that the model lacks.
     MissingParameter,
     /// A parameter that can't be negative is.
@@ -191,6 +200,9 @@ impl CheckKind {
             Self::Clock => "clock",
             Self::EncoderOffset => "encoder offset",
             Self::Length => "length",
+            Self::Outliers => "outliers",
+            Self::ShortMotion => "short motion",
+            Self::Filters => "filters",
             Self::MissingParameter => "missing parameter",
             Self::NegativeParameter => "negative parameter",
             Self::Partition => "partition",
@@ -199,6 +211,21 @@ impl CheckKind {
             Self::HeldOut => "held out",
             Self::RegressorErrors => "regressor errors",
         }
+    }
+}
+
+impl CheckKind {
+    /// Whether the data tell it beyond doubt when they do, whatever the model.
+    pub(crate) const fn is_certain(self) -> bool {
+        matches!(
+            self,
+            Self::DuplicateColumns
+                | Self::ZeroTorque
+                | Self::WrongSign
+                | Self::SwappedColumns
+                | Self::Degrees
+                | Self::StuckEncoder
+        )
     }
 }
 
@@ -220,6 +247,7 @@ impl Check {
             passed: true,
             grade: Grade::Use,
             words: words.into(),
+            explained: None,
             spoiled: Vec::new(),
             detectable: Vec::new(),
             evidence: None,

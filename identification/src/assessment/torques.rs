@@ -358,7 +358,7 @@ fn run_factors(
                     model,
                     &states,
                     (count, 1.0 / motion.sampling_frequency),
-                    motion.payload,
+                    motion.carried(),
                     (&base.columns, more),
                 )
                 .map_err(at)?;

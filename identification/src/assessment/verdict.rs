@@ -76,13 +76,13 @@ fn of_estimate(estimate: &Estimate, checks: &[Check]) -> StageVerdict {
             .iter()
             .filter(|check| check.concerns(estimate.model, estimate.stage))
     };
-    let mut failed: Vec<&Check> = concerning().filter(|check| !check.passed).collect();
-    // A stable sort: checks of one grade stay in their order.
-    failed.sort_by_key(|check| std::cmp::Reverse(check.grade));
+    let found = objections(checks, estimate.model, estimate.stage);
+    let failed: Vec<&Check> = concerning().filter(|check| !check.passed).collect();
     let names = estimate.parameters.iter().map(|one| &one.name);
     let is_spoiled = |name: &String| failed.iter().any(|check| check.spoiled.contains(name));
     let listed: Vec<String> = names.filter(|name| !is_spoiled(name)).cloned().collect();
-    let worst = failed.first().map_or(Grade::Use, |check| check.grade);
+    let worst = failed.iter().map(|check| check.grade).max();
+    let worst = worst.unwrap_or_default();
     // What may be used for nothing may not be used.
     let grade = if worst == Grade::UseListed && listed.is_empty() {
         Grade::DoNotUse
@@ -92,7 +92,7 @@ fn of_estimate(estimate: &Estimate, checks: &[Check]) -> StageVerdict {
     let reasons = if failed.is_empty() {
         concerning().map(Check::located).collect()
     } else {
-        failed.iter().map(|check| check.located()).collect()
+        found.sentences()
     };
     StageVerdict {
         stage: estimate.stage,
@@ -102,5 +102,67 @@ fn of_estimate(estimate: &Estimate, checks: &[Check]) -> StageVerdict {
             _ => Vec::new(),
         },
         reasons,
+    }
+}
+
+/// Of the most that a suspect explains, what another one has to explain to be told beside it.
+const WORTH_TELLING: f64 = 0.5;
+
+/// What speaks against an estimate.
+#[derive(Debug, Clone)]
+pub struct Objections<'a> {
+    /// The checks that are to be told, most serious first and then by what they explain, with their numbers
+    /// among all checks.
+    pub told: Vec<(usize, &'a Check)>,
+    /// What else was found. What a fault does to the torques looks in part like other faults, too: suspects that
+    /// explain far less than another one are only named, and so are all where the data themselves are wrong
+    /// beyond doubt.
+    pub beside: Vec<&'static str>,
+}
+
+/// What speaks against the estimate of a model and stage.
+#[must_use]
+pub fn objections(checks: &[Check], model: ModelKind, stage: Stage) -> Objections<'_> {
+    let found = checks.iter().enumerate();
+    let mut found: Vec<(usize, &Check)> = found
+        .filter(|(_, check)| !check.passed && check.concerns(model, stage))
+        .collect();
+    let most = match found.iter().any(|(_, check)| check.kind.is_certain()) {
+        true => f64::INFINITY,
+        false => {
+            let parts = found.iter().filter_map(|(_, check)| check.explained);
+            parts.fold(0.0, f64::max)
+        }
+    };
+    let explained = |check: &Check| check.explained.unwrap_or(f64::INFINITY);
+    // A stable sort: checks of one grade and weight stay in their order.
+    found.sort_by(|(_, a), (_, b)| {
+        let grade = b.grade.cmp(&a.grade);
+        grade.then(explained(b).total_cmp(&explained(a)))
+    });
+    let (told, beside): (Vec<_>, Vec<_>) = found
+        .into_iter()
+        .partition(|(_, check)| explained(check) >= WORTH_TELLING * most);
+    let mut beside: Vec<&str> = beside.iter().map(|(_, check)| check.kind.name()).collect();
+    beside.dedup();
+    Objections { told, beside }
+}
+
+impl Objections<'_> {
+    /// What was only named, in a sentence; none where all is told.
+    #[must_use]
+    pub fn rest(&self) -> Option<String> {
+        (!self.beside.is_empty()).then(|| {
+            format!(
+                "what else was found may well follow from that: {}",
+                self.beside.join(", ")
+            )
+        })
+    }
+
+    /// All of it in sentences.
+    fn sentences(&self) -> Vec<String> {
+        let told = self.told.iter().map(|(_, check)| check.located());
+        told.chain(self.rest()).collect()
     }
 }

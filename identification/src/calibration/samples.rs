@@ -18,6 +18,9 @@ use crate::{
 /// Samples of all runs together.
 const SAMPLES: usize = 2000;
 
+/// The golden section: its multiples are spread evenly between whole numbers and never return.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 /// Time between two samples on the way of which poses are followed, s: one in which a robot moves little.
 const FOLLOWED: f64 = 0.005;
 
@@ -81,7 +84,7 @@ impl Samples {
         Ok(samples)
     }
 
-    /// Takes one sample in `stride` of a run.
+    /// Takes about one sample in `stride` of a run.
     fn take(
         &mut self,
         model: &dyn Model,
@@ -92,7 +95,7 @@ impl Samples {
         let n = self.sensors;
         let mut way = Way::new(model, log, stride);
         let mut reader = log.reader()?;
-        let mut number = 0;
+        let (mut number, mut taken) = (0, 0);
         while let Some(block) = reader.next()? {
             for (sensor, all) in differences.iter_mut().enumerate() {
                 let left = DIFFERENCED.saturating_sub(all.len());
@@ -102,11 +105,12 @@ impl Samples {
                 if let Some(pose) = way.pose(number, row)? {
                     self.positions.extend_from_slice(row);
                     self.poses.extend_from_slice(pose);
+                    taken += 1;
                 }
                 number += 1;
             }
         }
-        self.of_runs.push(number.div_ceil(stride));
+        self.of_runs.push(taken);
         Ok(())
     }
 }
@@ -139,7 +143,7 @@ impl<'a> Way<'a> {
         if number == 0 {
             approach(self.model, row, &mut self.pose);
         }
-        let taken = number.is_multiple_of(self.stride);
+        let taken = is_taken(number, self.stride);
         if !taken && !number.is_multiple_of(self.followed) {
             return Ok(None);
         }
@@ -154,6 +158,13 @@ impl<'a> Way<'a> {
         })?;
         Ok(taken.then_some(self.pose.as_slice()))
     }
+}
+
+/// Whether a sample is taken: one in each `stride`, at a place that is another one every time. Errors of encoders
+/// return with a motion that returns, so samples at one distance would meet the same few of them again and again.
+fn is_taken(number: usize, stride: usize) -> bool {
+    let place = (number / stride) as f64 * GOLDEN;
+    number % stride == (place.fract() * stride as f64) as usize
 }
 
 /// Magnitudes of the fourth differences of a sensor's successive positions.

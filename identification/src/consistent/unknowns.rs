@@ -70,10 +70,12 @@ impl Unknowns {
             of_column: vec![0; columns.len()],
             ..Self::default()
         };
-        let mut bodies: BTreeMap<Body, Vec<usize>> = BTreeMap::new();
+        // Payloads of different names are different bodies.
+        let mut bodies: BTreeMap<(Body, Option<&str>), Vec<usize>> = BTreeMap::new();
         for (index, column) in columns.as_slice().iter().enumerate() {
             if column.symbol.is_inertial() {
-                bodies.entry(column.body).or_default().push(index);
+                let body = (column.body, column.load.as_deref());
+                bodies.entry(body).or_default().push(index);
             }
         }
         for own in bodies.values() {

@@ -5,6 +5,17 @@ use std::sync::Arc;
 use super::problems::Existing;
 use crate::error::{Error, Problem};
 
+/// An array that a caller has in memory.
+#[derive(Debug, Clone, Copy)]
+pub struct Array<'a> {
+    /// Its name; columns of a matrix are called `name(:,2)`, counted from 1.
+    pub name: &'a str,
+    /// Rows and columns; samples follow one another along the longer side.
+    pub shape: (usize, usize),
+    /// Its numbers, one column after the other.
+    pub values: &'a [f64],
+}
+
 /// A vector, or a column of a matrix.
 #[derive(Debug, Clone, PartialEq)]
 struct Series {
@@ -69,7 +80,10 @@ impl Arrays {
             .strip_suffix("(:,1)")
             .or_else(|| bare.strip_suffix("(1,:)"));
         let is = |name: &str| self.series.iter().position(|series| series.name == name);
-        is(&bare).or_else(|| vector.and_then(is))
+        // A name of the caller's own may have blanks.
+        is(name)
+            .or_else(|| is(&bare))
+            .or_else(|| vector.and_then(is))
     }
 
     /// The numbers of a vector or of a column of a matrix.

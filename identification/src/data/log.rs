@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use super::{
+    load::Load,
     periods::{self, Periods},
     rows,
     samples::Samples,
@@ -27,6 +28,8 @@ pub struct Log {
     /// By what the torque of each actuator of the source is multiplied.
     torque_factors: Vec<f64>,
     payload: bool,
+    /// Name of the payload, where there are several.
+    payload_name: Option<Arc<str>>,
     instruments: Option<Box<Log>>,
     /// What was done to the samples that a user should know.
     note: Option<String>,
@@ -95,6 +98,7 @@ impl Log {
             offsets: vec![0.0; actuators],
             torque_factors: vec![1.0; actuators],
             payload,
+            payload_name: None,
             instruments: None,
             note: None,
         })
@@ -180,6 +184,7 @@ impl Log {
             samples,
             source: Source::Files(Box::new(files)),
             payload,
+            payload_name: None,
             instruments: None,
             note: None,
         }
@@ -219,6 +224,27 @@ impl Log {
     #[must_use]
     pub const fn in_memory(&self) -> bool {
         matches!(self.source, Source::Memory(..))
+    }
+
+    /// Name of the payload that the platform carried, where there are several.
+    #[must_use]
+    pub fn payload_name(&self) -> Option<&str> {
+        self.payload_name.as_deref().filter(|_| self.payload)
+    }
+
+    /// What the platform carried.
+    #[must_use]
+    pub fn carried(&self) -> Load<'_> {
+        let own = self.payload_name().map(Load::Named);
+        own.unwrap_or(Load::from(self.payload))
+    }
+
+    /// The same run with a payload of this name: payloads of different names are different bodies.
+    #[must_use]
+    pub fn with_payload_name(mut self, name: &str) -> Self {
+        self.payload = true;
+        self.payload_name = Some(name.into());
+        self
     }
 
     /// The same run under the opposite label of its payload.
@@ -273,7 +299,11 @@ impl Log {
             torques,
             self.payload,
         )?;
-        Ok(beginning.with_velocities(velocities))
+        let beginning = beginning.with_velocities(velocities);
+        Ok(match self.payload_name() {
+            Some(name) => beginning.with_payload_name(name),
+            None => beginning,
+        })
     }
 
     /// Goes through the run from its first sample on.

@@ -17,6 +17,7 @@ mod expression;
 mod format;
 #[cfg(feature = "hdf5")]
 mod hdf5_file;
+mod load;
 mod log;
 mod mapping;
 mod mat_file;
@@ -44,7 +45,9 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
+pub use arrays::Array;
 pub use dataset::{Dataset, Variant};
+pub use load::Load;
 pub use log::{Log, Reader};
 pub use mapping::{Gain, Mapping, Time};
 pub use periods::Periods;
@@ -52,7 +55,9 @@ use rayon::prelude::*;
 pub use samples::Samples;
 
 use crate::error::Error;
+use arrays::Arrays;
 use source::Files;
+use table::Table;
 
 /// The files of a run: `a.csv+b.csv` are two that are joined, sample by sample or by their times, unless there
 /// is a file of this name.
@@ -89,6 +94,35 @@ fn read_telling(
     advance: &dyn Fn(u64),
 ) -> Result<Log, Error> {
     let files = Files::new(path, &parts(path), mapping)?;
+    looked_through(files, mapping, payload, advance)
+}
+
+/// Reads a run that is in memory, as arrays of a file would be read: `name` is what messages call it.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_arrays(
+    name: &str,
+    arrays: &[Array<'_>],
+    mapping: &Mapping,
+    payload: bool,
+) -> Result<Log, Error> {
+    let mut table = Arrays::new(name.to_owned());
+    for array in arrays {
+        table.push(array.name, array.shape, array.values);
+    }
+    let tables = (vec![Table::Arrays(table)], vec![1]);
+    let files = Files::of_tables(name.to_owned(), tables, mapping)?;
+    looked_through(files, mapping, payload, &|_| {})
+}
+
+/// The run of files that are open.
+fn looked_through(
+    files: Files,
+    mapping: &Mapping,
+    payload: bool,
+    advance: &dyn Fn(u64),
+) -> Result<Log, Error> {
     let summary = files.look_through(&mapping.time, advance)?;
     let (frequency, count) = (summary.frequency, summary.count);
     let note = files.note(count, summary.left_out);

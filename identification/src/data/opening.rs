@@ -33,7 +33,19 @@ impl Files {
             }
         }
         Error::check(problems)?;
-        let name = display_name(path);
+        Self::of_tables(display_name(path), (tables, numbers), mapping)
+    }
+
+    /// The run `name` of tables, each with the number of its file.
+    ///
+    /// # Errors
+    /// A mapping that is not right, missing columns.
+    pub(super) fn of_tables(
+        name: String,
+        (mut tables, mut numbers): (Vec<Table>, Vec<usize>),
+        mapping: &Mapping,
+    ) -> Result<Self, Error> {
+        mapping.check()?;
         if tables.iter().any(Table::is_part) {
             (tables, numbers) = used(&name, (tables, numbers), mapping)?;
         }

@@ -25,7 +25,7 @@ use crate::{
 };
 
 /// A column is dependent when the part of it outside the kept ones is below this part of its norm.
-const RANK_TOLERANCE: f64 = 1e-9;
+pub(crate) const RANK_TOLERANCE: f64 = 1e-9;
 
 /// How the payload's columns take part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +50,15 @@ impl PayloadUse {
                 .into());
         }
         let loaded = || runs.iter().filter(|log| log.payload());
+        let unnamed = loaded().find(|log| log.payload_name().is_none());
+        let named = loaded().find_map(Log::payload_name);
+        if let (Some(unnamed), Some(named)) = (unnamed, named) {
+            let message = format!(
+                "the run carries a payload without a name, another one the payload `{named}`: they can't be told from each other"
+            );
+            let help = "say of each run which payload it carries";
+            return Err(Problem::new(message).file(unnamed.name()).help(help).into());
+        }
         if !has_payload(info) {
             let problem = |log: &Log| {
                 Problem::new(format!(
@@ -148,6 +157,9 @@ pub fn base_parameters(
         let found = eliminate(&regressor, &order, RANK_TOLERANCE);
         collect(&mut base, columns, found);
     }
+    if payload == PayloadUse::Regrouped {
+        relative(&mut base, columns);
+    }
     if base.columns.is_empty() {
         return Err(Problem::new(format!(
             "no parameter of `{}` has an effect on its model",
@@ -177,6 +189,7 @@ pub(crate) fn base_parameters_beside(
     let regressor = random_regressor(model, columns, seed)?;
     let mut base = BaseParameters::default();
     let mut combinations = vec![Some(Vec::new()); known.len()];
+    let several = payload == PayloadUse::Regrouped && columns.loads().len() > 1;
     for order in blocks(columns, payload) {
         let (own, mut unknown): (Vec<usize>, Vec<usize>) =
             order.into_iter().partition(|column| known.contains(column));
@@ -191,12 +204,18 @@ pub(crate) fn base_parameters_beside(
             let others = others.map(|(_, terms)| terms.into_iter().map(|(one, _)| one).collect());
             let place = known.iter().position(|one| *one == column);
             if let Some(place) = place.and_then(|place| combinations.get_mut(place)) {
+                let is_load = columns.indices(true).contains(&column);
                 *place = match found.zero.contains(&column) {
                     true => Some(Vec::new()),
+                    // It is told beside the payload that is always there, whose own is not.
+                    false if several && is_load => Some(columns.loads().concat()),
                     false => others,
                 };
             }
         }
+    }
+    if several {
+        relative(&mut base, columns);
     }
     Ok((base, combinations))
 }
@@ -204,12 +223,54 @@ pub(crate) fn base_parameters_beside(
 /// The columns in the symmetric order, in blocks that are independent of each other.
 fn blocks(columns: &ColumnSet, payload: PayloadUse) -> Vec<Vec<usize>> {
     let robot = symmetric_order(columns, columns.indices(false));
-    let loads = symmetric_order(columns, columns.indices(true));
-    match payload {
-        PayloadUse::Absent => vec![robot],
-        PayloadUse::Separate => vec![robot, loads],
-        PayloadUse::Regrouped => vec![[robot, loads].concat()],
+    let loads = columns.loads().into_iter();
+    let mut loads: Vec<Vec<usize>> = loads.map(|own| symmetric_order(columns, own)).collect();
+    if payload == PayloadUse::Regrouped {
+        // One payload is always there: what the others have more is told beside it.
+        let always = loads.pop().unwrap_or_default();
+        loads.insert(0, [robot, always].concat());
+    } else {
+        loads.insert(0, robot);
     }
+    loads
+}
+
+/// Of payloads of which one is always there, the parameters less those of the last one, which is regrouped into
+/// the robot.
+fn relative(base: &mut BaseParameters, columns: &ColumnSet) {
+    let mut loads = columns.loads();
+    let always = loads.pop().unwrap_or_default();
+    let all = columns.as_slice();
+    let counterpart = |index: usize| {
+        let mut same = always.iter();
+        same.find(|other| all[**other].symbol == all[index].symbol)
+            .copied()
+    };
+    for (place, kept) in base.columns.iter().enumerate() {
+        if !loads.iter().any(|own| own.contains(kept)) {
+            continue;
+        }
+        let terms = base.regroupings[place].iter().copied();
+        let more: Vec<(usize, f64)> = terms
+            .chain([(*kept, 1.0)])
+            .filter_map(|(index, coefficient)| Some((counterpart(index)?, -coefficient)))
+            .collect();
+        if base.regroupings[place].is_empty() && !more.is_empty() {
+            base.names[place].push('R');
+        }
+        base.regroupings[place].extend(more);
+    }
+}
+
+/// Names of the payloads that runs carry, in the order of the runs; none where they have no names.
+pub(crate) fn payload_names(runs: &[Log]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in runs.iter().filter_map(Log::payload_name) {
+        if !names.iter().any(|one| one == name) {
+            names.push(name.to_owned());
+        }
+    }
+    names
 }
 
 /// Adds what one block yields to the base parameters.

@@ -10,7 +10,9 @@ use overact::Model;
 use crate::{
     data::Log,
     error::{Error, Problem, suggestion},
-    estimation::base::{BaseParameters, Combination, PayloadUse, base_parameters_beside},
+    estimation::base::{
+        BaseParameters, Combination, PayloadUse, base_parameters_beside, payload_names,
+    },
     regression::columns::ColumnSet,
     settings::Settings,
 };
@@ -48,7 +50,8 @@ impl Split {
             payload != PayloadUse::Absent,
             settings.asymmetric_friction,
             settings.seed,
-        )?;
+        )?
+        .with_payloads(&payload_names(runs));
         let known = found(model, &columns, settings)?;
         let places: Vec<usize> = known.iter().map(|(column, _)| *column).collect();
         let all = (&columns, payload);

@@ -27,7 +27,7 @@ mod shares;
 mod solve;
 
 pub use result::{DriveGain, Gains, JointParameter};
-pub(crate) use shares::DriveShares;
+pub(crate) use shares::drive_shares;
 
 use overact::Model;
 

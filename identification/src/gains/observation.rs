@@ -162,7 +162,7 @@ impl Observer<'_> {
                 self.model,
                 &[pose, twist, acceleration],
                 (count, 1.0 / motion.sampling_frequency),
-                motion.payload,
+                motion.carried(),
                 (&picked, 0),
             )
             .map_err(at)?;

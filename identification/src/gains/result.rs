@@ -80,8 +80,14 @@ impl Gains {
     /// What is said of gains that the description has wrong.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        let wrong = self.drives.iter().filter(|one| one.is_wrong());
+        let wrong: Vec<&DriveGain> = self.drives.iter().filter(|one| one.is_wrong()).collect();
+        if let Some(factor) = self.common_factor() {
+            return vec![format!(
+                "all drives give {factor:.4} times the torque that the description says: either all `torque_gain`s are wrong by one factor, or what is known in `[identification.known]` is: a mass that is {factor:.4} times as large as the true one does the same"
+            )];
+        }
         wrong
+            .into_iter()
             .map(|one| {
                 format!(
                     "the drive of `{}` gives {:.4} times the torque that the description says, with a standard deviation of {:.4}: check its `torque_gain`",
@@ -90,7 +96,21 @@ impl Gains {
             })
             .collect()
     }
+
+    /// The factor by which all drives of several are wrong alike, as far as their deviations tell.
+    fn common_factor(&self) -> Option<f64> {
+        let all = &self.drives;
+        if all.len() < 2 || !all.iter().all(DriveGain::is_wrong) {
+            return None;
+        }
+        let mean = all.iter().map(|one| one.factor).sum::<f64>() / all.len() as f64;
+        let alike = |one: &DriveGain| (one.factor - mean).abs() < ALIKE * one.deviation;
+        all.iter().all(alike).then_some(mean)
+    }
 }
+
+/// Deviations within which gains are alike.
+const ALIKE: f64 = 3.0;
 
 #[cfg(test)]
 mod tests {

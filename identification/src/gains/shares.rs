@@ -9,7 +9,6 @@
 //! they explain, so noise that is white makes both err independently. What was known exactly is estimated once
 //! more and is an exception: of it this covariance is too large.
 
-use nalgebra::DMatrix;
 use overact::Function;
 
 use super::result::Gains;
@@ -24,66 +23,33 @@ use crate::{
     regression::{
         Chunk,
         chunk::projected,
-        factor::Factor,
         observation::Observer,
         projection::Projection,
+        shares::Shares,
         sink::{LineSink, Plan, observed},
         system::System,
     },
 };
 
-/// What each drive contributes to the equations of each projection.
-#[derive(Debug, Clone)]
-pub(crate) struct DriveShares {
-    /// For each projection the factors of its lines: columns of the base parameters, then one for each drive.
-    projections: Vec<Vec<Factor>>,
-    /// Number of the base parameters.
-    parameters: usize,
-    /// C.
-    covariance: DMatrix<f64>,
-}
-
-impl DriveShares {
-    /// Goes through runs whose torques have been multiplied by gains.
-    ///
-    /// # Errors
-    /// As [`Motions::next`]; the runs have been gone through before.
-    pub(crate) fn new(observer: &Observer<'_>, runs: &[Log], gains: &Gains) -> Result<Self, Error> {
-        let info = observer.model.info();
-        let (parameters, drives) = (observer.base.len(), info.sizes.actuators);
-        let new = |projection: &Projection| {
-            System::new(projection.clone(), &info, parameters + drives - 1)
-        };
-        let mut systems: Vec<System> = observer.projections.iter().map(new).collect();
-        for (number, log) in runs.iter().enumerate() {
-            run(observer, (number, log), &mut systems)?;
-        }
-        Ok(Self {
-            projections: systems.into_iter().map(|own| own.lines).collect(),
-            parameters,
-            covariance: gains.relative_covariance(),
-        })
+/// Goes through runs whose torques have been multiplied by gains.
+///
+/// # Errors
+/// As [`Motions::next`]; the runs have been gone through before.
+pub(crate) fn drive_shares(
+    observer: &Observer<'_>,
+    runs: &[Log],
+    gains: &Gains,
+) -> Result<Shares, Error> {
+    let info = observer.model.info();
+    let (parameters, drives) = (observer.base.len(), info.sizes.actuators);
+    let new =
+        |projection: &Projection| System::new(projection.clone(), &info, parameters + drives - 1);
+    let mut systems: Vec<System> = observer.projections.iter().map(new).collect();
+    for (number, log) in runs.iter().enumerate() {
+        run(observer, (number, log), &mut systems)?;
     }
-
-    /// P C Pᵀ of an estimate of the columns `selected` with the weights of the lines; none where they are
-    /// dependent.
-    pub(crate) fn covariance(
-        &self,
-        projection: usize,
-        (selected, weights): (&[usize], &[f64]),
-    ) -> Option<DMatrix<f64>> {
-        let lines = self.projections.get(projection)?;
-        let (p, drives) = (selected.len(), self.covariance.nrows());
-        let columns: Vec<usize> = (0..drives - 1).map(|j| self.parameters + j).collect();
-        let reduced = Factor::reduced_together(lines, weights, &[selected, &columns].concat());
-        let mut right = DMatrix::zeros(p, drives);
-        let own = reduced.triangle.view((0, p), (p, drives - 1));
-        right.columns_mut(0, drives - 1).copy_from(&own);
-        right.set_column(drives - 1, &reduced.rhs.rows(0, p));
-        let triangle = reduced.triangle.view((0, 0), (p, p));
-        let shares = triangle.solve_upper_triangular(&right)?;
-        Some(&shares * &self.covariance * shares.transpose())
-    }
+    let lines = systems.into_iter().map(|own| own.lines).collect();
+    Ok(Shares::new(lines, parameters, gains.relative_covariance()))
 }
 
 /// Adds the equations of a run.

@@ -68,7 +68,7 @@ pub fn estimate_projection(
     let mut warnings = Vec::new();
     let (selected, names) = on_data(prepared, system, &mut warnings)?;
     let base = estimate(system, &selected, settings)?;
-    let more = drive_covariance(prepared, projection, (&selected, &base.weights));
+    let more = covariance_before(prepared, projection, (&selected, &base.weights));
     let (rest, intervals) = rayon::join(
         || essential(system, &selected, &names, &base, settings),
         || Intervals::new(system, &selected, &base).widened(more.as_ref()),
@@ -211,7 +211,7 @@ impl Context<'_> {
             ..settings.clone()
         };
         let estimation = estimate(self.system, selected, &settings)?;
-        let more = drive_covariance(
+        let more = covariance_before(
             self.prepared,
             self.projection,
             (selected, &estimation.weights),
@@ -265,7 +265,7 @@ impl Context<'_> {
         let told = told.compared((self.system, selected), (base, &honest), &found, &named);
         let estimation = found.estimation.clone();
         // Instruments move the estimate little; what gains do to it is taken from least squares.
-        let more = drive_covariance(self.prepared, self.projection, (selected, &base.weights));
+        let more = covariance_before(self.prepared, self.projection, (selected, &base.weights));
         let own = found.intervals.clone();
         let own = own.map(|own| own.widened(more.as_ref()));
         let intervals = own.as_ref().unwrap_or(&self.intervals);
@@ -299,7 +299,7 @@ impl Context<'_> {
             |noise| noise.deviations(selected, estimation),
         );
         let place = (selected, estimation.weights.as_slice());
-        let Some(more) = drive_covariance(self.prepared, self.projection, place) else {
+        let Some(more) = covariance_before(self.prepared, self.projection, place) else {
             return own;
         };
         let more = more.diagonal();
@@ -324,6 +324,7 @@ impl Context<'_> {
         let parameter = |(place, (&column, name)): (usize, (&usize, &String))| {
             let value = estimation.values[place];
             let true_value = self.truth.get(&column).copied();
+            let interval_95 = intervals.of(column, selected.len()).unwrap_or([value; 2]);
             ParameterEstimate {
                 name: name.clone(),
                 unit: self.unit(column).to_owned(),
@@ -333,7 +334,8 @@ impl Context<'_> {
                 relative_standard_deviation_percent: estimation
                     .relative_standard_deviations_percent[place],
                 correlated_standard_deviation: correlated[place],
-                interval_95: intervals.of(column, selected.len()).unwrap_or([value; 2]),
+                interval_95,
+                outside: !(interval_95[0]..=interval_95[1]).contains(&value),
                 true_value,
                 error_percent: true_value
                     .filter(|truth| *truth != 0.0)
@@ -349,13 +351,13 @@ impl Context<'_> {
     }
 }
 
-/// What the uncertainty of gains adds to the covariance of an estimate, where there is any.
-fn drive_covariance(
+/// What the uncertainty of what was identified before adds to the covariance of an estimate, where there is any.
+fn covariance_before(
     prepared: &Prepared,
     projection: usize,
     estimate: (&[usize], &[f64]),
 ) -> Option<DMatrix<f64>> {
-    prepared.drives.as_ref()?.covariance(projection, estimate)
+    prepared.shares.as_ref()?.covariance(projection, estimate)
 }
 
 /// The base parameters that the data can tell apart, with their names; the others are warned of.

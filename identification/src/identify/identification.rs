@@ -21,6 +21,7 @@ use crate::{
     consistent::Consistent,
     estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
     gains::{DriveGain, JointParameter},
+    gravity::GravityDirection,
     regression::columns::ColumnSet,
     result::{CrossValidation, Estimate, Estimator, MotorParameter, RunSummary},
     settings::Settings,
@@ -61,6 +62,9 @@ pub struct Identification {
     /// the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
+    /// The direction of gravity, where it was identified from the runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<GravityDirection>,
     /// Gains of the drives, relative to those of the description, by which all torques were multiplied, where
     /// they were identified from the runs.
     #[serde(skip_serializing_if = "Vec::is_empty")]

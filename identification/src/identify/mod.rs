@@ -42,6 +42,7 @@ use crate::{
     error::Error,
     estimation::instruments::regressor::ErrorsInRegressor,
     gains::Gains,
+    gravity::GravityDirection,
     regression::projection::{ModelKind, Projection},
     result::{Estimate, Stage},
     settings::Settings,
@@ -58,28 +59,43 @@ pub fn identify(
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Identification, Error> {
-    identify_with_gains(model, dataset, None, settings, progress)
+    identify_after(model, dataset, Before::Nothing, settings, progress)
 }
 
-/// [`identify`] from runs whose torques have been multiplied by gains that were identified: deviations and
-/// intervals have the part that is the gains'.
+/// What was identified before the parameters are.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub enum Before<'a> {
+    /// Nothing.
+    Nothing,
+    /// Gains of the drives, by which the torques of the runs have been multiplied.
+    Gains(&'a Gains),
+    /// The direction of gravity that the model has now.
+    Gravity(&'a GravityDirection),
+}
+
+/// [`identify`] with what was identified before: deviations and intervals have the part that is its.
 ///
 /// # Errors
 /// As [`identify`].
-pub fn identify_with_gains(
+pub fn identify_after(
     model: &dyn Model,
     dataset: &Dataset<'_>,
-    gains: Option<&Gains>,
+    before: Before<'_>,
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Identification, Error> {
     let info = model.info();
     // A cross-validation run that can't be used is better known before the long work.
     check_runs(model, dataset.validation, settings)?;
-    let projections = projections(model, settings);
+    let projections = Projection::usual(&info, &settings.kept_actuators);
     let mut prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
-    if let Some(gains) = gains {
-        prepared = prepared.with_gains((model, dataset.runs), gains, settings)?;
+    match before {
+        Before::Nothing => {}
+        Before::Gains(gains) => {
+            prepared = prepared.with_gains((model, dataset.runs), gains, settings)?;
+        }
+        Before::Gravity(direction) => prepared = prepared.with_gravity(direction),
     }
     let mut warnings = prepared_warnings(&prepared, dataset.validation);
     let logs = dataset.runs.iter().chain(dataset.validation);
@@ -150,6 +166,7 @@ pub fn identify_with_gains(
         checks,
         thresholds: Thresholds::default(),
         calibration: None,
+        gravity: None,
         gains: Vec::new(),
         gain_parameters: Vec::new(),
         motors: Vec::new(),
@@ -212,15 +229,4 @@ fn estimates(
         }
     }
     Ok(estimates)
-}
-
-/// The projections of a robot: case 1 and case 2, or its joints without redundancy.
-fn projections(model: &dyn Model, settings: &Settings) -> Vec<Projection> {
-    let sizes = model.info().sizes;
-    if sizes.actuators > sizes.dof {
-        let kept = settings.kept_actuators.clone();
-        vec![Projection::Platform, Projection::Actuators(kept)]
-    } else {
-        vec![Projection::Joints]
-    }
 }

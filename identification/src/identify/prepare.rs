@@ -9,14 +9,16 @@ use crate::{
     consistent::{Consistent, consistent},
     data::Log,
     error::Error,
-    estimation::base::{BaseParameters, PayloadUse, base_parameters},
-    gains::{DriveShares, Gains},
+    estimation::base::{BaseParameters, PayloadUse, base_parameters, payload_names},
+    gains::{Gains, drive_shares},
+    gravity::GravityDirection,
     kinematics,
     prior::Prior,
     regression::{
         columns::ColumnSet,
         observation::{Observer, Seen},
         projection::Projection,
+        shares::Shares,
         system::{Observed, System},
     },
     result::{Estimate, RunSummary},
@@ -48,8 +50,8 @@ pub struct Prepared {
     pub(super) points: Vec<Vec<Vec<DMatrix<f64>>>>,
     /// What there is of instruments.
     pub(super) companions: Companions,
-    /// Where the torques have been multiplied by gains, what the uncertainty of these does.
-    pub(super) drives: Option<DriveShares>,
+    /// Of what was identified before, what its uncertainty does.
+    pub(super) shares: Option<Shares>,
 }
 
 impl Prepared {
@@ -67,8 +69,17 @@ impl Prepared {
             projections: &self.projections,
             settings,
         };
-        self.drives = Some(DriveShares::new(&observer, runs, gains)?);
+        self.shares = Some(drive_shares(&observer, runs, gains)?);
         Ok(self)
+    }
+
+    /// With the uncertainty of the direction of gravity that the model has.
+    pub(super) fn with_gravity(mut self, direction: &GravityDirection) -> Self {
+        let all = self.columns.as_slice();
+        let columns = self.base.columns.iter();
+        let names: Vec<&str> = columns.map(|&index| all[index].name.as_str()).collect();
+        self.shares = Some(direction.shares(&names));
+        self
     }
 
     /// Names of the standard parameters that have no effect on the model.
@@ -121,7 +132,8 @@ pub fn prepare(
         payload != PayloadUse::Absent,
         settings.asymmetric_friction,
         settings.seed,
-    )?;
+    )?
+    .with_payloads(&payload_names(runs));
     Error::check(settings.prior.problems(&columns.named()))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
     // Relations between columns are those of the model; reversals are those of the data.
@@ -168,7 +180,7 @@ pub fn prepare(
         seen,
         points,
         companions,
-        drives: None,
+        shares: None,
     })
 }
 
@@ -219,10 +231,23 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
     let mut warnings = Vec::new();
     if prepared.payload == PayloadUse::Regrouped {
         warnings.push(String::from(
-            "the payload's parameters are not identifiable without unloaded runs: they are regrouped into the platform's",
+            match prepared.columns.loads().len() {
+                0 | 1 => "the payload's parameters are not identifiable without unloaded runs: they are regrouped into the platform's",
+                _ => "no run is without payload: the parameters of one payload are regrouped into the robot's, those of the others are told less its own",
+            },
         ));
     }
     for other in others {
+        if let Some(name) = other.payload_name()
+            && prepared.payload != PayloadUse::Absent
+            && !prepared.columns.has_load(name)
+        {
+            warnings.push(format!(
+                "{}: no run identified from carries the payload `{name}` of this cross-validation run: it is predicted without",
+                other.name()
+            ));
+            continue;
+        }
         let known = match prepared.payload {
             PayloadUse::Absent => !other.payload(),
             PayloadUse::Regrouped => other.payload(),

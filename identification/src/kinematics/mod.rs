@@ -103,6 +103,7 @@ impl<'a> Motions<'a> {
         Motion {
             run: self.log.name().to_owned(),
             payload: self.log.payload(),
+            payload_name: self.log.payload_name().map(str::to_owned),
             sampling_frequency: self.log.sampling_frequency(),
             first_sample: self.kept.start,
             samples: 0,

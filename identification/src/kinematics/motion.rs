@@ -1,6 +1,6 @@
 //! The motion of the platform over some samples.
 
-use crate::error::Problem;
+use crate::{data::Load, error::Problem};
 
 /// The motion of the platform in some successive samples of a run and the torques that belong to
 /// them.
@@ -11,6 +11,8 @@ pub struct Motion {
     pub run: String,
     /// Whether the platform carried the payload.
     pub payload: bool,
+    /// Name of the payload, where there are several.
+    pub payload_name: Option<String>,
     /// f_m, Hz.
     pub sampling_frequency: f64,
     /// Number of the first sample in the log.
@@ -33,6 +35,13 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// What the platform carried.
+    #[must_use]
+    pub fn carried(&self) -> Load<'_> {
+        let own = self.payload_name.as_deref().map(Load::Named);
+        own.unwrap_or(Load::from(self.payload))
+    }
+
     /// Time of a sample of the motion, s from the start of the log.
     #[must_use]
     pub fn time(&self, sample: usize) -> f64 {

@@ -9,6 +9,13 @@ pub(crate) struct Chunk {
     pub(super) conditions: Vec<Vec<Condition>>,
 }
 
+impl Chunk {
+    /// Number of samples.
+    pub(crate) fn samples(&self) -> usize {
+        self.conditions.first().map_or(0, Vec::len)
+    }
+}
+
 /// The conditions of a choice of actuators sample by sample.
 pub(super) fn conditions(
     choice: &mut KeptActuators,

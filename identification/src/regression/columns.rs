@@ -19,7 +19,7 @@
 use overact::{Body, Columns, Function, Info, Model, Parameter, SampleError, StandardParameter};
 
 use super::friction::{Rate, friction_rates};
-use crate::{error::Error, settings::Settings};
+use crate::{data::Load, error::Error, settings::Settings};
 use StandardParameter as P;
 
 /// Where the numbers of a column come from.
@@ -86,6 +86,8 @@ pub struct Column {
     /// How the column of a Coulomb parameter is evaluated around reversals.
     reversal: Option<Reversal>,
     origin: Origin,
+    /// Of one payload of several, its name.
+    pub(crate) load: Option<String>,
 }
 
 /// How the sign of a velocity is taken around reversals.
@@ -130,6 +132,27 @@ impl Column {
             rate: None,
             reversal: None,
             origin,
+            load: None,
+        }
+    }
+
+    /// Whether the column counts where the robot carries this.
+    fn counts(&self, carried: Load<'_>) -> bool {
+        !self.origin.is_of_payload()
+            || match (carried, &self.load) {
+                (Load::Nothing, _) => false,
+                (Load::Named(name), Some(own)) => name == own,
+                (Load::Named(_), None) | (Load::Any, _) => true,
+            }
+    }
+
+    /// The payload's column as that of the payload with this name.
+    fn named(&self, load: &str) -> Self {
+        Self {
+            name: format!("{}_{load}", self.name),
+            standard: format!("{}_{load}", self.standard),
+            load: Some(load.to_owned()),
+            ..self.clone()
         }
     }
 
@@ -228,6 +251,41 @@ impl ColumnSet {
         Ok(Self { columns })
     }
 
+    /// These columns with those of the payload once for each of these payloads, `m_payload_A` for instance; as
+    /// they are without names.
+    #[must_use]
+    pub fn with_payloads(self, names: &[String]) -> Self {
+        if names.is_empty() {
+            return self;
+        }
+        let (loads, mut columns): (Vec<Column>, Vec<Column>) =
+            { self.columns.into_iter() }.partition(|column| column.origin.is_of_payload());
+        for name in names {
+            columns.extend(loads.iter().map(|column| column.named(name)));
+        }
+        Self { columns }
+    }
+
+    /// Whether a payload of this name is among them, or one without a name.
+    pub(crate) fn has_load(&self, name: &str) -> bool {
+        let mut loads = { self.columns.iter() }.filter(|column| column.origin.is_of_payload());
+        loads.any(|column| column.load.as_deref().is_none_or(|own| own == name))
+    }
+
+    /// Indices of the columns of each payload.
+    #[must_use]
+    pub fn loads(&self) -> Vec<Vec<usize>> {
+        let mut loads: Vec<(Option<&str>, Vec<usize>)> = Vec::new();
+        for index in self.indices(true) {
+            let own = self.columns[index].load.as_deref();
+            match loads.iter_mut().find(|(load, _)| *load == own) {
+                Some((_, all)) => all.push(index),
+                None => loads.push((own, vec![index])),
+            }
+        }
+        loads.into_iter().map(|(_, all)| all).collect()
+    }
+
     /// These columns, those of Coulomb friction being zero where the speed of their joint is below the
     /// dead band of the settings, and having the mean sign over a sampling interval where these ask
     /// for it.
@@ -302,19 +360,20 @@ impl ColumnSet {
 
     /// Evaluates the columns `picked` in case 1 at samples one sampling `interval` (s) apart: for each of
     /// the r lines, samples x (picked + `more`), row-major, with room for more columns behind. The
-    /// payload's are zero in an unloaded run, eq. (49).
+    /// payload's are zero in an unloaded run, eq. (49), and in one with another payload.
     ///
     /// # Errors
     /// The first sample at which the model has no value.
-    pub fn evaluate(
+    pub fn evaluate<'l>(
         &self,
         model: &dyn Model,
         states: &[&[f64]; 3],
         (samples, interval): (usize, f64),
-        loaded: bool,
+        carried: impl Into<Load<'l>>,
         (picked, more): (&[usize], usize),
     ) -> Result<Vec<Vec<f64>>, SampleError> {
         let sizes = model.info().sizes;
+        let carried = carried.into();
         let ask = |function: Function, wanted: bool| -> Result<Vec<f64>, SampleError> {
             let (rows, columns) = function.shape(&sizes);
             let mut output = vec![0.0; if wanted { samples * rows * columns } else { 0 }];
@@ -326,9 +385,11 @@ impl ColumnSet {
         };
         let columns = || picked.iter().filter_map(|&index| self.columns.get(index));
         let split = columns().any(|column| column.rate.is_some());
-        let has_payload = columns().any(|column| matches!(column.origin, Origin::Payload(_)));
+        let of_payload =
+            |column: &Column| matches!(column.origin, Origin::Payload(_)) && column.counts(carried);
+        let has_payload = columns().any(of_payload);
         let robot = ask(Function::IdmRedPlatform(Columns::Standard), true)?;
-        let payload = ask(Function::IdmRedPayload, loaded && has_payload)?;
+        let payload = ask(Function::IdmRedPayload, has_payload)?;
         let averaged = columns().any(|column| column.reversal.is_some_and(|own| own.averaged));
         let velocities = ask(Function::JointVelocities, split)?;
         let accelerations = ask(Function::JointAccelerations, averaged)?;
@@ -337,11 +398,13 @@ impl ColumnSet {
         // Where the numbers of a row come from: places of the robot's columns, then the payload's.
         let (mut own, mut load) = (Vec::new(), Vec::new());
         for (to, column) in columns().enumerate() {
+            if !column.counts(carried) {
+                continue;
+            }
             match column.origin {
                 Origin::Robot(k) => own.push((to, k)),
                 Origin::Both(both) => own.extend(both.map(|k| (to, k))),
-                Origin::Carried(k) if loaded => own.push((to, k)),
-                Origin::Carried(_) => {}
+                Origin::Carried(k) => own.push((to, k)),
                 Origin::Payload(k) => load.push((to, k)),
             }
         }

@@ -87,6 +87,35 @@ impl Factor {
         update(&mut self.r, &mut block);
     }
 
+    /// The factor of the same equations in unknowns whose columns are combinations of these, a column of
+    /// `coefficients` for each.
+    pub(crate) fn combined(&self, coefficients: &DMatrix<f64>) -> Self {
+        let own = self.parameters();
+        let y = DVector::from_fn(own + 1, |row, _| f64::from(u8::from(row == own)));
+        let rows = coefficients.clone().insert_row(own, 0.0);
+        self.of_columns(&rows, &y)
+    }
+
+    /// The same with a combination of the columns in the place of Y.
+    pub(crate) fn combined_with(&self, coefficients: &DMatrix<f64>, y: &DVector<f64>) -> Self {
+        let own = self.parameters();
+        let rows = coefficients.clone().insert_row(own, 0.0);
+        self.of_columns(&rows, &y.clone().insert_row(own, 0.0))
+    }
+
+    /// The factor of combinations of all columns, Y among them.
+    fn of_columns(&self, coefficients: &DMatrix<f64>, y: &DVector<f64>) -> Self {
+        let count = coefficients.ncols();
+        let all = coefficients.clone().insert_column(count, 0.0);
+        let mut all = all;
+        all.set_column(count, y);
+        let mut combined = Self::new(count);
+        combined.absorb(&self.r * &all);
+        combined.equations = self.equations;
+        combined.sums = all.tr_mul(&self.sums);
+        combined
+    }
+
     /// Number of unknowns.
     #[must_use]
     pub fn parameters(&self) -> usize {

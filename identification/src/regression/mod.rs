@@ -7,6 +7,7 @@
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
 //! - `projection`: on what the inputs are projected;
 //! - `points`: what is plotted of the motion;
+//! - `shares`: what the uncertainty of quantities identified beforehand does to estimates;
 //! - `system`: the system (39)-(41) of one projection;
 //! - `elimination`: columns that depend on others.
 
@@ -19,6 +20,7 @@ mod instruments;
 pub(crate) mod observation;
 pub(crate) mod points;
 pub(crate) mod projection;
+pub(crate) mod shares;
 pub(crate) mod sink;
 pub(crate) mod states;
 pub(crate) mod system;

@@ -267,7 +267,7 @@ impl Observer<'_> {
                 self.model,
                 &states,
                 (count, 1.0 / motion.sampling_frequency),
-                motion.payload,
+                motion.carried(),
                 (self.base, 1),
             )
             .map_err(at)?;

@@ -57,6 +57,15 @@ pub enum Projection {
 }
 
 impl Projection {
+    /// The projections of a robot: case 1 and case 2 for these kept actuators, or its joints without redundancy.
+    #[must_use]
+    pub fn usual(info: &Info<'_>, kept_actuators: &[usize]) -> Vec<Self> {
+        match info.sizes.actuators > info.sizes.dof {
+            true => vec![Self::Platform, Self::Actuators(kept_actuators.to_vec())],
+            false => vec![Self::Joints],
+        }
+    }
+
     /// Which model explains these inputs.
     #[must_use]
     pub const fn model(&self) -> ModelKind {

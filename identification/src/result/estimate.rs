@@ -103,6 +103,10 @@ pub struct ParameterEstimate {
     /// The 95 % interval of the true value, from the base parameters at every stage (see the
     /// module `intervals`).
     pub interval_95: [f64; 2],
+    /// Whether the estimate lies outside of its own interval, which is that of the model with all base
+    /// parameters: cancelling others has moved it to where the data speak against it. The deviations above take
+    /// the cancelled parameters for zero and know nothing of it.
+    pub outside: bool,
     /// The regrouped true value, where it is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub true_value: Option<f64>,

@@ -15,6 +15,9 @@ pub struct RunSummary {
     pub sampling_frequency: f64,
     /// Whether the platform carried the payload.
     pub payload: bool,
+    /// Name of the payload, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub payload_name: Option<String>,
     /// Largest miss of the loops' closure by the measured actuators (m, rad).
     pub closure_residual: f64,
     /// Of each actuator's joint the equations that were left out because it stood still; empty where none
@@ -31,6 +34,7 @@ impl RunSummary {
             samples: seen.samples,
             sampling_frequency: log.sampling_frequency(),
             payload: log.payload(),
+            payload_name: log.payload_name().map(str::to_owned),
             closure_residual: seen.closure_residual,
             standstill_equations: seen.still.clone(),
         }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Contents, markup::paragraph};
+use super::{Contents, markup::paragraph, verdict};
 use crate::{
     choice::{answers, case_heading, stage_name},
     text::escape,
@@ -15,6 +15,12 @@ pub(super) fn header(contents: &Contents<'_>) -> String {
     let mut html = format!(
         "<header>\n<div class=\"intro\"><h1>Identification of {}</h1>\n",
         escape(&identification.robot)
+    );
+    // Narrow screens and paper have the drawing and the contents before the verdict's own section.
+    let _ = writeln!(
+        html,
+        "<p><strong>{}</strong></p>",
+        escape(&verdict::summary(identification))
     );
     if let Some(summary) = contents.summary {
         html.push_str(&paragraph(&format!("{}.", summary.trim_end_matches('.'))));

@@ -2,7 +2,7 @@
 //! what the data could not tell.
 //!
 //! The verdict stands first, the parameters follow, and every plot says below what to look for in it.
-//! Each section is a file: `verdict`, `checks`, `calibration`, `gains`, `parameters`, `motors`, `estimators`, `limits`,
+//! Each section is a file: `verdict`, `checks`, `calibration`, `gravity`, `gains`, `parameters`, `motors`, `estimators`, `limits`,
 //! `validation`, `inputs`, `residuals`, `elimination`, `conditioning`, `trajectories`, `tracking`, `data`.
 //! Sections that have nothing to show are left out.
 
@@ -14,6 +14,7 @@ mod data;
 mod elimination;
 mod estimators;
 mod gains;
+mod gravity;
 mod header;
 mod inputs;
 mod limits;
@@ -80,6 +81,7 @@ pub fn page(contents: &Contents<'_>) -> String {
         verdict::section(contents),
         checks::section(contents),
         calibration::section(contents),
+        gravity::section(contents),
         gains::section(contents),
         parameters::section(contents),
         motors::section(contents),

@@ -162,8 +162,8 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
     for words in [
         "Case 1, recommended parameters: use it for what is listed. Case 2, recommended parameters: do not use it.",
         "To be used: m_platformR.",
-        "One parameter is biased Shown here.",
-        "leg1: clipped Shown here.",
+        "One parameter is biased. Shown here.",
+        "leg1: clipped. Shown here.",
         "All base parameters: use it.",
         "The gains are right",
     ] {
@@ -336,6 +336,7 @@ fn an_identification_without_anything_still_has_a_page() {
         verdicts: Vec::new(),
         thresholds: Thresholds::default(),
         calibration: None,
+        gravity: None,
         gains: Vec::new(),
         gain_parameters: Vec::new(),
         motors: Vec::new(),

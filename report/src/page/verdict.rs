@@ -9,10 +9,10 @@ use super::{
 };
 use crate::{
     choice::stage_name,
-    judgement::{grade_words, objections, passed},
+    judgement::{grade_words, passed},
     text::escape,
 };
-use overact_identification::{Check, Grade, Identification, StageVerdict, Verdict};
+use overact_identification::{Check, Grade, Identification, StageVerdict, Verdict, objections};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
@@ -29,7 +29,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
 }
 
 /// The verdict in a sentence for each model.
-fn summary(identification: &Identification) -> String {
+pub(super) fn summary(identification: &Identification) -> String {
     let verdicts = &identification.verdicts;
     if verdicts.is_empty() {
         return String::from("Nothing was judged: the numbers below have to speak for themselves.");
@@ -83,8 +83,8 @@ fn listed(names: &[String]) -> String {
 
 /// What speaks against a model, each with a link to what shows it; else that nothing does.
 fn reasons(identification: &Identification, verdict: &Verdict) -> String {
-    let objections = objections(identification, verdict.model, verdict.stage);
-    if objections.is_empty() {
+    let found = objections(&identification.checks, verdict.model, verdict.stage);
+    if found.told.is_empty() {
         let count = passed(identification, verdict.model, verdict.stage);
         return match count {
             0 => String::new(),
@@ -99,12 +99,24 @@ fn reasons(identification: &Identification, verdict: &Verdict) -> String {
     let reason = |(number, check): &(usize, &Check)| {
         format!(
             "<li>{} <a href=\"#{}\">Shown here.</a></li>",
-            prose(&capital(&check.located())),
+            prose(&sentence(&check.located())),
             checks::id(*number)
         )
     };
-    let reasons: String = objections.iter().map(reason).collect();
+    let mut reasons: String = found.told.iter().map(reason).collect();
+    if let Some(rest) = found.rest() {
+        let _ = write!(reasons, "<li>{}</li>", prose(&sentence(&rest)));
+    }
     format!("<ul>{reasons}</ul>")
+}
+
+/// Words as a sentence.
+fn sentence(words: &str) -> String {
+    let words = capital(words);
+    match words.ends_with(['.', '?', '!']) {
+        true => words,
+        false => words + ".",
+    }
 }
 
 /// The other stages, where something else is to be said of them.

@@ -18,6 +18,10 @@ const HEIGHT: f64 = 230.0;
 /// Where the axes begin and end: left, right, top, bottom.
 const FRAME: [f64; 4] = [50.0, WIDTH - 10.0, 26.0, HEIGHT - 40.0];
 
+/// Height of a threshold's name, and the highest place for one, below the title.
+const NAME: f64 = 12.0;
+const HIGHEST_NAME: f64 = 28.0;
+
 /// How a line looks; the page's style sheet has a class for each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Look {
@@ -33,12 +37,20 @@ pub(crate) enum Look {
     Second,
     /// A third one.
     Third,
-    /// A fourth one, and all others.
+    /// A fourth one.
     Fourth,
+    /// A fifth one.
+    Fifth,
+    /// A sixth one.
+    Sixth,
+    /// A seventh one.
+    Seventh,
+    /// All others.
+    Other,
 }
 
 impl Look {
-    /// How many looks there are for lines of equal standing.
+    /// How many lines of equal standing a chart of the page has at most.
     pub(crate) const EQUALS: usize = 4;
 
     /// The looks of lines of equal standing, in order.
@@ -47,7 +59,11 @@ impl Look {
             0 => Self::First,
             1 => Self::Second,
             2 => Self::Third,
-            _ => Self::Fourth,
+            3 => Self::Fourth,
+            4 => Self::Fifth,
+            5 => Self::Sixth,
+            6 => Self::Seventh,
+            _ => Self::Other,
         }
     }
 
@@ -61,6 +77,10 @@ impl Look {
             Self::Second => "second",
             Self::Third => "third",
             Self::Fourth => "fourth",
+            Self::Fifth => "fifth",
+            Self::Sixth => "sixth",
+            Self::Seventh => "seventh",
+            Self::Other => "other",
         }
     }
 }
@@ -168,16 +188,19 @@ impl Chart {
         let y = self.y.scale(heights, (bottom, top), 5, false);
         let mut svg = opening(WIDTH, HEIGHT, &self.title, &self.description);
         svg.push_str(&self.axes(&x, &y));
+        let across = |rule: &&Rule| !rule.is_vertical;
         for rule in &self.rules {
             svg.push_str(&if rule.is_vertical {
                 drawn_vertical(rule, &x)
             } else {
-                drawn_rule(rule, &self.lines, &y)
+                drawn_rule(rule, &y)
             });
         }
         for line in &self.lines {
             svg.push_str(&drawn_line(line, &x, &y));
         }
+        let rules: Vec<&Rule> = self.rules.iter().filter(across).collect();
+        svg.push_str(&rule_names(&rules, &self.lines, &y));
         svg.push_str("</svg>");
         svg
     }
@@ -241,32 +264,58 @@ pub(super) fn opening(width: f64, height: f64, title: &str, description: &str) -
     )
 }
 
-/// A threshold with its name, which stands at the end where the lines are farther from it.
-fn drawn_rule(rule: &Rule, lines: &[Line], y: &Scale) -> String {
+/// A threshold.
+fn drawn_rule(rule: &Rule, y: &Scale) -> String {
     let [left, right, ..] = FRAME;
-    let Some(at) = y.at(rule.value) else {
-        return String::new();
+    let drawn = |at: f64| {
+        let (left, right) = (short(left), short(right));
+        format!("<path class=\"rule\" d=\"M{left} {at:.1}H{right}\"/>")
     };
+    y.at(rule.value).map_or_else(String::new, drawn)
+}
+
+/// The names of thresholds, each at the end of its line where the others are farther from it, above it or below;
+/// where another name or the title stands there already, at the next free place.
+fn rule_names(rules: &[&Rule], lines: &[Line], y: &Scale) -> String {
+    let [left, right, _, bottom] = FRAME;
+    let mut taken: Vec<(bool, f64)> = Vec::new();
+    let mut svg = String::new();
+    for rule in rules {
+        let Some(at) = y.at(rule.value) else { continue };
+        let first = stands_left(at, lines, y);
+        let places = [first, !first].map(|side| [(side, at - 4.0), (side, at + NAME)]);
+        let is_free = |place: &(bool, f64)| {
+            let apart =
+                |other: &(bool, f64)| other.0 != place.0 || (other.1 - place.1).abs() >= NAME;
+            (HIGHEST_NAME..bottom).contains(&place.1) && taken.iter().all(apart)
+        };
+        let free = places.as_flattened().iter().find(|place| is_free(place));
+        let place = *free.unwrap_or(&places[0][0]);
+        taken.push(place);
+        let (x, anchor) = match place.0 {
+            true => (left + 2.0, "start"),
+            false => (right - 2.0, "end"),
+        };
+        let _ = write!(
+            svg,
+            "<text class=\"tick rule-name\" x=\"{}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
+            short(x),
+            place.1,
+            escape(&rule.label)
+        );
+    }
+    svg
+}
+
+/// Whether lines are farther from a threshold on the left than on the right.
+fn stands_left(at: f64, lines: &[Line], y: &Scale) -> bool {
     let nearest = |end: fn(&Line) -> Option<&(f64, f64)>| {
         let heights = lines.iter().filter_map(|line| y.at(end(line)?.1));
         heights
             .map(|height| (height - at).abs())
             .fold(f64::INFINITY, f64::min)
     };
-    let is_left = nearest(|line| line.points.first()) > nearest(|line| line.points.last());
-    let (place, anchor) = if is_left {
-        (left + 2.0, "start")
-    } else {
-        (right - 2.0, "end")
-    };
-    format!(
-        "<path class=\"rule\" d=\"M{} {at:.1}H{}\"/><text class=\"tick rule-name\" x=\"{}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
-        short(left),
-        short(right),
-        short(place),
-        at - 4.0,
-        escape(&rule.label)
-    )
+    nearest(|line| line.points.first()) > nearest(|line| line.points.last())
 }
 
 /// A mark on the horizontal axis, its name on the side where there is more room.
@@ -354,6 +403,30 @@ mod tests {
         assert_eq!(dots.count(), 3);
         let name = document.root_element().attribute("aria-label");
         assert_eq!(name, Some("τ & <b>: what \"it\" shows"));
+    }
+
+    #[test]
+    fn names_of_thresholds_do_not_stand_on_each_other_nor_on_the_title() {
+        let mut chart = chart(vec![(0.0, 1.0), (1.0, 1000.0)]);
+        let close = [999.0, 10.0, 10.5, 10.9, 11.0];
+        chart.rules = close.map(|value| Rule::horizontal(value, "name")).to_vec();
+        let svg = chart.svg();
+        let document = roxmltree::Document::parse(&svg).expect("XML");
+        let names = document
+            .descendants()
+            .filter(|node| node.attribute("class") == Some("tick rule-name"));
+        let places: Vec<(&str, f64)> = names
+            .filter_map(|node| Some((node.attribute("x")?, node.attribute("y")?.parse().ok()?)))
+            .collect();
+        assert_eq!(places.len(), close.len());
+        for (index, (side, height)) in places.iter().enumerate() {
+            assert!(*height >= super::HIGHEST_NAME, "{places:?}");
+            let mut others = places.iter().skip(index + 1);
+            assert!(
+                !others.any(|(other, own)| other == side && (own - height).abs() < 11.9),
+                "{places:?}"
+            );
+        }
     }
 
     #[test]

@@ -23,6 +23,8 @@ pub(super) struct Frame {
     pub(super) harmonics: usize,
     /// Whether the payload is on the platform.
     pub(super) payload: bool,
+    /// Name of the payload, where there are several.
+    pub(super) payload_name: Option<String>,
     /// Duration where the run has its own, s.
     pub(super) own_duration: Option<f64>,
     /// Duration, s.
@@ -53,6 +55,7 @@ pub(super) fn described(
             fundamental: run.fundamental,
             harmonics: harmonics.unwrap_or(1),
             payload: run.payload,
+            payload_name: run.payload_name.clone(),
             own_duration: run.duration,
             duration: run.duration.unwrap_or(experiment.duration),
         };
@@ -95,6 +98,7 @@ pub(super) fn wanted(
     let taken: BTreeSet<&str> = held_out.map(|run| run.name.value.as_str()).collect();
     let numbers = (1..).map(|number| format!("excitation {number}"));
     let names = numbers.filter(|name| !taken.contains(name.as_str()));
+    let named = || description.payloads.iter().map(|name| name.value.clone());
     let frame = |(index, name): (usize, String)| {
         let like = described
             .get(index % described.len().max(1))
@@ -110,6 +114,10 @@ pub(super) fn wanted(
             payload: match like.filter(|_| count == described.len()) {
                 Some(frame) => frame.payload,
                 None => second_half,
+            },
+            payload_name: match like.filter(|_| count == described.len()) {
+                Some(frame) => frame.payload_name.clone(),
+                None => named().next().filter(|_| second_half),
             },
             own_duration: like.and_then(|frame| frame.own_duration),
             duration: like.map_or(duration, |frame| frame.duration),

@@ -17,8 +17,10 @@ pub(super) fn tables(runs: &[(Frame, Trajectory)], coordinates: &[(&str, String,
     let mut text = COMMENT.to_owned();
     for (frame, trajectory) in runs {
         let mut table = format!("\n[[experiment.run]]\nname = \"{}\"\n", frame.name);
-        if frame.payload {
-            table += "payload = true\n";
+        match &frame.payload_name {
+            Some(name) => _ = writeln!(table, "payload = \"{name}\""),
+            None if frame.payload => table += "payload = true\n",
+            None => {}
         }
         if let Some(duration) = frame.own_duration {
             let _ = writeln!(table, "duration = \"{duration} s\"");

@@ -19,6 +19,7 @@ robot!(ankle_offset: AnkleOffset);
 robot!(delta: Delta);
 robot!(delta_4: Delta4);
 robot!(dvrk_mtm: DvrkMtm);
+robot!(excavator: Excavator);
 robot!(four_bar: FourBar);
 robot!(hexapod: Hexapod);
 robot!(kuka_lwr: KukaLwr);
@@ -55,6 +56,7 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
         "dualv" => &DualV,
         "dvrk_mtm" => &DvrkMtm,
         "emps" => &Emps,
+        "excavator" => &Excavator,
         "five_bar" => &FiveBar,
         "four_bar" => &FourBar,
         "hexapod" => &Hexapod,

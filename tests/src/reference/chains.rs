@@ -35,11 +35,10 @@ fn turned(axes: &Frame, of: &Vector6<f64>) -> Vector6<f64> {
 
 /// The two sides of a chain's cut, and the frame in whose axes its equations are.
 fn sides(leg: &Leg, k: usize, bodies: &[Vec<BodyMotion>]) -> (BodyMotion, BodyMotion, Frame) {
-    let skeleton = &bodies[0];
-    let other = leg.body.map_or(skeleton[0], |body| skeleton[body]);
+    let other = leg.body.map_or(bodies[0][0], |(of, body)| bodies[of][body]);
     let axes = leg
         .carrier
-        .map_or_else(Frame::identity, |body| skeleton[body].frame);
+        .map_or_else(Frame::identity, |(of, body)| bodies[of][body].frame);
     let own = end_from_leg(leg, &bodies[k]);
     (own, end_from_platform(leg, &other), axes)
 }
@@ -135,7 +134,8 @@ pub fn jacobians(mechanism: &Mechanism, q: &DVector<f64>) -> Result<Jacobians, E
         } else {
             let own = all.ends.rows(first, count).select_rows(&end_rows(k, leg)?);
             let square = own.columns(range.start, range.len()).into_owned();
-            (square, -own.columns(0, dof))
+            let before = all.joints.rows(0, range.start);
+            (square, -own.columns(0, range.start) * before)
         };
         all.legs
             .view_mut((range.start, range.start), square.shape())

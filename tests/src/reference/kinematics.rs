@@ -178,7 +178,7 @@ pub fn all_legs(
     let mut all: Vec<Vec<BodyMotion>> = Vec::new();
     for (leg, range) in mechanism.legs.iter().zip(mechanism.leg_ranges()) {
         let base = match leg.carrier {
-            Some(body) => all[0][body].carried(leg.base),
+            Some((of, body)) => all[of][body].carried(leg.base),
             None => BodyMotion::at_rest(leg.base),
         };
         let own = [q, qd, qdd].map(|all| &all.as_slice()[range.clone()]);

@@ -202,10 +202,10 @@ pub enum End {
 pub struct Leg {
     /// Placement of the leg's base in the robot's base frame, or in that of its carrier.
     pub base: Frame,
-    /// The body of the first leg that carries the base; none is the ground.
-    pub carrier: Option<usize>,
-    /// The body of the first leg that the end meets; none is the platform.
-    pub body: Option<usize>,
+    /// The body that carries the base, as its leg, one of those before, and its joint; none is the ground.
+    pub carrier: Option<(usize, usize)>,
+    /// The body that the end meets, as its leg, one of those before, and its joint; none is the platform.
+    pub body: Option<(usize, usize)>,
     /// Joints; every antecedent comes before its successors.
     pub joints: Vec<Joint>,
     /// How the leg meets the platform.

@@ -188,15 +188,20 @@ pub fn tree_torques(
         .iter()
         .zip(mechanism.leg_ranges())
         .enumerate();
-    // Chains come before the bodies that carry them.
+    // Chains come before the legs that carry them.
     for (k, (leg, range)) in legs.rev() {
         let own = &parameters.as_slice()[leg_start(mechanism, k)..leg_start(mechanism, k + 1)];
         let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[range.clone()]);
-        let borne: &[_] = if k == 0 { &loads } else { &[] };
-        let (torques, base) = leg_torques(leg, &motions[k], motion, own, &mechanism.gravity, borne);
+        let borne: Vec<(usize, Wrench)> = loads
+            .iter()
+            .filter(|((of, _), _)| *of == k)
+            .map(|((_, body), load)| (*body, *load))
+            .collect();
+        let (torques, base) =
+            leg_torques(leg, &motions[k], motion, own, &mechanism.gravity, &borne);
         let torques = torques + known_torques(leg, motion[0]);
         all.rows_mut(range.start, range.len()).copy_from(&torques);
-        loads.extend(leg.carrier.map(|body| (body, base)));
+        loads.extend(leg.carrier.map(|carrier| (carrier, base)));
     }
     all
 }
@@ -238,18 +243,19 @@ pub fn projected_platform_wrench(
     mechanism.motion.twist_basis().transpose() * platform_wrench(mechanism, state, parameters)
 }
 
-/// Torques of the first leg that bears a load and has no parameters of its own.
+/// Torques of a leg that bears a load and has no parameters of its own, and what its base has to bear.
 fn carried_torques(
     mechanism: &Mechanism,
     state: &State,
+    k: usize,
     bodies: &[BodyMotion],
     load: (usize, Wrench),
-) -> DVector<f64> {
-    let leg = &mechanism.legs[0];
-    let count = leg.variables().len();
-    let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[..count]);
+) -> (DVector<f64>, Wrench) {
+    let leg = &mechanism.legs[k];
+    let range = mechanism.leg_ranges()[k].clone();
+    let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[range.clone()]);
     let none = vec![0.0; BODY * leg.joints.len()];
-    leg_torques(leg, bodies, motion, &none, &mechanism.gravity, &[load]).0
+    leg_torques(leg, bodies, motion, &none, &mechanism.gravity, &[load])
 }
 
 /// Right-hand side [τ_t; τ_pr] of (16) for every unit parameter, (n_t + r) x n_st.
@@ -275,11 +281,15 @@ pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
             columns
                 .view_mut((range.start, column), (range.len(), 1))
                 .copy_from(&torques);
-            if let Some(body) = leg.carrier {
-                let borne = carried_torques(mechanism, state, &motions[0], (body, base));
+            let (mut carrier, mut load) = (leg.carrier, base);
+            while let Some((of, body)) = carrier {
+                let (borne, base) =
+                    carried_torques(mechanism, state, of, &motions[of], (body, load));
+                let first = mechanism.leg_ranges()[of].start;
                 columns
-                    .view_mut((0, column), (borne.len(), 1))
+                    .view_mut((first, column), (borne.len(), 1))
                     .copy_from(&borne);
+                (carrier, load) = (mechanism.legs[of].carrier, base);
             }
         }
     }

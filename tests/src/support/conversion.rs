@@ -67,8 +67,8 @@ fn leg(leg: &mechanism::Leg, start: &[f64]) -> Leg {
     };
     Leg {
         base: frame(&leg.base),
-        carrier: leg.base_body,
-        body: leg.end_body,
+        carrier: leg.base_body.map(|body| (body.leg, body.joint)),
+        body: leg.end_body.map(|body| (body.leg, body.joint)),
         joints,
         end,
         start: start.to_vec(),

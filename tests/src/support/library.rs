@@ -21,6 +21,7 @@ macro_rules! library {
             dualv: DualV,
             dvrk_mtm: DvrkMtm,
             emps: Emps,
+            excavator: Excavator,
             five_bar: FiveBar,
             four_bar: FourBar,
             hexapod: Hexapod,

@@ -13,6 +13,7 @@ pub mod random;
 pub mod rank;
 pub mod sample;
 pub mod served;
+pub mod whole;
 
 pub use agreement::Agreement;
 pub use backend::{Backend, Evaluated};

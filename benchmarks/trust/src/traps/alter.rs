@@ -47,6 +47,36 @@ pub(super) fn drop_samples(record: &mut Record, part: f64) {
     record.time.truncate(samples);
 }
 
+/// Shifts the torque of one actuator alone so that it comes late by so many seconds; it begins with what it was
+/// first.
+pub(super) fn late_drive(record: &mut Record, actuator: usize, seconds: f64) {
+    let n = record.actuators.len();
+    let shift = (seconds * record.sampling_hz).round() as usize;
+    let own: Vec<f64> = record.torques[actuator..]
+        .iter()
+        .step_by(n)
+        .copied()
+        .collect();
+    let places = record.torques[actuator..].iter_mut().step_by(n);
+    for (sample, place) in places.enumerate() {
+        *place = own[sample.saturating_sub(shift)];
+    }
+}
+
+/// Changes the torque of an actuator by the part of the run's time that has passed.
+pub(super) fn torque_in_time(
+    record: &mut Record,
+    actuator: usize,
+    change: impl Fn(f64, f64) -> f64,
+) {
+    let n = record.actuators.len();
+    let samples = record.torques.len() / n;
+    let own = record.torques[actuator..].iter_mut().step_by(n);
+    for (sample, torque) in own.enumerate() {
+        *torque = change(*torque, sample as f64 / samples as f64);
+    }
+}
+
 /// Changes the torque of an actuator.
 pub(super) fn torque(record: &mut Record, actuator: usize, change: impl Fn(f64) -> f64) {
     let n = record.actuators.len();

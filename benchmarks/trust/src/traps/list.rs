@@ -73,7 +73,7 @@ impl Trap {
 pub fn traps(robot: &str) -> Vec<Trap> {
     let mut all = timing();
     all.extend(drives());
-    all.extend(encoders());
+    all.extend(encoders(first_actuator(robot)));
     all.extend(missing());
     all.extend(labels(robot));
     all.extend(geometry(robot));
@@ -88,6 +88,9 @@ fn timing() -> Vec<Trap> {
             alter::lag(run, 5e-3);
         }),
         Trap::each("positions 2 ms late", |run| alter::late(run, -2e-3)),
+        Trap::each("torque of drive 2 alone 2 ms late", |run| {
+            alter::late_drive(run, 1, 2e-3);
+        }),
         Trap::each("3 % of the samples dropped and restamped", |run| {
             alter::drop_samples(run, 0.03);
         }),
@@ -130,6 +133,31 @@ fn drives() -> Vec<Trap> {
             alter::torque(run, 0, |_| 0.0);
         }),
         Trap::each("all torques zero", |run| run.torques.fill(0.0)),
+        Trap::each("gain of drive 1 falls by 10 % during each run", |run| {
+            alter::torque_in_time(run, 0, |torque, part| torque * (1.0 - 0.1 * part));
+        }),
+        Trap::each("torque of drive 1 zero for 1 % of the time", |run| {
+            alter::torque_in_time(run, 0, |torque, part| {
+                if (0.40..0.41).contains(&part) {
+                    0.0
+                } else {
+                    torque
+                }
+            });
+        }),
+        Trap::each("a collision at drive 1, for 1 % of the time", |run| {
+            let peak = run
+                .torques
+                .iter()
+                .fold(0.0, |most: f64, t| most.max(t.abs()));
+            alter::torque_in_time(run, 0, |torque, part| {
+                if (0.60..0.61).contains(&part) {
+                    torque + peak
+                } else {
+                    torque
+                }
+            });
+        }),
         Trap::each("torque of drive 2 in the column of drive 1, too", |run| {
             let n = run.actuators.len();
             run.torques
@@ -139,14 +167,28 @@ fn drives() -> Vec<Trap> {
     ]
 }
 
-fn encoders() -> Vec<Trap> {
+/// What the first actuator of a robot is called, of those whose reports tell offsets of encoders.
+fn first_actuator(robot: &str) -> &'static str {
+    match robot {
+        "FiveBar" => "left",
+        "Rx90" => "1",
+        _ => "leg1",
+    }
+}
+
+fn encoders(first: &'static str) -> Vec<Trap> {
     let degree = 1_f64.to_radians();
     vec![
         Trap::each("encoder 1 off by 0.2 deg", move |run| {
             alter::position(run, 0, |q| q + 0.2 * degree);
-        }),
+        })
+        .sized(CheckKind::EncoderOffset, first, 0.2 * degree),
         Trap::each("encoder 1 off by 1 deg", move |run| {
             alter::position(run, 0, |q| q + degree);
+        })
+        .sized(CheckKind::EncoderOffset, first, degree),
+        Trap::each("encoder 1 out of centre by 0.01 rad", |run| {
+            alter::position(run, 0, |q| q + 0.01 * q.sin());
         }),
         Trap::each("encoders of 12 bits", |run| {
             let step = std::f64::consts::TAU / 4096.0;

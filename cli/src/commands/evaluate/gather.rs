@@ -6,19 +6,12 @@ use crate::{
     failure::{Failure, Problem},
     states::States,
 };
-use overact::{Function, Model, math::wrap_angle};
+use overact::{Function, Model};
 use overact_codegen::{
     derivation::MotionInput,
     lowering::{Array, Program},
 };
 use overact_robot::InterpretedRobot;
-
-/// Forward kinematics walks towards far actuators in steps of this size (rad, m), so that the
-/// assembly mode stays that of the start.
-const STEP: f64 = 0.05;
-
-/// Most steps of such a walk.
-const STEPS: usize = 200;
 
 /// Most quantities of a state that a message names.
 const MOST_NAMED: usize = 12;
@@ -194,7 +187,7 @@ impl Gatherer<'_> {
         };
         let mut first = None;
         for mut pose in starts {
-            match walk(self.robot, actuators, &mut pose) {
+            match self.robot.follow_actuators(actuators, &mut pose) {
                 Ok(()) => {
                     self.previous.clone_from(&pose);
                     return Ok(pose);
@@ -221,45 +214,4 @@ impl Gatherer<'_> {
         done.map_err(|error| self.states.problem(at, &error.error.to_string()))?;
         Ok(joints)
     }
-}
-
-/// Forward kinematics in small steps from the start's actuators to the wanted ones. Should the
-/// straight way leave the workspace, the wanted ones are tried at once.
-fn walk(
-    robot: &InterpretedRobot,
-    actuators: &[f64],
-    pose: &mut Vec<f64>,
-) -> Result<(), overact::Error> {
-    let info = robot.info();
-    let mut from = vec![0.0; actuators.len()];
-    robot
-        .evaluate(Function::ActuatorPositions, &[pose.as_slice()], &mut from)
-        .map_err(|error| error.error)?;
-    let difference = |((to, from), revolute): ((&f64, &f64), &bool)| {
-        if *revolute {
-            wrap_angle(to - from)
-        } else {
-            to - from
-        }
-    };
-    let way: Vec<f64> = actuators
-        .iter()
-        .zip(&from)
-        .zip(info.actuator_is_revolute)
-        .map(difference)
-        .collect();
-    let far = way.iter().fold(0.0_f64, |far, step| far.max(step.abs()));
-    // A cast from a float saturates.
-    let steps = ((far / STEP).ceil() as usize).clamp(1, STEPS);
-    let mut at = pose.clone();
-    for step in 1..steps {
-        let part = step as f64 / steps as f64;
-        let target: Vec<f64> = from.iter().zip(&way).map(|(f, w)| f + part * w).collect();
-        if robot.pose_from_actuators(&target, &mut at).is_err() {
-            return robot.pose_from_actuators(actuators, pose);
-        }
-    }
-    robot.pose_from_actuators(actuators, &mut at)?;
-    *pose = at;
-    Ok(())
 }

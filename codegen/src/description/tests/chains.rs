@@ -1,6 +1,7 @@
 //! Errors of chains: bodies that are not there, chains that join nothing, a skeleton in the wrong place.
 
 use super::{good, listed};
+use crate::description::BodyIndex;
 
 /// An arm of two joints and a rod between two of its bodies; `base` and `end` are the lines of its tables.
 fn robot(base: &str, end: &str) -> String {
@@ -40,12 +41,13 @@ shape = "rod"
 fn a_chain_knows_its_bodies() {
     let description = good(&robot("body = \"upper\"", "body = \"fore\""));
     let chain = &description.legs[1];
-    assert_eq!((chain.base_body, chain.end_body), (Some(0), Some(1)));
+    let body = |leg, joint| Some(BodyIndex { leg, joint });
+    assert_eq!((chain.base_body, chain.end_body), (body(0, 0), body(0, 1)));
     let description = good(&robot("at = [0, 0, 0]", "body = \"fore\""));
     assert_eq!(description.legs[1].base_body, None);
     let description = good(&robot("body = \"ground\"", "body = \"upper\""));
     let chain = &description.legs[1];
-    assert_eq!((chain.base_body, chain.end_body), (None, Some(0)));
+    assert_eq!((chain.base_body, chain.end_body), (None, body(0, 0)));
 }
 
 #[test]
@@ -57,6 +59,47 @@ fn bodies_that_are_not_there() {
     let expected = "20:8 the skeleton `arm` has no body `hand`; bodies have the names of their joints: \
                     upper, fore, ground";
     assert_eq!(errors, [expected]);
+}
+
+/// The arm with a second rod, placed after the first, between two bodies.
+fn two_rods(base: &str, end: &str) -> String {
+    let one = robot("", "body = \"fore\"");
+    let other = robot(base, end);
+    let (_, other) = other.split_once("[leg.rod]").expect("a rod");
+    let (shape, _) = other.split_once("[[place]]").expect("a place");
+    let shape = shape
+        .replace("[leg.rod", "[leg.second")
+        .replace("[[leg.rod", "[[leg.second");
+    format!("{one}[leg.second]{shape}[[place]]\nname = \"second\"\nshape = \"second\"\n")
+}
+
+#[test]
+fn chains_on_chains() {
+    let description = good(&two_rods("body = \"rod.1\"", "body = \"rod.2\""));
+    let chain = &description.legs[2];
+    let body = |leg, joint| Some(BodyIndex { leg, joint });
+    assert_eq!((chain.base_body, chain.end_body), (body(1, 0), body(1, 1)));
+    let errors = listed(&two_rods("body = \"rod.3\"", "body = \"fore\""));
+    let expected = "the chain `rod` has no body `3`; bodies have the names of their joints: 1, 2";
+    assert!(errors[0].ends_with(expected), "{errors:?}");
+    let errors = listed(&two_rods("body = \"rode.1\"", "body = \"fore\""));
+    let expected = "no chain `rode` is placed before this one; did you mean `rod`?";
+    assert!(errors[0].ends_with(expected), "{errors:?}");
+    let errors = listed(&two_rods("body = \"second.1\"", "body = \"fore\""));
+    let expected = "no chain `second` is placed before this one; chains are solved in the order of their \
+                    places, so a body that carries a chain stands in the skeleton or in a chain that is \
+                    placed before";
+    assert!(errors[0].ends_with(expected), "{errors:?}");
+    // Of two chains that name each other one is not there yet.
+    let both = two_rods("body = \"rod.1\"", "body = \"fore\"");
+    let turned = both.replacen(
+        "[leg.rod.end]\nbody = \"fore\"",
+        "[leg.rod.end]\nbody = \"second.1\"",
+        1,
+    );
+    let errors = listed(&turned);
+    let expected = "the chain `second` is not placed before the one that it carries";
+    assert!(errors[0].contains(expected), "{errors:?}");
 }
 
 #[test]

@@ -15,6 +15,30 @@ use crate::diagnostic::Diagnostic;
 use motions::{Motions, listed};
 use nalgebra::DMatrix;
 
+/// What a leg is called, and what it ends on: legs end on the platform, chains on a body.
+struct Words {
+    kind: &'static str,
+    carrier: &'static str,
+    carriers: &'static str,
+}
+
+impl Words {
+    const fn of(leg: &description::Leg) -> Self {
+        match leg.end_body {
+            None => Self {
+                kind: "leg",
+                carrier: "the platform",
+                carriers: "the platform's",
+            },
+            Some(_) => Self {
+                kind: "chain",
+                carrier: "its second body",
+                carriers: "its second body's",
+            },
+        }
+    }
+}
+
 /// A leg that is wrong in every configuration. The error stands at the leg's shape, where it is made.
 pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
     let name = |joint: usize| format!("`{}`", leg.joints[joint].name.value);
@@ -25,7 +49,12 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
             _ => format!("joints {}", listed(&all)),
         }
     };
-    let shape = &leg.shape_name;
+    let Words {
+        kind,
+        carrier,
+        carriers,
+    } = Words::of(leg);
+    let shape = format!("{kind} `{}`", leg.shape_name);
     let at = |joint: usize| leg.joints[joint].d.span.clone();
     let verb = |joints: &[usize], one: &'static str, more: &'static str| match joints {
         [_] => one,
@@ -34,7 +63,7 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
     match defect {
         Defect::Branch(joints) => Diagnostic::new(
             format!(
-                "{} of leg `{shape}` {} on a branch that does not lead to the leg's end",
+                "{} of {shape} {} on a branch that does not lead to the {kind}'s end",
                 names(joints),
                 verb(joints, "is", "are")
             ),
@@ -44,7 +73,7 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
         .help("let it follow other joints, such as theta = \"-q2\", or put the joint that carries the leg's end last"),
         Defect::Idle(joints) => Diagnostic::new(
             format!(
-                "{} of leg `{shape}` never {} the leg's end",
+                "{} of {shape} never {} the {kind}'s end",
                 names(joints),
                 verb(joints, "moves", "move")
             ),
@@ -60,20 +89,23 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
                 ("turn about the same axis", "the link between them has no length: give the second a `d`, or turn its axis by `alpha`")
             };
             Diagnostic::new(
-                format!("joints {} and {} of leg `{shape}` always {what}", name(*first), name(*second)),
+                format!("joints {} and {} of {shape} always {what}", name(*first), name(*second)),
                 at(*second),
             )
             .label("together they move nothing, so their positions are never determined")
             .help(way)
         }
         Defect::Stiff { motions, needed } => Diagnostic::new(
-            format!("leg `{shape}` has too few joints to follow the platform's motion"),
+            format!("{shape} has too few joints to follow {carriers} motion"),
             leg.joints[leg.joints.len() - 1].span.clone(),
         )
-        .label(format!("its joints give its end {motions} of the {needed} motions that the platform has there"))
-        .help("add a passive joint, choose a platform motion with fewer coordinates, or an end that leaves more free (`type`, `along`)"),
+        .label(format!("its joints give its end {motions} of the {needed} motions that {carrier} has there"))
+        .help(match leg.end_body {
+            None => "add a passive joint, choose a platform motion with fewer coordinates, or an end that leaves more free (`type`, `along`)",
+            Some(_) => "add a passive joint, or choose an end that leaves more free (`type`, `along`)",
+        }),
         Defect::Loose { joints, motions } => Diagnostic::new(
-            format!("leg `{shape}` can move while the platform stands still"),
+            format!("{shape} can move while {carrier} stands still"),
             leg.joints[leg.joints.len() - 1].span.clone(),
         )
         .label(format!("{joints} joints move an end that has only {motions} motions"))
@@ -92,15 +124,16 @@ pub(super) fn home_error(
         HomeError::Open { leg, .. } => open(description, mechanism, rough, *leg),
         HomeError::Singular { leg, condition } => {
             let leg = &description.legs[*leg];
+            let kind = Words::of(leg).kind;
             Diagnostic::new(
-                format!("leg `{}` is singular at the home configuration", leg.name.value),
+                format!("{kind} `{}` is singular at the home configuration", leg.name.value),
                 leg.span.clone(),
             )
             .label(match condition.is_finite() {
                 true => format!("its Jacobian has the condition number {condition:.1e}"),
                 false => "its Jacobian has no inverse".to_owned(),
             })
-            .help("choose a home pose where the leg is neither stretched nor folded, and joints whose motions are independent")
+            .help(format!("choose a home pose where the {kind} is neither stretched nor folded, and joints whose motions are independent"))
         }
     }
 }
@@ -114,21 +147,26 @@ fn open(
 ) -> Diagnostic {
     let place = &description.legs[index];
     let leg = &mechanism.legs[index];
-    let name = &place.name.value;
+    let Words {
+        kind,
+        carrier,
+        carriers,
+    } = Words::of(place);
+    let name = format!("{kind} `{}`", place.name.value);
     let error = |message: String| Diagnostic::new(message, place.span.clone());
-    let Some(target) = mechanism.target(index, &rough.pose) else {
-        return error(format!("leg `{name}` has no end"));
+    let Some(target) = mechanism.target(index, &rough.pose, &rough.joints) else {
+        return error(format!("{name} has no end"));
     };
     match look(leg, &rough.joints[mechanism.leg_range(index)], &target) {
-        Reach::Elsewhere(joints) => error(format!("leg `{name}` does not close from its rough home"))
+        Reach::Elsewhere(joints) => error(format!("{name} does not close from its rough home"))
             .label("it closes elsewhere")
             .help(format!("give home = {}, or another place near the wanted working mode", home(leg, &joints))),
-        Reach::Turned => error(format!("leg `{name}` cannot take the platform's orientation at the home pose"))
+        Reach::Turned => error(format!("{name} cannot take {carriers} orientation at the home pose"))
             .label("its end gets there, but stays turned")
             .help("check `alpha`, `base` and `end.rotation`; an end that is a spherical or universal joint has type = \"point\""),
-        Reach::Away(distance) => error(format!("leg `{name}` never reaches its place on the platform at the home pose"))
+        Reach::Away(distance) => error(format!("{name} never reaches its place on {carrier} at the home pose"))
             .label(format!("its end stays at least {} away", length(distance)))
-            .help("check the lengths of its links, its `base` and `end`, and the platform's `home`"),
+            .help(format!("check the lengths of its links, its `base` and `end`, and {carriers} `home`")),
     }
 }
 

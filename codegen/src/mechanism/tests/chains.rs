@@ -44,14 +44,18 @@ fn a_chain_that_blocks_its_skeleton() {
     assert_said(
         &text,
         "16:1",
-        &["leg `linkage` has too few joints to follow the platform's motion"],
+        &["chain `linkage` has too few joints to follow its second body's motion"],
     );
 }
 
 #[test]
 fn a_chain_that_never_closes() {
     let text = arm(&format!("{DRIVEN}{TURN}{TIP}"), "[3, 0, 0]");
-    assert_said(&text, "31:1", &["leg `linkage` never reaches its place"]);
+    assert_said(
+        &text,
+        "31:1",
+        &["chain `linkage` never reaches its place on its second body"],
+    );
 }
 
 #[test]

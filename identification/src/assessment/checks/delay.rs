@@ -3,12 +3,12 @@
 use super::{
     Context,
     level::{level, origin},
-    suspected::{harm, parabola, tested},
+    suspected::{Tested, parabola, tested, worst_harm},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Detectable},
-        suspects::{Group, Suspect},
+        suspects::{Accused, Group, Suspect},
     },
     error::Error,
     significant,
@@ -18,60 +18,104 @@ use crate::{
 /// encoder noise does to it through the controller shift torques against motion by less.
 const HARMLESS: f64 = 0.1;
 
-/// Looks for one delay of all torques.
+/// Looks for one delay of all torques, and for one of a single drive.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let place = scores
-        .suspects
-        .iter()
-        .position(|one| *one == Suspect::Delay);
-    let found = tested(scores, place.into_iter().map(Group::suspect));
-    let level = level(1);
+    let mut whose = Vec::new();
+    let mut found: Vec<Tested> = Vec::new();
+    for (place, suspect) in scores.suspects.iter().enumerate() {
+        let actuator = match *suspect {
+            Suspect::Delay => None,
+            Suspect::Late(actuator) => Some(actuator),
+            _ => continue,
+        };
+        for one in tested(scores, std::iter::once(Group::suspect(place))) {
+            whose.push(actuator);
+            found.push(one);
+        }
+    }
+    let level = level(found.len());
     let intervals = context.dataset.runs.iter();
     let intervals = intervals.map(|run| HARMLESS / run.sampling_frequency());
     let harmless = intervals.fold(0.0, f64::max);
-    let checks = found.iter().map(|one| {
-        let accused = &one.accused;
+    let beyond = |one: &&Tested| one.accused.probability_beyond(harmless) < level;
+    let guilty = found.iter().filter(beyond);
+    let guilty = guilty.max_by(|a, b| a.accused.explained.total_cmp(&b.accused.explained));
+    let Some(shown) = guilty.or(found.first()) else {
+        return Ok(Vec::new());
+    };
+    let told = Told {
+        tests: found.len(),
+        level,
+        harmless,
+    };
+    let check = told.check(&shown.accused, shown);
+    let accused = &shown.accused;
+    let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);
+    let number = |value: f64| significant(value, 3);
+    if guilty.is_none() {
+        let words = format!(
+            "torques and motion are of the same time: {} ± {} ms; a delay of {} ms would have been seen",
+            number(size),
+            number(deviation),
+            number(1e3 * (harmless + accused.visible(level)))
+        );
+        return Ok(vec![Check { words, ..check }]);
+    }
+    let place = found.iter().position(|one| std::ptr::eq(one, shown));
+    let actuator = place.and_then(|place| whose[place]);
+    let name = actuator.and_then(|actuator| context.model.info().actuators.get(actuator));
+    let harm = worst_harm(context, scores, (&found, shown), level);
+    let whose = name.map_or_else(
+        || String::from("the torques come"),
+        |name| format!("the torque of `{name}` alone comes"),
+    );
+    let words = format!(
+        "{whose} {} ms {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder, and shift the columns of the log against each other",
+        number(size.abs()),
+        if size > 0.0 { "behind" } else { "before" },
+        number(deviation),
+        harm.words()
+    );
+    let check = Check { words, ..check }.because(&harm);
+    Ok(vec![match name {
+        Some(name) => check.of_actuator(name),
+        None => check,
+    }])
+}
+
+/// What delays are held against.
+struct Told {
+    tests: usize,
+    level: f64,
+    /// A delay that is none, s.
+    harmless: f64,
+}
+
+impl Told {
+    /// The check of a delay, without words.
+    fn check(&self, accused: &Accused, one: &Tested) -> Check {
         let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);
-        let number = |value: f64| significant(value, 3);
-        let visible = 1e3 * (harmless + accused.visible(level));
-        let beyond = (size.abs() - 1e3 * harmless).max(0.0);
-        let check = Check::new(CheckKind::Delay, About::Model, "")
+        let beyond = (size.abs() - 1e3 * self.harmless).max(0.0);
+        Check::new(CheckKind::Delay, About::Model, "")
             .measured(beyond / deviation, "standard deviations")
             .against(
-                accused.quantile(level),
-                format!("{}, of what exceeds {HARMLESS} sampling intervals", origin(1)),
+                accused.quantile(self.level),
+                format!(
+                    "{}, of what exceeds {HARMLESS} sampling intervals",
+                    origin(self.tests)
+                ),
             )
             .detecting(vec![Detectable {
-                size: harmless + accused.visible(level),
-                ..one.detectable(String::new(), "s", level)
+                size: self.harmless + accused.visible(self.level),
+                ..one.detectable(String::new(), "s", self.level)
             }])
             .shown_by(parabola(
                 accused,
                 "Residual for torques that are shifted in time",
                 ("delay of the torques", "ms", 1e3),
-            ));
-        if accused.probability_beyond(harmless) >= level {
-            let words = format!(
-                "torques and motion are of the same time: {} ± {} ms; a delay of {} ms would have been seen",
-                number(size),
-                number(deviation),
-                number(visible)
-            );
-            return Check { words, ..check };
-        }
-        let harm = harm(context, scores, one);
-        let words = format!(
-            "the torques come {} ms {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder, and shift the columns against each other",
-            number(size.abs()),
-            if size > 0.0 { "behind" } else { "before" },
-            number(deviation),
-            harm.words()
-        );
-        Check { words, ..check }
-            .because(&harm)
-    });
-    Ok(checks.collect())
+            ))
+    }
 }

@@ -14,6 +14,9 @@ use crate::{
     significant,
 };
 
+/// Errors of a gain that are larger are told without a number.
+const LARGEST: f64 = 0.5;
+
 /// Tests the gain of each actuator on its own.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
@@ -68,10 +71,14 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let actuator = place.map_or("", |place| name(actuators[place]));
     let harm = worst_harm(context, scores, (&found, worst), level);
     let size = worst.accused.size();
+    let by = match size {
+        // Far from the others the first order, in which it was looked for, tells no size.
+        size if size.abs() > LARGEST => String::from("unlike"),
+        size if size < 0.0 => format!("{} % too small beside", percent(-size)),
+        size => format!("{} % too large beside", percent(size)),
+    };
     let words = format!(
-        "the torque of `{actuator}` is measured {} % too {} beside those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant and its gear ratio",
-        percent(size.abs()),
-        if size < 0.0 { "small" } else { "large" },
+        "the torque of `{actuator}` is measured {by} those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant and its gear ratio",
         percent(worst.accused.deviation),
         harm.words()
     );

@@ -3,6 +3,7 @@
 
 mod clock;
 mod closure;
+mod course;
 mod delay;
 mod gains;
 mod geometry;
@@ -92,8 +93,9 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 15] = [
+const CHECKS: [Function; 16] = [
     raw_numbers::check,
+    course::check,
     closure::check,
     torque_faults::check,
     delay::check,
@@ -119,5 +121,6 @@ pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     for check in CHECKS {
         all.extend(check(context)?);
     }
+    all.extend(relative_error::silent(context, &all));
     Ok(all)
 }

@@ -16,6 +16,31 @@ const LARGEST_PERCENT: f64 = 20.0;
 /// lies at this part of the new Nyquist frequency.
 const PASSED: f64 = 0.8;
 
+/// How many times its noise the residual may be before it has to be said that nothing explains it. Virtual
+/// robots without a fault leave 0.99 to 1.3 times the noise, with coarse encoders more.
+const SILENT: f64 = 4.0;
+
+/// Says that a residual is far beyond the noise where no check has found why.
+pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
+    if all.iter().any(|check| !check.passed) {
+        return None;
+    }
+    let base = context.estimates_of(Stage::Base).next()?;
+    let (error, ratio) = (base.relative_error_percent, times_the_noise(context));
+    let words = format!(
+        "what is left unexplained, {} % of the inputs, is {} times the noise of the torques, and nothing that was looked for explains it. Intervals tell chance alone: an error of the model or of the positions that returns with the motion is not in them. Vary the motion, and compare",
+        significant(error, 3),
+        significant(ratio, 2)
+    );
+    let check = Check::new(CheckKind::RelativeError, About::Fit, words)
+        .measured(ratio, "times the noise")
+        .against(
+            SILENT,
+            "faultless virtual robots leave 1 to 1.3 times the noise",
+        );
+    (ratio.is_finite() && ratio > SILENT).then(|| check.of_model(base.model).found())
+}
+
 /// Looks at all estimates.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let noise = noise_percent(context);
@@ -47,6 +72,14 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .allowing(if good { Grade::Use } else { Grade::DoNotUse })
     };
     Ok(context.least_squares().map(of_estimate).collect())
+}
+
+/// How many times the noise of the torques the residual of the base parameters is.
+pub(super) fn times_the_noise(context: &Context<'_>) -> f64 {
+    let base = context.estimates_of(Stage::Base).next();
+    base.map_or(f64::NAN, |base| {
+        base.relative_error_percent / noise_percent(context)
+    })
 }
 
 /// The noise of the torques in percent of the inputs of the first model.

@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// A fault that moves no parameter by so many of its deviations does no harm.
-const HARMFUL: f64 = 3.0;
+pub(super) const HARMFUL: f64 = 3.0;
 
 /// Where a fault does harm, parameters are spoiled that it moves by more than so many.
 const SPOILING: f64 = 1.0;
@@ -42,6 +42,8 @@ impl Tested {
 
 /// What a suspect does to the parameters.
 pub(super) struct Harm {
+    /// The part of the residual's square that the likeliest suspect explains.
+    pub(super) explained: f64,
     /// The largest move of a parameter by its deviation, and the parameter.
     pub(super) worst: f64,
     pub(super) parameter: String,
@@ -95,6 +97,7 @@ pub(super) fn worst_harm(
         .unwrap_or_else(Harm::none);
     Harm {
         grade: Harm::grade(spoiled.len(), count),
+        explained: guilty.accused.explained,
         spoiled,
         ..worst
     }
@@ -121,6 +124,7 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
     };
     let name = |column: usize| name(base, column);
     let mut harm = Harm {
+        explained: tested.accused.explained,
         worst,
         parameter: name(column),
         ..Harm::none()
@@ -141,7 +145,8 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
 impl Check {
     /// With the grade that a suspect's harm allows.
     pub(super) fn because(self, harm: &Harm) -> Self {
-        let check = self.allowing(harm.grade).spoiling(harm.spoiled.clone());
+        let mut check = self.allowing(harm.grade).spoiling(harm.spoiled.clone());
+        check.explained = Some(harm.explained);
         if harm.counts() { check.found() } else { check }
     }
 }
@@ -150,6 +155,7 @@ impl Harm {
     /// That of nothing.
     fn none() -> Self {
         Self {
+            explained: 0.0,
             worst: 0.0,
             parameter: String::new(),
             spoiled: Vec::new(),

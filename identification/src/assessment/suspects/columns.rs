@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use overact::Model;
 
+use super::nearby::Misreading;
 use super::shapes::{Moment, Reach, SHAPES, Shape, WAVES};
 use crate::{
     kinematics::Motion,
@@ -15,12 +16,16 @@ use crate::{
 pub(crate) enum Suspect {
     /// Torques are late by so many seconds.
     Delay,
+    /// The torque of one actuator is late by so many seconds.
+    Late(usize),
     /// The measured torque of an actuator is too large by this part of itself.
     Gain(usize),
     /// The sampling frequency is too high by this part of itself.
     Clock,
     /// The position of an actuator is too large by this angle or length.
     Offset(usize),
+    /// The position of an actuator is too large by this times its sine, or its cosine.
+    Eccentric(usize, Misreading),
     /// The position of an actuator is behind by this half of a play.
     Play(usize),
     /// A length is too large by this.
@@ -95,11 +100,20 @@ pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Ve
     let info = model.info();
     let sizes = info.sizes;
     let mut all = vec![Suspect::Delay, Suspect::Clock];
+    // Of one drive alone that is the delay of all.
+    if sizes.actuators > 1 {
+        all.extend((0..sizes.actuators).map(Suspect::Late));
+    }
     all.extend((0..sizes.actuators).map(Suspect::Gain));
     // With more actuators than degrees of freedom the closure tells.
     if sizes.actuators == sizes.dof {
         all.extend((0..sizes.actuators).map(Suspect::Offset));
         all.extend((0..sizes.actuators).map(Suspect::Play));
+        let revolute =
+            (0..sizes.actuators).filter(|&i| info.actuator_is_revolute.get(i) == Some(&true));
+        all.extend(revolute.flat_map(|i| {
+            [Misreading::Sine, Misreading::Cosine].map(|error| Suspect::Eccentric(i, error))
+        }));
     }
     all.extend((0..lengths).map(Suspect::Length));
     for actuator in 0..sizes.actuators {
@@ -135,10 +149,10 @@ pub(super) struct Sample<'a> {
     pub(super) reaches: &'a [Reach],
     /// The pose.
     pub(super) pose: &'a [f64],
-    /// By how much Γ¹ would change with the clock, with the position of each actuator, n x r, and with each
-    /// length; empty where that is not asked for.
+    /// By how much Γ¹ would change with the clock, with each error of the position of each actuator, n x errors x
+    /// r, and with each length; empty where that is not asked for.
     pub(super) clock: &'a [f64],
-    pub(super) offsets: &'a [f64],
+    pub(super) misread: &'a [f64],
     pub(super) lengths: &'a [f64],
 }
 
@@ -147,16 +161,22 @@ impl Sample<'_> {
     pub(super) fn entry(&self, suspect: Suspect, line: usize) -> f64 {
         let r = self.jacobian.len() / self.torques.len();
         let share = |actuator: usize| self.jacobian[actuator * r + line];
+        let misread = |i: usize, error: Misreading| {
+            let place = i * Misreading::ALL.len() + error as usize;
+            self.misread[place * r + line]
+        };
         let shaped = |i: usize, shape: Shape| shape.value(self.actuators[i], self.reaches[i]);
         match suspect {
             Suspect::Delay => {
                 let rates = self.torque_rates.iter().enumerate();
                 -rates.map(|(i, rate)| share(i) * rate).sum::<f64>()
             }
+            Suspect::Late(i) => -share(i) * self.torque_rates[i],
             Suspect::Gain(i) => share(i) * self.torques[i],
             Suspect::Clock => self.clock[line],
-            Suspect::Offset(i) => self.offsets[i * r + line],
-            Suspect::Play(i) => shaped(i, Shape::Sign) * self.offsets[i * r + line],
+            Suspect::Offset(i) => misread(i, Misreading::Offset),
+            Suspect::Eccentric(i, error) => misread(i, error),
+            Suspect::Play(i) => shaped(i, Shape::Sign) * misread(i, Misreading::Offset),
             Suspect::Length(length) => self.lengths[length * r + line],
             Suspect::Torque(i, shape) => share(i) * shaped(i, shape),
             Suspect::Force(own, _) if own != line => 0.0,

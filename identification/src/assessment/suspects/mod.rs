@@ -28,6 +28,7 @@
 //! - `nearby`: what the model would explain of a motion that is slightly different;
 //! - `sections`: products of columns and residual, section by section of the time;
 //! - `pairs`: residuals of actuators that hang together;
+//! - `course`: how residual and motion are spread over the time;
 //! - `scores`: one pass over the runs;
 //! - `beside`: the columns of the model beside which suspects are tested;
 //! - `scaled`: equations between columns of different units;
@@ -40,6 +41,7 @@
 mod accused;
 mod beside;
 mod columns;
+mod course;
 mod nearby;
 mod pairs;
 mod scaled;
@@ -51,6 +53,8 @@ mod test;
 
 pub(crate) use accused::Accused;
 pub(crate) use columns::Suspect;
+pub(crate) use course::Pace;
+pub(crate) use nearby::Misreading;
 pub(crate) use pairs::Correlation;
 pub(crate) use scores::{Scores, scores};
 pub(crate) use shapes::{Reach, Shape};

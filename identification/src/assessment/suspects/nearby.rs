@@ -21,6 +21,42 @@ const STEP: f64 = 1e-5;
 /// Step of the time, s.
 const INSTANT: f64 = 1e-6;
 
+/// How the error of a position depends on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Misreading {
+    /// Not at all: an offset.
+    Offset,
+    /// As its sine or its cosine: an encoder that is out of centre.
+    Sine,
+    Cosine,
+}
+
+impl Misreading {
+    /// All of them, in the order of their columns.
+    pub(super) const ALL: [Self; 3] = [Self::Offset, Self::Sine, Self::Cosine];
+
+    /// The error e(q) of unit size, and its first and second derivative along a motion: e' q̇ and e'' q̇² + e' q̈.
+    fn at(self, motion: Moment) -> [f64; 3] {
+        let Moment {
+            position,
+            velocity,
+            acceleration,
+            ..
+        } = motion;
+        let (sine, cosine) = position.sin_cos();
+        let [error, slope, bend] = match self {
+            Self::Offset => [1.0, 0.0, 0.0],
+            Self::Sine => [sine, cosine, -sine],
+            Self::Cosine => [cosine, -sine, -cosine],
+        };
+        [
+            error,
+            slope * velocity,
+            bend * velocity * velocity + slope * acceleration,
+        ]
+    }
+}
+
 /// An estimate that explains a motion.
 pub(super) struct Nearby<'a> {
     pub(super) model: &'a dyn Model,
@@ -56,7 +92,7 @@ impl<'a> Nearby<'a> {
                     self.model,
                     &parts,
                     (count, interval),
-                    motion.payload,
+                    motion.carried(),
                     (self.base, 0),
                 )
                 .map_err(|error| motion.outside(first + error.sample, error.error))?;
@@ -152,40 +188,50 @@ impl<'a> Nearby<'a> {
         Ok(all)
     }
 
-    /// By how much Y - W χ changes with the position of each actuator while its velocity and acceleration
-    /// stay, samples x n x r; `torques` are those of the actuators, `jacobians` n x r each.
-    pub(super) fn offsets(
+    /// By how much Y - W χ changes with errors of the actuators' positions, samples x n x errors x r; `torques` are
+    /// those of the actuators, `jacobians` n x r each.
+    pub(super) fn misread(
         &self,
         motion: &Motion,
         (torques, jacobians): (&[f64], &[f64]),
         actuators: &[Moment],
+        errors: &[Misreading],
     ) -> Result<Vec<f64>, Error> {
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);
         let rates: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
         let changes: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
         let here = self.left(motion, &motion.pose, torques, (&rates, &changes))?;
-        let mut all = vec![0.0; motion.samples * n * r];
-        for actuator in 0..n {
-            let mut poses = motion.pose.clone();
+        let count = errors.len();
+        let mut all = vec![0.0; motion.samples * n * count * r];
+        for (number, (actuator, error)) in (0..n)
+            .flat_map(|actuator| errors.iter().map(move |error| (actuator, error)))
+            .enumerate()
+        {
+            let (mut poses, mut rates, mut changes) =
+                (motion.pose.clone(), rates.clone(), changes.clone());
             for (sample, pose) in poses.chunks_exact_mut(sizes.pose).enumerate() {
+                let place = sample * n + actuator;
+                let [shift, rate, change] = error.at(actuators[place]);
+                rates[place] += STEP * rate;
+                changes[place] += STEP * change;
                 let jacobian = slice(jacobians, n * r, sample, 1);
                 if let Some(distribution) = least_norm(jacobian, r) {
                     let row = &distribution[actuator * r..(actuator + 1) * r];
-                    let step: Vec<f64> = row.iter().map(|part| STEP * part).collect();
+                    let step: Vec<f64> = row.iter().map(|part| STEP * shift * part).collect();
                     self.model.displace(pose, &step);
                 }
             }
             let there = self.left(motion, &poses, torques, (&rates, &changes))?;
             for (place, (a, b)) in here.iter().zip(&there).enumerate() {
                 let (sample, line) = (place / r, place % r);
-                all[(sample * n + actuator) * r + line] = (b - a) / STEP;
+                all[(sample * n * count + number) * r + line] = (b - a) / STEP;
             }
         }
         Ok(all)
     }
 
-    /// Y - W χ at other poses, of the same torques, velocities and accelerations of the actuators.
+    /// Y - W χ at other poses, velocities and accelerations of the actuators, of the same torques.
     fn left(
         &self,
         motion: &Motion,

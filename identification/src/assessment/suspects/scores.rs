@@ -10,10 +10,10 @@ use super::{
     accused::Accused,
     beside::Beside,
     columns::{Layout, Sample, Suspect, moments, rates, suspects},
-    nearby::Nearby,
+    nearby::{Misreading, Nearby},
     pairs::{Correlation, correlations},
     scaled::{Scaled, told},
-    sections::{Frame, RunScores, Sink},
+    sections::{Frame, RunScores, Sink, Tempo},
     shapes::{Reach, Shape},
 };
 use crate::{
@@ -231,8 +231,15 @@ impl Pass<'_> {
         let actuators = self.model.info().sizes.actuators;
         let mut places = decimator.stream(actuators, samples)?;
         let mut sink = Sink::new(self.frame, decimator.kept(samples));
+        let frequency = log.sampling_frequency();
+        let mut tempo = Tempo {
+            start: self.settings.skip_start as f64 / frequency,
+            interval: self.decimation as f64 / frequency,
+            velocities: vec![0.0; actuators],
+            accelerations: vec![0.0; actuators],
+        };
         while let Some(motion) = motions.next()? {
-            let (rows, positions) = self.rows(&motion)?;
+            let (rows, positions) = self.rows(&motion, &mut tempo)?;
             let mut kept: Vec<Vec<f64>> = vec![Vec::new(); lines];
             let all = streams.par_iter_mut().zip(&mut kept).zip(&rows);
             all.for_each(|((stream, kept), rows)| stream.push(rows, kept));
@@ -240,12 +247,12 @@ impl Pass<'_> {
             places.push(&positions, &mut at);
             sink.take(&kept, &at);
         }
-        Ok(sink.told())
+        Ok(sink.told(tempo))
     }
 
     /// The rows of all samples of a motion, line by line of the estimate's inputs, and the positions of the
-    /// actuators.
-    fn rows(&self, motion: &Motion) -> Result<(Vec<Vec<f64>>, Vec<f64>), Error> {
+    /// actuators, whose motion is noted.
+    fn rows(&self, motion: &Motion, tempo: &mut Tempo) -> Result<(Vec<Vec<f64>>, Vec<f64>), Error> {
         let info = self.model.info();
         let (n, r) = (info.sizes.actuators, info.sizes.dof);
         let at =
@@ -277,7 +284,7 @@ impl Pass<'_> {
                     self.model,
                     &states,
                     (count, interval),
-                    motion.payload,
+                    motion.carried(),
                     (self.base, more),
                 )
                 .map_err(at)?;
@@ -304,6 +311,7 @@ impl Pass<'_> {
             values: self.frame.values,
         };
         let [velocities, accelerations] = nearby.actuators(motion, &jacobians)?;
+        tempo.take([&velocities, &accelerations]);
         let signals: [&[f64]; 4] = [&positions, &velocities, &accelerations, &torques];
         let actuators = moments((motion, Reversal::new(self.settings)), signals);
         let clock = nearby.clock(motion)?;
@@ -312,8 +320,8 @@ impl Pass<'_> {
             .suspects
             .iter()
             .any(|one| matches!(one, Suspect::Offset(_)));
-        let offsets = match moved {
-            true => nearby.offsets(motion, (&torques, &jacobians), &actuators)?,
+        let misread = match moved {
+            true => nearby.misread(motion, (&torques, &jacobians), &actuators, &Misreading::ALL)?,
             false => Vec::new(),
         };
         let width = self.width();
@@ -328,7 +336,7 @@ impl Pass<'_> {
                 reaches: self.frame.reaches,
                 pose: slice(&motion.pose, info.sizes.pose, sample, 1),
                 clock: slice(&clock, r, sample, 1),
-                offsets: slice(&offsets, n * r, sample, 1),
+                misread: slice(&misread, Misreading::ALL.len() * n * r, sample, 1),
                 lengths: slice(&lengths, self.variants.len() * r, sample, 1),
             };
             for (line, rows) in lines.iter_mut().enumerate() {

@@ -38,6 +38,36 @@ pub(super) struct RunScores {
     /// Σ ρ², weighted, and how many equations it is of.
     pub(super) square: f64,
     pub(super) equations: usize,
+    /// ρ² of each instant, summed over the lines, weighted.
+    pub(super) squares: Vec<f64>,
+    /// How the run is timed and how the actuators move.
+    pub(super) tempo: Tempo,
+}
+
+/// The time of a run and the frequencies of its motion.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Tempo {
+    /// From the beginning of the log to the first instant, and from one to the next, s.
+    pub(super) start: f64,
+    pub(super) interval: f64,
+    /// Σ q̇² and Σ q̈² of each actuator over the samples.
+    pub(super) velocities: Vec<f64>,
+    pub(super) accelerations: Vec<f64>,
+}
+
+impl Tempo {
+    /// Notes velocities and accelerations of all actuators, sample by sample.
+    pub(super) fn take(&mut self, [velocities, accelerations]: [&[f64]; 2]) {
+        let n = self.velocities.len().max(1);
+        for (sums, values) in [
+            (&mut self.velocities, velocities),
+            (&mut self.accelerations, accelerations),
+        ] {
+            for row in values.chunks_exact(n) {
+                sums.iter_mut().zip(row).for_each(|(sum, x)| *sum += x * x);
+            }
+        }
+    }
 }
 
 impl Products {
@@ -137,8 +167,8 @@ pub(super) struct Sink<'a> {
     constants: Vec<usize>,
     products: Products,
     pairs: Pairs,
-    square: f64,
     equations: usize,
+    squares: Vec<f64>,
 }
 
 impl<'a> Sink<'a> {
@@ -156,13 +186,13 @@ impl<'a> Sink<'a> {
             pairs: Pairs::new(constants.len(), sections),
             constants,
             products: Products::new(frame.layout, sections),
-            square: 0.0,
             equations: 0,
+            squares: Vec::new(),
         }
     }
 
-    /// What the run tells.
-    pub(super) fn told(self) -> RunScores {
+    /// What the run tells that was gone through in this time.
+    pub(super) fn told(self, tempo: Tempo) -> RunScores {
         let sections = self.products.scores.ncols();
         let cosines = cosines(self.expected).min(sections / 2).max(1);
         let waves = DMatrix::from_fn(sections, 2 * cosines + 1, |k, m| {
@@ -173,8 +203,10 @@ impl<'a> Sink<'a> {
             products: self.products.over(&waves),
             pairs: self.pairs.over(&waves),
             cosines,
-            square: self.square,
+            square: self.squares.iter().sum(),
             equations: self.equations,
+            squares: self.squares,
+            tempo,
         }
     }
 
@@ -200,10 +232,6 @@ impl<'a> Sink<'a> {
             first = part.end;
         }
         self.equations += count * lines.len();
-        self.square += taken
-            .iter()
-            .map(|(_, residual)| residual.norm_squared())
-            .sum::<f64>();
         for sample in 0..count {
             let (n, constants) = (self.constants.len(), &self.constants);
             let jacobian = DMatrix::from_fn(n, lines.len(), |i, line| {
@@ -211,6 +239,7 @@ impl<'a> Sink<'a> {
             });
             let residual = DVector::from_fn(lines.len(), |line, _| taken[line].1[sample]);
             self.pairs.add(self.section(sample), &jacobian, &residual);
+            self.squares.push(residual.norm_squared());
         }
         self.taken += count;
     }

@@ -31,6 +31,8 @@ pub(crate) enum Shape {
     Time,
     /// The time where the velocity is positive, less the time where it is negative: friction that changes.
     TimeSign,
+    /// The torque times the time since the beginning of the run: a gain that drifts.
+    GainTime,
     /// Waves over the range of the position, [`WAVES`] columns together: cogging, or an error of a gear.
     Waves,
 }
@@ -39,7 +41,7 @@ pub(crate) enum Shape {
 pub(super) const WAVES: usize = 16;
 
 /// Shapes of an actuator that are one column each.
-pub(super) const SHAPES: [Shape; 14] = [
+pub(super) const SHAPES: [Shape; 15] = [
     Shape::Constant,
     Shape::Velocity,
     Shape::Sign,
@@ -54,6 +56,7 @@ pub(super) const SHAPES: [Shape; 14] = [
     Shape::Sine,
     Shape::Time,
     Shape::TimeSign,
+    Shape::GainTime,
 ];
 
 /// The motion of an actuator or a coordinate at one time.
@@ -130,6 +133,7 @@ impl Shape {
             Self::Sine => "the sine of the position, as gravity",
             Self::Time => "time, as a drift",
             Self::TimeSign => "time and the sign of the velocity, as friction that changes",
+            Self::GainTime => "time and the torque, as a gain that drifts",
             Self::Waves => "the position in waves, as cogging or an error of a gear",
         }
     }
@@ -162,6 +166,7 @@ impl Shape {
             Self::Sine => position.sin(),
             Self::Time => time,
             Self::TimeSign => time * sign,
+            Self::GainTime => time * torque,
             Self::Stribeck | Self::Waves => 0.0,
         }
     }

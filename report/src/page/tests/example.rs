@@ -42,6 +42,7 @@ fn parameter(name: &str, value: f64) -> ParameterEstimate {
         relative_standard_deviation_percent: 1.0,
         correlated_standard_deviation: 0.02 * value.abs(),
         interval_95: [value - 0.04 * value.abs(), value + 0.04 * value.abs()],
+        outside: false,
         true_value: Some(1.01 * value),
         error_percent: Some(-1.0),
     }
@@ -261,6 +262,7 @@ pub(super) fn identification() -> Identification {
     Identification {
         robot: HOSTILE.to_owned(),
         runs: vec![RunSummary {
+            payload_name: None,
             name: HOSTILE.to_owned(),
             samples: 5000,
             sampling_frequency: 1000.0,
@@ -289,6 +291,7 @@ pub(super) fn identification() -> Identification {
         warnings: vec![format!("beware of {HOSTILE}"), String::from("clipped")],
         checks: checks(),
         calibration: None,
+        gravity: None,
         gains: Vec::new(),
         gain_parameters: Vec::new(),
         motors: Vec::new(),

@@ -40,7 +40,11 @@ impl<'d> Chain<'d> {
 
     fn put(&mut self, joint: Joint) {
         let parameters = draw_parameters(self.dice, joint.kind);
-        self.members.push(Member { joint, parameters });
+        self.members.push(Member {
+            joint,
+            parameters,
+            load: None,
+        });
     }
 
     /// Goes on from any joint, or from the base.

@@ -90,6 +90,7 @@ impl Shape {
                 ..Joint::revolute(self.members.len(), 1.0, 0.0)
             },
             parameters: Vec::new(),
+            load: None,
         });
         Some(())
     }

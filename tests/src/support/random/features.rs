@@ -5,7 +5,7 @@ use crate::reference::{JointKind, Motion};
 use std::collections::BTreeSet;
 
 /// Everything that a run of some hundred mechanisms has to meet.
-pub const ALL: [&str; 41] = [
+pub const ALL: [&str; 44] = [
     "motion: slide",
     "motion: hinge",
     "motion: point",
@@ -47,6 +47,9 @@ pub const ALL: [&str; 41] = [
     "payload",
     "chosen actuators",
     "no gravity",
+    "friction towards standstill",
+    "friction by direction",
+    "friction under a load",
 ];
 
 impl Sketch {
@@ -114,6 +117,16 @@ impl Shape {
                 note(true, "fixed joint".to_owned());
                 continue;
             }
+            note(
+                joint.stribeck.is_some(),
+                "friction towards standstill".to_owned(),
+            );
+            let directed = |symbol: &&str| symbol.ends_with("_pos") || symbol.ends_with("_neg");
+            note(
+                member.parameters.iter().any(directed),
+                "friction by direction".to_owned(),
+            );
+            note(member.load.is_some(), "friction under a load".to_owned());
             let kind = match joint.kind {
                 JointKind::Revolute => "revolute",
                 _ => "prismatic",

@@ -13,12 +13,16 @@ mod chain;
 mod defect;
 mod dice;
 pub mod features;
+mod friction;
 mod leg;
 mod plain;
+mod skeleton;
 mod text;
 
 pub use defect::Defect;
 pub use dice::Dice;
+pub use friction::Load;
+pub use skeleton::skeleton;
 
 use crate::reference::linear::{condition, singular_values};
 use crate::reference::states::MAX_CONDITION;
@@ -42,6 +46,8 @@ pub struct Member {
     pub joint: Joint,
     /// Symbols and groups of the parameters that are present.
     pub parameters: Vec<&'static str>,
+    /// The load with which dry friction grows.
+    pub load: Option<Load>,
 }
 
 /// Where a placed leg meets the platform.
@@ -129,7 +135,8 @@ impl Sketch {
         let mut dice = Dice::new(seed);
         let motion = draw_motion(&mut dice, seed);
         for _ in 0..20_000 {
-            if let Some(sketch) = Self::attempt(&mut dice, seed, motion) {
+            if let Some(mut sketch) = Self::attempt(&mut dice, seed, motion) {
+                sketch.draw_friction();
                 return sketch;
             }
         }

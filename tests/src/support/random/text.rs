@@ -254,6 +254,15 @@ fn write_joint(text: &mut String, shape: usize, members: &[Member], member: &Mem
         line(text, "actuated = true");
     }
     line(text, &format!("parameters = {:?}", member.parameters));
+    if let Some(velocity) = joint.stribeck {
+        line(text, &format!("stribeck = {velocity:?}"));
+    }
+    if let Some(load) = member.load {
+        line(
+            text,
+            &format!("friction_load = {:?}", load.text(joint.kind)),
+        );
+    }
 }
 
 /// An angle: full degrees as such, others in radians.

@@ -1,0 +1,112 @@
+//! Which payload a log of the command line is of: `NAME=LOG` where a description names several.
+
+use crate::failure::{Failure, Problem};
+use overact_codegen::diagnostic::did_you_mean;
+use overact_identification::Log;
+use overact_robot::Robot;
+use std::path::{Path, PathBuf};
+
+/// The payloads that a description names; none where there is one, or none at all.
+pub(super) struct Payloads<'a> {
+    names: Vec<&'a str>,
+}
+
+/// A log as it was given.
+#[derive(Debug, Clone)]
+pub(super) struct Given {
+    pub(super) path: PathBuf,
+    pub(super) loaded: bool,
+    /// The name before the equals sign, where payloads have names.
+    name: Option<String>,
+}
+
+impl Given {
+    /// The log with the name of its payload.
+    pub(super) fn label(&self, log: Log) -> Log {
+        match &self.name {
+            Some(name) => log.with_payload_name(name),
+            None => log,
+        }
+    }
+}
+
+impl<'a> Payloads<'a> {
+    pub(super) fn new(robot: &'a Robot) -> Self {
+        Self {
+            names: robot.payloads(),
+        }
+    }
+
+    /// Logs of runs without payload.
+    pub(super) fn without(&self, paths: &[PathBuf]) -> Vec<Given> {
+        let given = |path: &PathBuf| Given {
+            path: path.clone(),
+            loaded: false,
+            name: None,
+        };
+        paths.iter().map(given).collect()
+    }
+
+    /// Logs of runs with a payload.
+    pub(super) fn with(&self, paths: &[PathBuf]) -> Vec<Given> {
+        let given = |path: &PathBuf| {
+            let name = split(path).map(|(name, _)| name.to_owned());
+            Given {
+                path: file(path).to_path_buf(),
+                loaded: true,
+                name,
+            }
+        };
+        paths.iter().map(given).collect()
+    }
+
+    /// Checks the names of all logs.
+    ///
+    /// # Errors
+    /// Logs without a name where payloads have names, and names that no payload has.
+    pub(super) fn check<'g>(&self, given: impl Iterator<Item = &'g Given>) -> Result<(), Failure> {
+        let problem = |one: &Given| {
+            let file = one.path.display().to_string();
+            let list = self.names.join(", ");
+            match &one.name {
+                Some(name) if self.names.contains(&name.as_str()) => None,
+                Some(name) => {
+                    let help = did_you_mean(name, self.names.iter().copied());
+                    let help = help.unwrap_or_else(|| match self.names.is_empty() {
+                        true => String::from(
+                            "name the payloads of the robot in its description, payloads = [\"A\", \"B\"]",
+                        ),
+                        false => format!("its payloads are {list}"),
+                    });
+                    let message = format!("there is no payload `{name}`");
+                    Some(Problem::new(message).file(file).help(help))
+                }
+                None if one.loaded && !self.names.is_empty() => {
+                    let message =
+                        "the robot has several payloads: it is not said which one this run carries";
+                    let help = format!("write NAME=LOG, the name being one of {list}");
+                    Some(Problem::new(message).file(file).help(help))
+                }
+                None => None,
+            }
+        };
+        let problems: Vec<Problem> = given.filter_map(problem).collect();
+        match problems.is_empty() {
+            true => Ok(()),
+            false => Err(problems.into()),
+        }
+    }
+}
+
+/// A word before an equals sign, and the file behind it; none where the whole is the name of a file that is
+/// there.
+fn split(path: &Path) -> Option<(&str, &str)> {
+    let (name, file) = path.to_str()?.split_once('=')?;
+    let word = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    (word && !path.exists()).then_some((name, file))
+}
+
+/// The file of a log as it is given.
+pub(super) fn file(path: &Path) -> &Path {
+    split(path).map_or(path, |(_, file)| Path::new(file))
+}

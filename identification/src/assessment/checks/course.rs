@@ -1,0 +1,134 @@
+//! Whether a few instants decide, whether the motion is long enough, and whether the filters suit it.
+
+use super::{Context, relative_error::times_the_noise};
+use crate::{
+    assessment::{
+        check::{About, Check, CheckKind, Grade},
+        suspects::Pace,
+    },
+    error::Error,
+    significant,
+};
+
+/// The part of the squared residual that one instant in a hundred may hold. White noise leaves 8 % there.
+const LARGEST_PART: f64 = 0.5;
+
+/// How many times its noise the residual is, at least, where a few instants decide. Friction at reversals leaves
+/// peaks in faultless data, too, but they do not stand out of the noise as a whole.
+const BEYOND_NOISE: f64 = 2.0;
+
+/// Instants of which that is told, at least.
+const FEWEST_INSTANTS: usize = 300;
+
+/// Periods that the slowest actuator should move through.
+const FEWEST_PERIODS: f64 = 2.0;
+
+/// How many times the frequency of the motion the cutoff of the filters should be, at least: at eleven times
+/// dry friction of a faultless five-bar is off by three deviations, at twenty-two by none.
+const LEAST_CUTOFF: f64 = 12.0;
+
+/// Looks at all of it.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let Some(scores) = context.scores else {
+        return Ok(Vec::new());
+    };
+    let mut checks: Vec<Check> = scores
+        .peak(FEWEST_INSTANTS)
+        .map(|peak| {
+            let percent = significant(100.0 * peak.part, 2);
+            let check = |words: String| {
+                Check::new(CheckKind::Outliers, About::Data, words)
+                    .measured(100.0 * peak.part, "%")
+                    .against(
+                        100.0 * LARGEST_PART,
+                        "white noise leaves 8 % of its square in a hundredth of the instants",
+                    )
+            };
+            if peak.part <= LARGEST_PART || times_the_noise(context) <= BEYOND_NOISE {
+                return check(format!(
+                    "no few instants decide: one in a hundred leaves {percent} % of the residual's square"
+                ));
+            }
+            let run = context.dataset.runs.get(peak.run);
+            check(format!(
+                "one instant in a hundred leaves {percent} % of the residual's square, most of all at {} s: look there for a collision, spikes, a signal that stood still or was lost, or steps of a coarse encoder, and leave that time out",
+                significant(peak.time, 4)
+            ))
+            .in_run(run.map_or("", |log| log.name()))
+            .found()
+        })
+        .into_iter()
+        .collect();
+    let paces = scores.paces();
+    checks.extend(length(context, &paces));
+    checks.extend(cutoff(context, &paces));
+    checks.extend(unlike_filters(context));
+    Ok(checks)
+}
+
+/// Whether every actuator goes through its motion often enough.
+fn length(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
+    let moving = paces.iter().enumerate();
+    let moving = moving.filter_map(|(actuator, pace)| Some((actuator, (*pace)?)));
+    let (actuator, pace) = moving.min_by(|a, b| a.1.periods.total_cmp(&b.1.periods))?;
+    let name = context.model.info().actuators.get(actuator).copied()?;
+    let [periods, frequency] = [pace.periods, pace.frequency].map(|x| significant(x, 2));
+    let check = |words: String| {
+        Check::new(CheckKind::ShortMotion, About::Data, words)
+            .measured(pace.periods, "periods")
+            .against(FEWEST_PERIODS, "errors are told from what does not return")
+    };
+    if pace.periods >= FEWEST_PERIODS {
+        return Some(check(format!(
+            "the motion is long enough: at least {periods} periods of each actuator"
+        )));
+    }
+    Some(
+        check(format!(
+            "the runs are short: `{name}` moves at about {frequency} Hz and goes through {periods} of its periods only. Noise can't be told from motion there, so neither the estimates nor their intervals are sure; record at least {FEWEST_PERIODS:.0} periods, better ten"
+        ))
+        .of_actuator(name)
+        .allowing(Grade::DoNotUse),
+    )
+}
+
+/// Whether the filters leave the motion as it is.
+fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
+    let cutoff = context.settings.filter_cutoff_hz;
+    let fastest = paces.iter().flatten().map(|pace| pace.frequency);
+    let fastest = fastest.fold(0.0, f64::max);
+    let ratio = cutoff / fastest;
+    let words = format!(
+        "the cutoff of the filters, {} Hz, is {} times the frequency of the fastest motion, {} Hz",
+        significant(cutoff, 3),
+        significant(ratio, 2),
+        significant(fastest, 2)
+    );
+    let check = |words: String| {
+        Check::new(CheckKind::Filters, About::Data, words)
+            .measured(ratio, "")
+            .against(
+                LEAST_CUTOFF,
+                "the rule of Gautier, ten times the dynamics of the motion, and a little more for reversals",
+            )
+    };
+    if !ratio.is_finite() || ratio >= LEAST_CUTOFF {
+        return Some(check(words));
+    }
+    Some(
+        check(format!(
+            "{words}: velocities around reversals are rounded off, which biases friction; raise `filter_cutoff`"
+        ))
+        .found(),
+    )
+}
+
+/// Whether columns and torques pass the same filter.
+fn unlike_filters(context: &Context<'_>) -> Option<Check> {
+    let settings = context.settings;
+    let unlike = settings.decimation <= 1 && !settings.filter_equations;
+    unlike.then(|| {
+        let words = "positions are filtered and torques are not: without `decimation`, whose filter both pass, the columns are smoother than the torques, which biases friction. Set `decimation` to more than one, or `filter_equations = true`";
+        Check::new(CheckKind::Filters, About::Data, words).found()
+    })
+}

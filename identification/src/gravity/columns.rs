@@ -1,0 +1,239 @@
+//! The independent columns among those of the robot as it is described and those of fields along the axes,
+//! and how the column of each parameter is made of them in any gravity.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, Vector3};
+use overact::{Model, StandardParameter as P};
+
+use super::Fields;
+use crate::{
+    data::Log,
+    error::{Error, Problem},
+    estimation::base::{PayloadUse, RANK_TOLERANCE, payload_names},
+    regression::{
+        columns::ColumnSet,
+        elimination::{Elimination, eliminate},
+        states::{States, random_states},
+    },
+    settings::Settings,
+};
+
+/// Rows of random states beyond the number of columns, by these.
+const STATES: usize = 2;
+
+/// Columns of one model that are among the independent ones.
+#[derive(Debug)]
+pub(super) struct Picked {
+    pub(super) columns: ColumnSet,
+    /// Which of them, in ascending order.
+    pub(super) picked: Vec<usize>,
+}
+
+/// The independent columns B, those of the described robot first, then those of the fields along x, y and z.
+#[derive(Debug)]
+pub(super) struct Extended {
+    /// Of the robot in the gravity that is described.
+    pub(super) own: Picked,
+    /// Of the fields.
+    pub(super) along: [Picked; 3],
+    /// Names of the parameters that have an effect in some gravity.
+    pub(super) names: Vec<String>,
+    /// B on random states.
+    pub(super) random: DMatrix<f64>,
+    described: Vector3<f64>,
+    /// Columns of all parameters as combinations of B, in the gravity that is described.
+    at_described: DMatrix<f64>,
+    /// The same of the fields.
+    of_fields: [DMatrix<f64>; 3],
+}
+
+impl Extended {
+    /// The columns of a robot for these runs.
+    ///
+    /// # Errors
+    /// A model that can't be evaluated near its home pose.
+    pub(super) fn new(
+        model: &dyn Model,
+        fields: &Fields<'_>,
+        runs: &[Log],
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        let payload = PayloadUse::of(&model.info(), runs)?;
+        let loaded = payload != PayloadUse::Absent;
+        let split = settings.asymmetric_friction;
+        let own = ColumnSet::new(model, loaded, split, settings.seed)?;
+        let names = payload_names(runs);
+        let own = own.with_payloads(&names);
+        let of_field = |field: &dyn Model| {
+            let columns = ColumnSet::new(field, loaded, false, settings.seed)?;
+            Ok::<_, Error>(columns.with_payloads(&names))
+        };
+        let along = fields.along.map(of_field);
+        let [x, y, z] = along;
+        let sets = [own, x?, y?, z?];
+        // Which column of which set each column of the wide regressor is.
+        let mut places: Vec<(usize, usize)> = Vec::new();
+        for (set, columns) in sets.iter().enumerate() {
+            let bears_weight = |column: &usize| {
+                let symbol = columns.as_slice().get(*column).map(|one| one.symbol);
+                let weighs = [P::M, P::Mx, P::My, P::Mz];
+                set == 0 || symbol.is_some_and(|own| weighs.contains(&own))
+            };
+            let kept = (0..columns.len()).filter(bears_weight);
+            places.extend(kept.map(|column| (set, column)));
+        }
+        let random = random_regressor(model, fields, &sets, &places, settings.seed)?;
+        let load = |place: &usize| {
+            let (set, column) = places[*place];
+            let is_load = sets[set].indices(true).contains(&column);
+            is_load.then(|| sets[set].as_slice()[column].load.as_ref())
+        };
+        // Columns of payloads are told from all others by runs without them.
+        let of = |own: Option<Option<&String>>| -> Vec<usize> {
+            let all = 0..places.len();
+            all.filter(|place| load(place) == own).collect()
+        };
+        let mut blocks: Vec<Vec<usize>> = match names.is_empty() {
+            true => vec![of(Some(None))],
+            false => names.iter().map(|name| of(Some(Some(name)))).collect(),
+        };
+        if payload == PayloadUse::Regrouped {
+            let always = blocks.pop().unwrap_or_default();
+            blocks.insert(0, [of(None), always].concat());
+        } else {
+            blocks.insert(0, of(None));
+        }
+        let found: Vec<Elimination> = blocks
+            .iter()
+            .map(|order| eliminate(&random, order, RANK_TOLERANCE))
+            .collect();
+        let mut kept: Vec<usize> = found.iter().flat_map(|one| one.kept.clone()).collect();
+        kept.sort_unstable();
+        let mut names: Vec<String> = Vec::new();
+        for (set, column) in &places {
+            let name = &sets[*set].as_slice()[*column].name;
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        let combinations = combinations(&kept, &found);
+        let coefficients = |wanted: usize| {
+            let mut all = DMatrix::zeros(kept.len(), names.len());
+            for (place, (set, column)) in places.iter().enumerate() {
+                let name = &sets[*set].as_slice()[*column].name;
+                let index = names.iter().position(|one| one == name);
+                if let (true, Some(index)) = (*set == wanted, index) {
+                    for (row, value) in combinations.get(&place).into_iter().flatten() {
+                        all[(*row, index)] = *value;
+                    }
+                }
+            }
+            all
+        };
+        let (at_described, of_fields) = (coefficients(0), [1, 2, 3].map(coefficients));
+        let picked = |set: usize, columns: ColumnSet| Picked {
+            picked: kept
+                .iter()
+                .filter(|place| places[**place].0 == set)
+                .map(|place| places[*place].1)
+                .collect(),
+            columns,
+        };
+        let [own, x, y, z] = sets;
+        Ok(Self {
+            own: picked(0, own.with_reversals(model, settings)?),
+            along: [picked(1, x), picked(2, y), picked(3, z)],
+            random: random.select_columns(&kept),
+            described: Vector3::from(fields.described),
+            names,
+            at_described,
+            of_fields,
+        })
+    }
+
+    /// Number of columns of B.
+    pub(super) fn len(&self) -> usize {
+        self.at_described.nrows()
+    }
+
+    /// The columns of all parameters in this gravity, as combinations of B.
+    pub(super) fn at(&self, gravity: &Vector3<f64>) -> DMatrix<f64> {
+        self.at_described.clone() + self.in_field(&(gravity - self.described))
+    }
+
+    /// What a field adds to the columns of all parameters, as combinations of B.
+    pub(super) fn in_field(&self, field: &Vector3<f64>) -> DMatrix<f64> {
+        let each = self.of_fields.iter().zip(field.iter());
+        let zero = DMatrix::zeros(self.len(), self.names.len());
+        each.fold(zero, |sum, (own, size)| sum + own * *size)
+    }
+}
+
+/// Of each column of the wide regressor that is not zero the rows and values of its combination of B.
+fn combinations(kept: &[usize], found: &[Elimination]) -> BTreeMap<usize, Vec<(usize, f64)>> {
+    let row: BTreeMap<usize, usize> = kept
+        .iter()
+        .enumerate()
+        .map(|(row, one)| (*one, row))
+        .collect();
+    let mut all: BTreeMap<usize, Vec<(usize, f64)>> = row
+        .iter()
+        .map(|(one, row)| (*one, vec![(*row, 1.0)]))
+        .collect();
+    for (column, terms) in found.iter().flat_map(|one| &one.dependent) {
+        let terms = terms
+            .iter()
+            .filter_map(|(on, value)| Some((*row.get(on)?, *value)));
+        all.insert(*column, terms.collect());
+    }
+    all
+}
+
+/// All columns on random states, those of the fields at rest. The rows of a state are scaled by their largest
+/// entry, since relations between columns hold row by row.
+fn random_regressor(
+    model: &dyn Model,
+    fields: &Fields<'_>,
+    sets: &[ColumnSet; 4],
+    places: &[(usize, usize)],
+    seed: u64,
+) -> Result<DMatrix<f64>, Error> {
+    let r = model.info().sizes.dof.max(1);
+    let count = (STATES * places.len()).div_ceil(r) + 20;
+    let States {
+        samples,
+        pose,
+        twist,
+        acceleration,
+    } = random_states(model, count, seed)?;
+    let rest = vec![0.0; twist.len()];
+    let [x, y, z] = fields.along;
+    let mut regressor = DMatrix::zeros(samples * r, places.len());
+    for (set, model) in [model, x, y, z].into_iter().enumerate() {
+        let mine = |place: &&(usize, usize)| place.0 == set;
+        let picked: Vec<usize> = places.iter().filter(mine).map(|place| place.1).collect();
+        let first = places.iter().position(|place| place.0 == set).unwrap_or(0);
+        let states = match set {
+            0 => [&pose[..], &twist, &acceleration],
+            _ => [&pose[..], &rest, &rest],
+        };
+        let lines = sets[set]
+            .evaluate(model, &states, (samples, 0.0), true, (&picked, 0))
+            .map_err(|error| Error::from(Problem::new(error.to_string())))?;
+        for (line, rows) in lines.iter().enumerate() {
+            for (index, value) in rows.iter().enumerate() {
+                let (sample, column) = (index / picked.len(), index % picked.len());
+                regressor[(sample * r + line, first + column)] = *value;
+            }
+        }
+    }
+    for sample in 0..samples {
+        let mut rows = regressor.rows_mut(sample * r, r);
+        let largest = rows.amax();
+        if largest > 0.0 {
+            rows /= largest;
+        }
+    }
+    Ok(regressor)
+}

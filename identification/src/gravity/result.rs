@@ -1,0 +1,123 @@
+//! The direction of gravity, as it is printed and as it is serialised.
+
+use nalgebra::{DMatrix, Vector3};
+use serde::Serialize;
+
+use super::{frame::Frame, shares::Turned};
+use crate::regression::shares::Shares;
+
+/// Square of a normal quantity of one and of two dimensions that is exceeded in one case out of twenty.
+const SIGNIFICANT: [f64; 2] = [3.841, 5.991];
+
+/// Decimals with which a direction is told and used, m/s²: far below any deviation.
+const DECIMALS: f64 = 1e9;
+
+/// What an identification of the direction of gravity found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GravityDirection {
+    /// The acceleration of gravity of the description, m/s², in the base's frame.
+    pub described: [f64; 3],
+    /// As it was found, equally large.
+    pub estimated: [f64; 3],
+    /// Standard deviations of its components, m/s².
+    pub deviations: [f64; 3],
+    /// Angle between both, rad.
+    pub tilt: f64,
+    /// Standard deviation of this angle, rad.
+    pub tilt_deviation: f64,
+    /// Whether the angle is more than noise makes of none in nineteen cases out of twenty. If not, everything
+    /// else was identified with gravity as it is described.
+    pub significant: bool,
+    /// A unit vector about which gravity can turn without any torque telling; the component of the direction
+    /// that it concerns is the described one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undetermined_about: Option<[f64; 3]>,
+    /// Covariance of the angles, rad².
+    #[serde(skip)]
+    covariance: DMatrix<f64>,
+    #[serde(skip)]
+    turned: Turned,
+}
+
+impl GravityDirection {
+    pub(super) fn new(
+        described: Vector3<f64>,
+        frame: &Frame,
+        covariance: DMatrix<f64>,
+        turned: Turned,
+    ) -> Self {
+        let gravity = frame.gravity();
+        let slopes = frame.derivative();
+        let of_components = &slopes * &covariance * slopes.transpose();
+        let deviation = |axis: usize| of_components[(axis, axis)].max(0.0).sqrt();
+        let from = described / frame.size;
+        let tilt = from
+            .cross(&frame.direction)
+            .norm()
+            .atan2(from.dot(&frame.direction));
+        // The way back, in the angles of the frame.
+        let back = from - frame.direction * from.dot(&frame.direction);
+        let each = frame.turns.iter().map(|turn| turn.dot(&back));
+        let back = nalgebra::DVector::from_iterator(frame.turns.len(), each);
+        let unit = match back.norm() {
+            0.0 => nalgebra::DVector::from_element(back.len(), (back.len() as f64).sqrt().recip()),
+            norm => &back / norm,
+        };
+        let tilt_deviation = (&covariance * &unit).dot(&unit).max(0.0).sqrt();
+        let square = covariance
+            .clone()
+            .try_inverse()
+            .map_or(f64::INFINITY, |inverse| {
+                tilt * tilt * (inverse * &unit).dot(&unit)
+            });
+        let rounded = gravity.map(|one| (one * DECIMALS).round() / DECIMALS);
+        let about = (frame.turns.len() == 1).then(|| frame.turns[0].into());
+        Self {
+            described: described.into(),
+            estimated: rounded.into(),
+            deviations: [0, 1, 2].map(deviation),
+            tilt,
+            tilt_deviation,
+            significant: square > SIGNIFICANT[frame.turns.len() - 1],
+            undetermined_about: about,
+            covariance,
+            turned,
+        }
+    }
+
+    /// The gravity with which everything else is identified.
+    #[must_use]
+    pub const fn used(&self) -> [f64; 3] {
+        if self.significant {
+            self.estimated
+        } else {
+            self.described
+        }
+    }
+
+    /// What its uncertainty does to base parameters that keep the standard parameters of these names.
+    pub(crate) fn shares(&self, names: &[&str]) -> Shares {
+        self.turned.shares(names, &self.covariance)
+    }
+
+    /// What the user should know.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let [x, y, z] = self.estimated.map(|one| (one * 1e6).round() / 1e6);
+        let mut warnings = Vec::new();
+        if self.significant {
+            warnings.push(format!(
+                "gravity points {:.2} deg away from where the description has it, with a standard deviation of {:.2} deg: everything is identified with gravity = [{x}, {y}, {z}], which belongs into the description",
+                self.tilt.to_degrees(),
+                self.tilt_deviation.to_degrees()
+            ));
+        }
+        if let Some(axis) = self.undetermined_about {
+            let [x, y, z] = axis.map(|one| (one * 1e4).round() / 1e4);
+            warnings.push(format!(
+                "the direction of gravity is determined in one direction only: turning it about [{x}, {y}, {z}] changes nothing that parameters do not explain",
+            ));
+        }
+        warnings
+    }
+}

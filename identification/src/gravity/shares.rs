@@ -1,0 +1,71 @@
+//! What the uncertainty of the direction does to parameters that are estimated in it.
+
+use std::fmt;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{columns::Extended, solve::Solution};
+use crate::{
+    error::Error,
+    regression::{factor::Factor, shares::Shares, system::System},
+};
+
+/// The columns of all parameters in the direction that was found, what its angles do to the inputs, and the
+/// equations of each projection.
+#[derive(Clone, PartialEq)]
+pub(super) struct Turned {
+    names: Vec<String>,
+    /// The columns as combinations of the independent ones.
+    columns: DMatrix<f64>,
+    /// What the angles do, as such combinations.
+    slopes: DMatrix<f64>,
+    /// R factors of the lines of each projection; none where it has no equations.
+    projections: Vec<Vec<Factor>>,
+}
+
+impl fmt::Debug for Turned {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Turned").finish_non_exhaustive()
+    }
+}
+
+impl Turned {
+    pub(super) fn new(
+        extended: &Extended,
+        systems: &[Result<System, Error>],
+        solution: &Solution,
+    ) -> Self {
+        let lines = |system: &Result<System, Error>| {
+            let own = system.as_ref().map(|own| own.lines.clone());
+            own.unwrap_or_default()
+        };
+        Self {
+            names: extended.names.clone(),
+            columns: extended.at(&solution.frame.gravity()),
+            slopes: solution.slopes.clone(),
+            projections: systems.iter().map(lines).collect(),
+        }
+    }
+
+    /// The shares of the angles, of this covariance, in estimates of parameters with these names.
+    pub(super) fn shares(&self, names: &[&str], covariance: &DMatrix<f64>) -> Shares {
+        let rows = self.columns.nrows();
+        let column = |name: &&str| {
+            let at = self.names.iter().position(|own| own == name);
+            at.map_or_else(|| DVector::zeros(rows), |at| self.columns.column(at).into())
+        };
+        let own = names.iter().map(column);
+        let slopes = self.slopes.column_iter().map(Into::into);
+        // The last quantity takes the place of Y.
+        let mut all: Vec<DVector<f64>> = own.chain(slopes).collect();
+        let last = all.pop().unwrap_or_else(|| DVector::zeros(rows));
+        let coefficients = match all.is_empty() {
+            true => DMatrix::zeros(rows, 0),
+            false => DMatrix::from_columns(&all),
+        };
+        let of_line = |line: &Factor| line.combined_with(&coefficients, &last);
+        let of = |lines: &Vec<Factor>| lines.iter().map(of_line).collect();
+        let projections = self.projections.iter().map(of).collect();
+        Shares::new(projections, names.len(), covariance.clone())
+    }
+}

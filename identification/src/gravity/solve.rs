@@ -1,0 +1,224 @@
+//! The direction of gravity of the smallest weighted residual.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{columns::Extended, frame::Frame, observation::combined};
+use crate::{
+    error::{Error, Problem},
+    estimation::estimate::fit,
+    regression::{
+        elimination::eliminate,
+        factor::{DATA_RANK_TOLERANCE, Factor},
+        system::System,
+    },
+    settings::Settings,
+};
+
+/// Most repetitions with the weights found anew.
+const OUTER: usize = 20;
+
+/// Most steps with given weights.
+const INNER: usize = 60;
+
+/// Change of the direction at which repetitions end, rad: far below any deviation.
+const TOLERANCE: f64 = 1e-10;
+
+/// Change above which they have not converged, rad.
+const CONVERGED: f64 = 1e-6;
+
+/// Largest step, rad.
+const LARGEST_STEP: f64 = 0.3;
+
+/// Damping, as a part of the diagonal, at which no step is better.
+const LARGEST_DAMPING: f64 = 1e9;
+
+/// A direction and what belongs to it.
+#[derive(Debug, Clone)]
+pub(super) struct Solution {
+    pub(super) frame: Frame,
+    /// The columns of the parameters that are estimated, as combinations of the independent ones.
+    pub(super) columns: DMatrix<f64>,
+    /// Their estimates.
+    pub(super) values: DVector<f64>,
+    /// What the angles do to the inputs, as combinations of the independent columns.
+    pub(super) slopes: DMatrix<f64>,
+    /// The same less what the parameters make up for.
+    pub(super) free: DMatrix<f64>,
+    /// JᵀJ of the projected slopes.
+    pub(super) normal: DMatrix<f64>,
+    /// Weight of each line.
+    pub(super) weights: Vec<f64>,
+    /// Deviation of the weighted residual.
+    pub(super) deviation: f64,
+}
+
+/// A direction with the parameters that explain the inputs best.
+struct Fit {
+    values: DVector<f64>,
+    columns: DMatrix<f64>,
+    slopes: DMatrix<f64>,
+    free: DMatrix<f64>,
+    /// Square of the residual that is left, but for what no column explains.
+    square: f64,
+    /// JᵀJ and Jᵀ ρ of the projected slopes J.
+    normal: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+/// The direction that explains a system best, from a frame on and in its turns.
+///
+/// # Errors
+/// Data that do not determine the parameters, or steps that do not end.
+pub(super) fn solve(
+    extended: &Extended,
+    system: &System,
+    start: &Frame,
+    settings: &Settings,
+) -> Result<Solution, Error> {
+    let all: Vec<usize> = (0..extended.len()).collect();
+    let base = base(extended, start);
+    let mut frame = start.clone();
+    let mut change = f64::INFINITY;
+    for _ in 0..OUTER {
+        let weights = weighted(extended, system, (&frame, &base), settings)?.0;
+        let reduced = Factor::reduced_together(&system.lines, &weights, &all);
+        let whole = (&reduced.triangle, &reduced.rhs);
+        let next = with_weights(extended, whole, &base, frame.clone());
+        change = (next.direction - frame.direction).norm();
+        frame = next;
+        if change < TOLERANCE {
+            break;
+        }
+    }
+    if change.is_nan() || change > CONVERGED {
+        let message = "the direction of gravity is not determined: steps towards it do not end";
+        let help =
+            "check the geometry, signs and units of the log first, without `gravity_direction`";
+        return Err(Problem::new(message).help(help).into());
+    }
+    let (weights, deviation) = weighted(extended, system, (&frame, &base), settings)?;
+    let reduced = Factor::reduced_together(&system.lines, &weights, &all);
+    let own = fitted(extended, (&reduced.triangle, &reduced.rhs), &base, &frame);
+    Ok(Solution {
+        frame,
+        columns: own.columns,
+        values: own.values,
+        slopes: own.slopes,
+        free: own.free,
+        normal: own.normal,
+        weights,
+        deviation,
+    })
+}
+
+/// The parameters that are independent where gravity is turned a little.
+fn base(extended: &Extended, frame: &Frame) -> Vec<usize> {
+    let angles = DVector::from_fn(frame.turns.len(), |turn, _| 0.1 + 0.05 * turn as f64);
+    let turned = extended.at(&frame.turned(&angles).gravity());
+    let all: Vec<usize> = (0..extended.names.len()).collect();
+    eliminate(&(&extended.random * turned), &all, 1e-9).kept
+}
+
+/// The weights of the lines and the deviation of the residual, as the estimate of the parameters has them.
+fn weighted(
+    extended: &Extended,
+    system: &System,
+    (frame, base): (&Frame, &[usize]),
+    settings: &Settings,
+) -> Result<(Vec<f64>, f64), Error> {
+    let columns = extended.at(&frame.gravity()).select_columns(base);
+    let own = combined(system, &columns);
+    let ones = vec![1.0; own.lines.len()];
+    let merged = Factor::merged(&own.lines, &ones);
+    let all: Vec<usize> = (0..base.len()).collect();
+    let kept = eliminate(merged.matrix(), &all, DATA_RANK_TOLERANCE).kept;
+    let estimation = fit(&own, &kept, settings)?;
+    Ok((estimation.weights, estimation.residual_deviation))
+}
+
+/// The best direction for given weights.
+fn with_weights(
+    extended: &Extended,
+    whole: (&DMatrix<f64>, &DVector<f64>),
+    base: &[usize],
+    mut frame: Frame,
+) -> Frame {
+    let mut here = fitted(extended, whole, base, &frame);
+    let mut damping = 0.0;
+    for _ in 0..INNER {
+        let diagonal = here.normal.diagonal();
+        let damped = &here.normal + DMatrix::from_diagonal(&diagonal) * damping;
+        let Some(step) = damped.lu().solve(&here.right) else {
+            break;
+        };
+        let length = step.norm();
+        let step = step * (LARGEST_STEP / length).min(1.0);
+        let turned = frame.turned(&step);
+        let there = fitted(extended, whole, base, &turned);
+        if there.square <= here.square {
+            (frame, here) = (turned, there);
+            damping = if damping < 1e-6 { 0.0 } else { damping / 10.0 };
+            if length < TOLERANCE {
+                break;
+            }
+        } else {
+            damping = (damping * 10.0).max(1e-4);
+            if damping > LARGEST_DAMPING || length < TOLERANCE {
+                break;
+            }
+        }
+    }
+    frame
+}
+
+/// The best parameters for a direction, of the weighted R factor and right-hand side of all columns.
+fn fitted(
+    extended: &Extended,
+    (triangle, rhs): (&DMatrix<f64>, &DVector<f64>),
+    base: &[usize],
+    frame: &Frame,
+) -> Fit {
+    let columns = extended.at(&frame.gravity()).select_columns(base);
+    let mut matrix = triangle * &columns;
+    let all: Vec<usize> = (0..base.len()).collect();
+    let kept = eliminate(&matrix, &all, DATA_RANK_TOLERANCE).kept;
+    let columns = columns.select_columns(&kept);
+    matrix = matrix.select_columns(&kept);
+    let norms: Vec<f64> = matrix.column_iter().map(|own| own.norm()).collect();
+    for (mut column, norm) in matrix.column_iter_mut().zip(&norms) {
+        column /= *norm;
+    }
+    let parts = matrix.qr();
+    let (q, r) = (parts.q(), parts.r());
+    let along = q.tr_mul(rhs);
+    let scaled = r.solve_upper_triangular(&along);
+    let scaled = scaled.unwrap_or_else(|| DVector::zeros(norms.len()));
+    let values = DVector::from_fn(norms.len(), |at, _| scaled[at] / norms[at]);
+    let rest = rhs - &q * along;
+    let own: Vec<usize> = kept.iter().map(|at| base[*at]).collect();
+    let slope = |turn: &nalgebra::Vector3<f64>| {
+        let field = extended.in_field(&(turn * frame.size));
+        field.select_columns(&own) * &values
+    };
+    let slopes = DMatrix::from_columns(&frame.turns.iter().map(slope).collect::<Vec<_>>());
+    let mut outside = triangle * &slopes;
+    let mut made_up = DMatrix::zeros(norms.len(), slopes.ncols());
+    for _ in 0..2 {
+        let inside = q.tr_mul(&outside);
+        outside -= &q * &inside;
+        made_up += inside;
+    }
+    let mut made_up = r.solve_upper_triangular(&made_up).unwrap_or(made_up);
+    for (mut row, norm) in made_up.row_iter_mut().zip(&norms) {
+        row /= *norm;
+    }
+    Fit {
+        square: rest.norm_squared(),
+        normal: outside.tr_mul(&outside),
+        right: outside.tr_mul(&rest),
+        free: &slopes - &columns * made_up,
+        values,
+        columns,
+        slopes,
+    }
+}

@@ -1,0 +1,58 @@
+//! What the uncertainty of quantities that were identified beforehand does to estimates that are made with them.
+//!
+//! With v_j what a change of quantity j adds to the torques, P_j is the estimate from v_j alone, with the same
+//! columns and weights: the estimate is off by P δ, and C being the covariance of δ its covariance grows by
+//! P C Pᵀ.
+
+use nalgebra::DMatrix;
+
+use super::factor::Factor;
+
+/// What each quantity contributes to the equations of each projection.
+#[derive(Debug, Clone)]
+pub(crate) struct Shares {
+    /// For each projection the factors of its lines: columns of the base parameters, then one for each
+    /// quantity, the last in the place of Y. None where a projection has no equations.
+    projections: Vec<Vec<Factor>>,
+    /// Number of the base parameters.
+    parameters: usize,
+    /// C.
+    covariance: DMatrix<f64>,
+}
+
+impl Shares {
+    pub(crate) const fn new(
+        projections: Vec<Vec<Factor>>,
+        parameters: usize,
+        covariance: DMatrix<f64>,
+    ) -> Self {
+        Self {
+            projections,
+            parameters,
+            covariance,
+        }
+    }
+
+    /// P C Pᵀ of an estimate of the columns `selected` with the weights of the lines; none where they are
+    /// dependent.
+    pub(crate) fn covariance(
+        &self,
+        projection: usize,
+        (selected, weights): (&[usize], &[f64]),
+    ) -> Option<DMatrix<f64>> {
+        let lines = self.projections.get(projection)?;
+        let (p, count) = (selected.len(), self.covariance.nrows());
+        if lines.is_empty() || count == 0 {
+            return None;
+        }
+        let columns: Vec<usize> = (0..count - 1).map(|j| self.parameters + j).collect();
+        let reduced = Factor::reduced_together(lines, weights, &[selected, &columns].concat());
+        let mut right = DMatrix::zeros(p, count);
+        let own = reduced.triangle.view((0, p), (p, count - 1));
+        right.columns_mut(0, count - 1).copy_from(&own);
+        right.set_column(count - 1, &reduced.rhs.rows(0, p));
+        let triangle = reduced.triangle.view((0, 0), (p, p));
+        let shares = triangle.solve_upper_triangular(&right)?;
+        Some(&shares * &self.covariance * shares.transpose())
+    }
+}

@@ -1,0 +1,41 @@
+//! Kept actuators of case 2 by their names.
+
+use crate::error::{Error, Problem};
+use overact_codegen::RobotModel;
+
+/// Indices of kept actuators that are given by name: as many different ones as there are degrees of
+/// freedom.
+///
+/// # Errors
+/// Every name that no actuator has, names that are given twice, or a wrong number of them.
+pub fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Error> {
+    let known = model.mechanism.named_actuators();
+    let mut kept = Vec::new();
+    let mut problems = Vec::new();
+    for name in names {
+        match known.find(name) {
+            Some(index) if kept.contains(&index) => {
+                problems.push(Problem::new(format!(
+                    "the actuator `{name}` is listed twice"
+                )));
+            }
+            Some(index) => kept.push(index),
+            None => {
+                let message = format!("there is no actuator `{name}`");
+                problems.push(Problem::new(message).help(known.help(name)));
+            }
+        }
+    }
+    let dof = model.mechanism.dof();
+    if problems.is_empty() && kept.len() != dof {
+        let message = format!(
+            "case 2 keeps {dof} actuators, one for each degree of freedom, not {}",
+            kept.len()
+        );
+        problems.push(Problem::new(message));
+    }
+    match problems.is_empty() {
+        true => Ok(kept),
+        false => Err(Error::Problems(problems)),
+    }
+}

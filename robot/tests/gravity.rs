@@ -1,0 +1,210 @@
+//! Robots whose bases stand off the vertical: the direction of gravity comes back together with the parameters.
+
+use overact_identification::{Estimator, Identification, Stage};
+use overact_robot::{Identifier, Robot, Runs};
+use overact_tier::by_tier;
+use std::path::Path;
+
+/// Gravity turned by 2° about y, then by 2° about x, m/s².
+fn turned() -> [f64; 3] {
+    let (sine, cosine) = 2.0_f64.to_radians().sin_cos();
+    let [x, z] = [-9.81 * sine, -9.81 * cosine];
+    [x, -z * sine, z * cosine]
+}
+
+fn text(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
+    std::fs::read_to_string(path.join(name)).expect("a description")
+}
+
+fn robot(text: &str) -> Robot {
+    Robot::from_text("robot.toml", text).expect("a robot")
+}
+
+fn replaced(text: &str, from: &str, to: &str) -> String {
+    assert_eq!(text.matches(from).count(), 1, "{from}");
+    text.replace(from, to)
+}
+
+const DOWN: &str = "gravity = [0, 0, \"-9.81 m/s^2\"]";
+
+/// Runs of a robot of the library in some gravity, of such a duration (s) and the robot as it is
+/// described.
+fn runs(name: &str, gravity: [f64; 3], duration: f64) -> (Robot, Runs) {
+    let described = text(name);
+    let own = replaced(&described, DOWN, &format!("gravity = {gravity:?}"));
+    let moved = robot(&own);
+    let mut experiment = moved.experiment().expect("an experiment");
+    experiment.plan_mut().duration_s = duration;
+    let mut held_out = moved.held_out();
+    if name == "rx90.toml" {
+        held_out = vec![String::from("validation")];
+    }
+    let runs = experiment.runs(&held_out, &|_, _| {}).expect("runs");
+    (robot(&described), runs)
+}
+
+fn identified(robot: &Robot, runs: &Runs, direction: bool) -> Identification {
+    let identifier = Identifier::new(robot).data(runs);
+    let found = identifier.gravity_direction(direction).run();
+    found.unwrap_or_else(|error| panic!("{}", error.render(false)))
+}
+
+/// The largest error on held-out runs of the base parameters, percent.
+fn held_out_error(result: &Identification) -> f64 {
+    let own = result.cross_validation.iter();
+    let own = own.filter(|one| one.stage == Stage::Base);
+    own.map(|one| one.relative_error_percent)
+        .fold(0.0, f64::max)
+}
+
+/// Direction and base parameters are those of the robot within their deviations.
+fn check(result: &Identification, gravity: [f64; 3]) {
+    let found = result.gravity.as_ref().expect("a direction");
+    println!("{found:?}");
+    assert!(found.significant);
+    assert!(found.tilt_deviation < 0.5_f64.to_radians());
+    for ((own, deviation), truth) in found.estimated.iter().zip(found.deviations).zip(gravity) {
+        assert!(
+            (own - truth).abs() < 3.0 * deviation,
+            "{own} ± {deviation}, {truth}"
+        );
+    }
+    let mut estimates = result.estimates.iter();
+    let base = estimates
+        .find(|one| one.stage == Stage::Base && one.estimator == Estimator::LeastSquares)
+        .expect("base parameters");
+    let miss = |one: &overact_identification::ParameterEstimate| {
+        let truth = one.true_value.expect("a true value");
+        ((one.value - truth) / one.correlated_standard_deviation).abs()
+    };
+    let misses: Vec<f64> = base.parameters.iter().map(miss).collect();
+    let far = misses.iter().filter(|own| **own > 3.0).count();
+    println!(
+        "{} parameters, {far} beyond three deviations, {misses:.1?}",
+        misses.len()
+    );
+    assert!(far * 20 <= misses.len(), "{misses:?}");
+    assert!(misses.iter().all(|own| *own < 5.0), "{misses:?}");
+}
+
+#[test]
+fn a_serial_robot_that_stands_off_the_vertical_tells_it() {
+    let (robot, runs) = runs("rx90.toml", turned(), by_tier([5.0, 20.0]));
+    let result = identified(&robot, &runs, true);
+    check(&result, turned());
+    // What turns with the first joint has an effect only now.
+    let has = |name: &str| {
+        let mut all = result.base_parameters.iter();
+        all.any(|one| one.parameter == name)
+    };
+    assert!(has("mx_1") && has("my_1"));
+    let described = identified(&robot, &runs, false);
+    assert!(described.gravity.is_none());
+    let errors = [&result, &described].map(held_out_error);
+    println!("held out: {errors:?} %");
+    assert!(errors[0] < 0.9 * errors[1], "{errors:?}");
+    assert!(
+        result
+            .warnings
+            .iter()
+            .any(|one| one.contains("gravity = ["))
+    );
+}
+
+/// What a tilt does to a robot with loops is mostly taken in by offsets of its drives and masses of its legs: it is
+/// told with a bias of several deviations, so it is not told.
+#[test]
+fn robots_with_loops_are_refused() {
+    for name in ["delta.toml", "planar_4prr.toml", "palletiser.toml"] {
+        let robot = robot(&text(name));
+        let runs = robot.experiment().expect("an experiment");
+        let runs = runs.runs(&[], &|_, _| {}).expect("runs");
+        let found = Identifier::new(&robot).data(&runs).gravity_direction(true);
+        let error = found.run().expect_err("loops").render(false);
+        assert!(error.contains("robots without loops only"), "{error}");
+    }
+}
+
+#[test]
+fn a_robot_that_stands_upright_is_identified_as_it_is_described() {
+    let (robot, runs) = runs("rx90.toml", [0.0, 0.0, -9.81], 5.0);
+    let result = identified(&robot, &runs, true);
+    let found = result.gravity.as_ref().expect("a direction");
+    println!("{found:?}");
+    assert!(!found.significant);
+    assert_eq!(found.used(), [0.0, 0.0, -9.81]);
+    // Parameters are less sure than they were if the direction was known.
+    let known = identified(&robot, &runs, false);
+    let deviations = |one: &Identification| -> Vec<f64> {
+        let own = one.estimates[0].parameters.iter();
+        own.map(|own| own.correlated_standard_deviation).collect()
+    };
+    let pairs: Vec<(f64, f64)> = deviations(&known)
+        .into_iter()
+        .zip(deviations(&result))
+        .collect();
+    assert!(
+        pairs
+            .iter()
+            .all(|(known, own)| own >= &(known * (1.0 - 1e-9)))
+    );
+    assert!(
+        pairs.iter().any(|(known, own)| *own > 1.01 * known),
+        "{pairs:?}"
+    );
+}
+
+#[test]
+fn a_direction_that_nothing_tells_is_refused() {
+    let robot = robot(&text("emps.toml"));
+    let mut experiment = robot.experiment().expect("an experiment");
+    experiment.plan_mut().duration_s = 5.0;
+    let runs = experiment.runs(&[], &|_, _| {}).expect("runs");
+    let identifier = Identifier::new(&robot).data(&runs).gravity_direction(true);
+    let error = identifier.run().expect_err("no direction").render(false);
+    assert!(
+        error.contains("is not determined: wherever it points"),
+        "{error}"
+    );
+    let both = Identifier::new(&robot)
+        .data(&runs)
+        .gravity_direction(true)
+        .gains(true);
+    let error = both.run().expect_err("both").render(false);
+    assert!(error.contains("not identified together"), "{error}");
+}
+
+#[test]
+fn wrong_keys_are_told_at_their_places() {
+    let emps = text("emps.toml");
+    let told = |key: &str, more: [&str; 2]| {
+        let own = replaced(
+            &emps,
+            "[identification]\n",
+            &format!("[identification]\n{key}\n"),
+        );
+        let own = own.replace(more[0], more[1]);
+        let error = Robot::from_text("robot.toml", &own).expect_err("a wrong key");
+        let line = own
+            .lines()
+            .position(|line| line.contains("gravity_direction"));
+        let place = format!("robot.toml:{}:", line.expect("the key") + 1);
+        let told = error.render(false);
+        assert!(told.contains(&place), "{told}");
+        told
+    };
+    let none = ["", ""];
+    let error = told("gravity_direction = \"x\"", none);
+    assert!(error.contains("true or false"), "{error}");
+    let error = told("gravity_direction = [0, 0]", none);
+    assert!(error.contains("true or false"), "{error}");
+    let error = told("gravity_direction = true", [DOWN, "gravity = [0, 0, 0]"]);
+    assert!(error.contains("gravity is zero"), "{error}");
+    let both = "gravity_direction = true\ngains = true\nknown = { m_1 = 100 }";
+    let error = told(both, none);
+    assert!(error.contains("not identified together"), "{error}");
+    assert_eq!(error.matches("error:").count(), 1, "{error}");
+    let error = told("gravity_directions = true", none);
+    assert!(error.contains("gravity_direction"), "{error}");
+}

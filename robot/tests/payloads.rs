@@ -1,0 +1,278 @@
+//! Several payloads with names: each has parameters of its own, known masses fix the gains of the drives.
+
+use overact_identification::{Estimator, Identification, ParameterEstimate, Stage};
+use overact_robot::{Identifier, Robot, Runs};
+use overact_tier::by_tier;
+use std::path::Path;
+
+fn text(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
+    std::fs::read_to_string(path.join(name)).expect("a description")
+}
+
+fn robot(text: &str) -> Robot {
+    Robot::from_text("robot.toml", text).unwrap_or_else(|error| panic!("{}", error.render(false)))
+}
+
+fn replaced(text: &str, pairs: &[(&str, &str)]) -> String {
+    pairs.iter().fold(text.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1)
+    })
+}
+
+const PAYLOADS: &str = "payloads = [\"heavy\", \"light\"]\n\n[constants]";
+
+/// The RX90 whose last body carries two payloads in turn, and nothing in `unloaded` of its runs.
+fn rx90(unloaded: bool) -> String {
+    let text = text("rx90.toml");
+    let runs: Vec<usize> = text
+        .match_indices("[[experiment.run]]")
+        .map(|(at, _)| at)
+        .collect();
+    let own = &text[runs[0]..runs[1]];
+    let loaded = |name: &str| {
+        let run = format!("\"with {name}\"\npayload = \"{name}\"");
+        replaced(own, &[("\"identification\"", &run)])
+    };
+    let [heavy, light] = ["heavy", "light"].map(loaded);
+    let values = "[experiment.parameters]\nm_payload_heavy = 5\nmx_payload_heavy = 0.25\nmz_payload_heavy = 0.9\n\
+                  xx_payload_heavy = 0.18\nyy_payload_heavy = 0.2\nzz_payload_heavy = 0.03\n\
+                  m_payload_light = 2\nmy_payload_light = -0.1\nmz_payload_light = 0.3\n\
+                  xx_payload_light = 0.06\nyy_payload_light = 0.05\nzz_payload_light = 0.02\n";
+    let body = "[[leg.arm.joint]]\nname = \"payload\"\ntype = \"fixed\"\n\n[[place]]";
+    let text = text[..runs[0]].to_owned()
+        + if unloaded { own } else { "" }
+        + &heavy
+        + "\n"
+        + &light
+        + "\n"
+        + &text[runs[1]..];
+    replaced(
+        &text,
+        &[
+            ("[constants]", PAYLOADS),
+            ("[[place]]", body),
+            ("[experiment.parameters]\n", values),
+            (
+                "torque_noise = [1.0, 1.0, 0.5, 0.2, 0.2, 0.1]",
+                "torque_noise = [0.2, 0.2, 0.1, 0.05, 0.05, 0.02]",
+            ),
+            ("decimation = 10", "decimation = 10\nessential = false"),
+            (
+                "duration = \"20 s\"",
+                by_tier(["duration = \"5 s\"", "duration = \"20 s\""]),
+            ),
+        ],
+    )
+}
+
+fn runs(robot: &Robot, held_out: &[String]) -> Runs {
+    let experiment = robot.experiment().expect("an experiment");
+    assert_eq!(experiment.without_effect(), Vec::<String>::new().as_slice());
+    experiment.runs(held_out, &|_, _| {}).expect("runs")
+}
+
+fn identified(robot: &Robot, runs: &Runs) -> Identification {
+    let result = Identifier::new(robot).data(runs).run();
+    result.unwrap_or_else(|error| panic!("{}", error.render(false)))
+}
+
+fn base(result: &Identification) -> &[ParameterEstimate] {
+    let mut all = result.estimates.iter();
+    let base = all.find(|one| one.stage == Stage::Base && one.estimator == Estimator::LeastSquares);
+    &base.expect("base parameters").parameters
+}
+
+/// Estimates with these endings of their names are those of the robot within their deviations.
+fn check(result: &Identification, endings: [&str; 2]) {
+    for ending in endings {
+        let own = base(result).iter();
+        let own = own.filter(|one| one.name.trim_end_matches('R').ends_with(ending));
+        let own: Vec<&ParameterEstimate> = own.collect();
+        assert!(own.len() >= 4, "{ending}: {own:?}");
+        for one in own {
+            let truth = one.true_value.expect("a true value");
+            let miss = (one.value - truth) / one.correlated_standard_deviation;
+            println!(
+                "{}: {:.4} ± {:.4}, {truth}",
+                one.name, one.value, one.correlated_standard_deviation
+            );
+            assert!(miss.abs() < 3.5, "{one:?}");
+        }
+    }
+}
+
+#[test]
+fn two_payloads_of_a_serial_robot_are_told_from_each_other() {
+    let robot = robot(&rx90(true));
+    let runs = runs(&robot, &[String::from("validation")]);
+    let names: Vec<Option<&str>> = runs
+        .identified
+        .iter()
+        .map(|log| log.payload_name())
+        .collect();
+    assert_eq!(names, [None, Some("heavy"), Some("light")]);
+    let result = identified(&robot, &runs);
+    check(&result, ["_heavy", "_light"]);
+    for (name, mass) in [("m_payload_heavy", 5.0), ("m_payload_light", 2.0)] {
+        let own = base(&result).iter().find(|one| one.name == name);
+        assert!((own.expect(name).value / mass - 1.0).abs() < 0.02);
+    }
+    // Each is a body of its own where parameters have to be those of bodies.
+    let consistent = result.consistent.first().expect("a consistent estimate");
+    for name in ["m_payload_heavy", "m_payload_light"] {
+        let body = consistent.bodies.iter().find(|one| one.mass == name);
+        let body = body.expect(name);
+        println!("{name}: {} kg, {}", body.mass_kg, body.definiteness);
+        assert!(body.definiteness > 0.0);
+    }
+    let told = &result.runs[1];
+    assert_eq!(
+        (told.payload, told.payload_name.as_deref()),
+        (true, Some("heavy"))
+    );
+}
+
+#[test]
+fn without_an_unloaded_run_one_payload_is_told_beside_the_other() {
+    let robot = robot(&rx90(false));
+    let runs = runs(&robot, &[String::from("validation")]);
+    let result = identified(&robot, &runs);
+    let own = base(&result)
+        .iter()
+        .find(|one| one.name == "m_payload_heavyR");
+    let own = own.expect("the mass of one less that of the other");
+    assert_eq!(own.true_value, Some(3.0));
+    let miss = (own.value - 3.0) / own.correlated_standard_deviation;
+    assert!(
+        miss.abs() < 3.5 && (own.value / 3.0 - 1.0).abs() < 0.03,
+        "{own:?}"
+    );
+    assert!(base(&result).iter().all(|one| !one.name.contains("_light")));
+    assert!(
+        result
+            .warnings
+            .iter()
+            .any(|one| one.contains("less its own")),
+        "{:?}",
+        result.warnings
+    );
+}
+
+/// The DualV with two payloads of its platform.
+fn dualv(more: &str) -> String {
+    replaced(
+        &text("dualv.toml"),
+        &[
+            ("[constants]", PAYLOADS),
+            ("[identification]\n", &format!("[identification]\n{more}\n")),
+            (
+                "zz_payload = 0.0161\nmx_payload = -0.127\nm_payload = 5.42",
+                "zz_payload_heavy = 0.0161\nmx_payload_heavy = -0.127\nm_payload_heavy = 5.42\nzz_payload_light = 0.006\nmy_payload_light = 0.05\nm_payload_light = 2",
+            ),
+            ("payload = true", "payload = \"heavy\""),
+            ("payload = true", "payload = \"light\""),
+            ("payload = true", "payload = \"heavy\""),
+            ("sampling = \"5 kHz\"", "sampling = \"1 kHz\""),
+            ("decimation = 50", "decimation = 10"),
+            (
+                "duration = \"10 s\"",
+                by_tier(["duration = \"2 s\"", "duration = \"10 s\""]),
+            ),
+        ],
+    )
+}
+
+#[test]
+fn two_known_masses_of_a_parallel_robot_fix_its_gains() {
+    let gains = [1.12, 0.83, 1.33, 0.72];
+    let known =
+        "gains = true\nknown = { m_payload_heavy = \"5.42 kg\", m_payload_light = \"2 kg\" }";
+    let robot = robot(&dualv(known));
+    let mut runs = runs(&robot, &robot.held_out());
+    let inverse = gains.map(|gain: f64| 1.0 / gain);
+    for logs in [&mut runs.identified, &mut runs.validation] {
+        *logs = logs
+            .iter()
+            .map(|log| log.clone().with_torque_factors(&inverse))
+            .collect();
+    }
+    let result = identified(&robot, &runs);
+    for (own, truth) in result.gains.iter().zip(gains) {
+        println!("{own:?}, {truth}");
+        assert!(
+            (own.factor - truth).abs() < 3.0 * own.deviation,
+            "{own:?}, {truth}"
+        );
+        assert!(own.deviation < 0.05 * truth);
+    }
+    check(&result, ["_heavy", "_light"]);
+}
+
+#[test]
+fn runs_with_and_without_names_are_not_mixed() {
+    let robot = robot(&dualv(""));
+    let mut runs = runs(&robot, &robot.held_out());
+    let log = &runs.identified[3];
+    let (positions, torques) = log.load().expect("a run");
+    let own = overact_identification::Log::new("own", 1000.0, 4, positions, torques, true);
+    runs.identified[3] = own.expect("a run");
+    let error = Identifier::new(&robot)
+        .data(&runs)
+        .run()
+        .expect_err("no names");
+    let error = error.render(false);
+    assert!(
+        error.contains("a payload without a name") && error.contains("own"),
+        "{error}"
+    );
+}
+
+#[test]
+fn wrong_names_are_told_at_their_places() {
+    let told = |pairs: &[(&str, &str)], place: &str| {
+        let own = replaced(&dualv(""), pairs);
+        let error = Robot::from_text("robot.toml", &own).expect_err("a wrong name");
+        let line = own
+            .lines()
+            .position(|line| line.contains(place))
+            .expect(place);
+        let told = error.render(false);
+        assert!(
+            told.contains(&format!("robot.toml:{}:", line + 1)),
+            "{told}"
+        );
+        told
+    };
+    let error = told(
+        &[("payload = \"light\"", "payload = \"lihgt\"")],
+        "\"lihgt\"",
+    );
+    assert!(
+        error.contains("no payload `lihgt`") && error.contains("`light`"),
+        "{error}"
+    );
+    let error = told(
+        &[("payload = \"light\"", "payload = true")],
+        "payload = true",
+    );
+    assert!(error.contains("has to say which"), "{error}");
+    let error = told(&[("payload = \"light\"", "payload = 3")], "payload = 3");
+    assert!(error.contains("true or false"), "{error}");
+    let twice = [(
+        "[\"heavy\", \"light\"]",
+        "[\"heavy\", \"light\", \"heavy\"]",
+    )];
+    assert!(told(&twice, "payloads").contains("listed twice"));
+    let word = [("[\"heavy\", \"light\"]", "[\"heavy\", \"light\", \"a b\"]")];
+    assert!(told(&word, "payloads").contains("cannot be the name"));
+    let none = [(PAYLOADS, "payloads = []\n\n[constants]")];
+    assert!(told(&none, "payloads = []").contains("has 0 names"));
+    let one = [(PAYLOADS, "payloads = \"heavy\"\n\n[constants]")];
+    assert!(told(&one, "payloads = \"heavy\"").contains("list"));
+    let error = told(&[("m_payload_light", "m_payload_lite")], "m_payload_lite");
+    assert!(error.contains("m_payload_light"), "{error}");
+    let error = told(&[("[platform.payload]", "[platform.burden]")], "payloads");
+    assert!(error.contains("the robot has no payload"), "{error}");
+}

@@ -1,0 +1,86 @@
+//! Friction of other kinds than the symmetric one: drawn from dice of its own when all else is drawn, so that a
+//! seed has the mechanism that it had without it.
+
+use super::{Dice, Shape, Sketch};
+use crate::reference::parameters::SYMBOLS;
+use crate::reference::{JointKind, Motion, Spring};
+
+/// What is added to the seed of a mechanism for the dice of its friction.
+const OWN: u64 = 0x0f12_1c71;
+
+/// Groups and symbols with friction that is the same in both directions.
+const SYMMETRIC: [&str; 5] = ["all", "friction", "fv", "fs", "off"];
+
+/// The load a + b cos(q) of a revolute joint, or a + b q of a prismatic one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// What it is at any position.
+    pub constant: f64,
+    /// What depends on the position.
+    pub factor: f64,
+}
+
+impl Load {
+    /// As the reference has it.
+    fn spring(self, kind: JointKind) -> Spring {
+        let Self { constant, factor } = self;
+        Spring::new(move |q: f64| match kind {
+            JointKind::Revolute => constant + factor * q.cos(),
+            _ => constant + factor * q,
+        })
+    }
+
+    /// As a description has it.
+    pub(super) fn text(self, kind: JointKind) -> String {
+        let Self { constant, factor } = self;
+        match kind {
+            JointKind::Revolute => format!("{constant:?} N m + {factor:?} N m * cos(q)"),
+            _ => format!("{constant:?} N + {factor:?} N/m * q"),
+        }
+    }
+}
+
+impl Sketch {
+    /// Draws friction that rises towards standstill, that differs by direction, and, without a platform, that
+    /// grows with a load.
+    pub(super) fn draw_friction(&mut self) {
+        let mut dice = Dice::new(self.seed ^ OWN);
+        let is_tree = self.motion == Motion::None;
+        for shape in &mut self.shapes {
+            shape.draw_friction(&mut dice, is_tree);
+        }
+    }
+}
+
+impl Shape {
+    fn draw_friction(&mut self, dice: &mut Dice, is_tree: bool) {
+        let directed: Vec<&'static str> = SYMBOLS[15..19].to_vec();
+        for member in &mut self.members {
+            let kind = member.joint.kind;
+            if kind == JointKind::Fixed {
+                continue;
+            }
+            if dice.chance(0.15) {
+                member.joint.stribeck = Some(dice.distance(0.05, 2.0));
+            }
+            if dice.chance(0.15) {
+                let own = match member.parameters.iter().any(|one| SYMMETRIC.contains(one)) {
+                    // Both directions together would be the symmetric one once more.
+                    true => [[0, 2], [1, 3]]
+                        .map(|pair| directed[dice.pick(&pair)])
+                        .to_vec(),
+                    false => directed.clone(),
+                };
+                member.parameters.extend(dice.some(&own));
+            }
+            if is_tree && dice.chance(0.25) {
+                let load = Load {
+                    constant: dice.length(2.0),
+                    factor: dice.distance(0.5, 3.0),
+                };
+                member.load = Some(load);
+                member.joint.load = Some(load.spring(kind));
+            }
+        }
+    }
+}

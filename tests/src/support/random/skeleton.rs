@@ -1,0 +1,205 @@
+//! Random robots without a platform: a tree of joints, and chains between any of its bodies and of theirs.
+//!
+//! Every joint of the skeleton has a motor, so the actuators determine the motion whatever the chains do; some
+//! chains have motors, too. A chain is a drive of two crossing axes and a slide, an arm of three revolute joints,
+//! or three slides: three joints that follow the point that they end in. It starts near its home, and closes by
+//! itself or not at all; what does not close, or is nearly singular, is for the caller to throw away.
+
+use super::Dice;
+use std::fmt::Write;
+
+/// The description of a seed.
+#[must_use]
+pub fn skeleton(seed: u64) -> String {
+    let mut dice = Dice::new(seed);
+    let mut text = String::from("name = \"Random\"\ngravity = [1.0, -2.0, -9.0]\n");
+    let mut places = String::new();
+    let mut bodies = tree(&mut dice, &mut text, &mut places);
+    let chains = 1 + dice.below(3);
+    for index in 0..chains {
+        bodies.extend(chain(&mut dice, &mut text, &mut places, index, &bodies));
+    }
+    text + &places
+}
+
+/// Writes the skeleton; the names of its bodies.
+fn tree(dice: &mut Dice, text: &mut String, places: &mut String) -> Vec<String> {
+    let count = 2 + dice.below(3);
+    write(text, format_args!("[leg.tree]\n{}", base(dice, None)));
+    let mut home = Vec::new();
+    for index in 0..count {
+        let slides = dice.chance(0.25);
+        let antecedent = match index {
+            0 => String::new(),
+            _ => format!("antecedent = \"j{}\"\n", dice.below(index)),
+        };
+        joint(
+            text,
+            dice,
+            "tree",
+            &format!("j{index}"),
+            slides,
+            Some(antecedent),
+        );
+        let unit = if slides { "m" } else { "rad" };
+        home.push(format!("j{index} = \"{:?} {unit}\"", dice.angle(0.8)));
+    }
+    place(places, "tree", &home);
+    (0..count).map(|index| format!("j{index}")).collect()
+}
+
+/// Writes a chain between two bodies; the names of its own.
+fn chain(
+    dice: &mut Dice,
+    text: &mut String,
+    places: &mut String,
+    index: usize,
+    bodies: &[String],
+) -> Vec<String> {
+    let name = format!("chain{index}");
+    let (from, to) = loop {
+        let from = dice.chance(0.75).then(|| dice.below(bodies.len()));
+        let to = dice.below(bodies.len());
+        if from != Some(to) {
+            break (from, to);
+        }
+    };
+    let on = base(dice, from.map(|body| bodies[body].as_str()));
+    write(text, format_args!("[leg.{name}]\n{on}"));
+    let home = match dice.below(3) {
+        0 => drive(dice, text, &name),
+        1 => arm(dice, text, &name),
+        _ => slides(dice, text, &name),
+    };
+    let at = [0; 3].map(|_| dice.length(0.3));
+    write(
+        text,
+        format_args!(
+            "[leg.{name}.end]\ntype = \"point\"\nbody = \"{}\"\nat = {at:?}\n",
+            bodies[to]
+        ),
+    );
+    place(places, &name, &home);
+    (0..3).map(|joint| format!("{name}.j{joint}")).collect()
+}
+
+/// Two crossing axes and a slide.
+fn drive(dice: &mut Dice, text: &mut String, name: &str) -> Vec<String> {
+    let motor = if dice.chance(0.5) {
+        "actuated = true\n"
+    } else {
+        ""
+    };
+    let fixed = "alpha = \"90 deg\"\ntheta = \"q + 90 deg\"\n";
+    for joint in 0..2 {
+        write(
+            text,
+            format_args!("[[leg.{name}.joint]]\nname = \"j{joint}\"\ntype = \"revolute\"\n{fixed}"),
+        );
+    }
+    write(
+        text,
+        format_args!(
+            "[[leg.{name}.joint]]\nname = \"j2\"\ntype = \"prismatic\"\nalpha = \"90 deg\"\n{motor}"
+        ),
+    );
+    let turns = [0, 1].map(|joint| format!("j{joint} = {:?}", dice.angle(1.5)));
+    let mut home: Vec<String> = turns.into();
+    home.push(format!("j2 = {:?}", dice.distance(0.4, 0.9)));
+    home
+}
+
+/// Three revolute joints: a shoulder of two axes, and an elbow.
+fn arm(dice: &mut Dice, text: &mut String, name: &str) -> Vec<String> {
+    let motor = if dice.chance(0.5) {
+        "actuated = true\n"
+    } else {
+        ""
+    };
+    let (d, upper, fore) = (
+        dice.length(0.1),
+        dice.distance(0.6, 0.9),
+        dice.distance(0.6, 0.9),
+    );
+    let joints = [
+        format!("j0\"\ntype = \"revolute\"\n{motor}"),
+        format!("j1\"\ntype = \"revolute\"\nalpha = \"90 deg\"\nd = {d:?}\n"),
+        format!("j2\"\ntype = \"revolute\"\nd = {upper:?}\n"),
+        format!("tip\"\ntype = \"fixed\"\nd = {fore:?}\n"),
+    ];
+    for joint in joints {
+        write(text, format_args!("[[leg.{name}.joint]]\nname = \"{joint}"));
+    }
+    (0..3)
+        .map(|joint| format!("j{joint} = {:?}", dice.angle(1.5)))
+        .collect()
+}
+
+/// Three slides that are not parallel.
+fn slides(dice: &mut Dice, text: &mut String, name: &str) -> Vec<String> {
+    for joint in 0..3 {
+        let twist = dice.distance(1.0, 2.0);
+        let (alpha, theta) = match joint {
+            0 => (0.0, dice.angle(0.5)),
+            _ => (twist, dice.distance(0.8, 1.4)),
+        };
+        write(
+            text,
+            format_args!(
+                "[[leg.{name}.joint]]\nname = \"j{joint}\"\ntype = \"prismatic\"\nalpha = {alpha:?}\ntheta = {theta:?}\n"
+            ),
+        );
+    }
+    (0..3)
+        .map(|joint| format!("j{joint} = {:?}", dice.length(0.4)))
+        .collect()
+}
+
+/// A joint of any placement.
+fn joint(
+    text: &mut String,
+    dice: &mut Dice,
+    leg: &str,
+    name: &str,
+    slides: bool,
+    antecedent: Option<String>,
+) {
+    let kind = if slides { "prismatic" } else { "revolute" };
+    let (gamma, alpha) = (dice.angle(1.5), dice.twist());
+    let (b, d, r) = (dice.length(0.2), dice.length(0.3), dice.length(0.2));
+    let turn = if slides {
+        format!("theta = {:?}\n", dice.angle(1.0))
+    } else {
+        format!("r = {r:?}\n")
+    };
+    let before = antecedent.unwrap_or_default();
+    write(
+        text,
+        format_args!(
+            "[[leg.{leg}.joint]]\nname = \"{name}\"\ntype = \"{kind}\"\n{before}gamma = {gamma:?}\nalpha = {alpha:?}\nb = {b:?}\nd = {d:?}\n{turn}actuated = true\n"
+        ),
+    );
+}
+
+/// A base frame in the ground or on a body.
+fn base(dice: &mut Dice, body: Option<&str>) -> String {
+    let at = [0; 3].map(|_| dice.length(0.4));
+    let rotation = [0; 3].map(|_| dice.angle(1.0));
+    let body = body.map_or_else(String::new, |body| format!("body = \"{body}\", "));
+    format!("base = {{ {body}at = {at:?}, rotation = {rotation:?} }}\n")
+}
+
+fn place(places: &mut String, name: &str, home: &[String]) {
+    write(
+        places,
+        format_args!(
+            "[[place]]\nname = \"{name}\"\nshape = \"{name}\"\nhome = {{ {} }}\n",
+            home.join(", ")
+        ),
+    );
+}
+
+fn write(text: &mut String, what: std::fmt::Arguments<'_>) {
+    // Text takes what is written.
+    let _ = text.write_fmt(what);
+}

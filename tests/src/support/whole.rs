@@ -1,0 +1,44 @@
+//! A description against the reference in all functions at once.
+
+use super::conversion::reference;
+use super::expected::Expected;
+use super::library::workspace;
+use super::sample::samples;
+use super::{Comparison, Evaluated, Failure, model_with};
+use overact::Function;
+use overact_codegen::{Effort, Request, Source};
+
+/// What all functions of a description miss of the reference in so many states, by more than the tolerance:
+/// the first is that of functions of base parameters, whose regroupings are told from numbers, the second that
+/// of all others.
+///
+/// # Errors
+///
+/// A description that is wrong, and one without regular states.
+pub fn against_reference(
+    source: Source,
+    states: usize,
+    [of_base, of_others]: [f64; 2],
+) -> Result<Vec<String>, Failure> {
+    let model = model_with(&source, &Request::with_effort(Effort::None))?;
+    let mechanism = reference(&model.mechanism, workspace(&model));
+    let expected = Expected::by_position(&model, mechanism);
+    let parameters = expected.parameters();
+    let all = samples(&expected.mechanism, &parameters, states, 7, false)?;
+    let truths = all.iter().map(|sample| expected.at(sample));
+    let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
+    let mut comparisons = [of_base, of_others].map(Comparison::new);
+    for function in &model.functions {
+        // The closure error is what Newton's method drives to zero, not a quantity of its own.
+        if function.computes != Function::ClosureError {
+            let at = usize::from(!function.name.contains("_base"));
+            comparisons[at].function(function, &Evaluated(&model), &all, &truths)?;
+        }
+    }
+    let [mut all, others] = comparisons;
+    if all.lines.len() + others.lines.len() <= 20 {
+        return Err("hardly a function was compared".into());
+    }
+    all.failures.extend(others.failures);
+    Ok(all.failures)
+}
