@@ -1,0 +1,86 @@
+"""Exceptions of the package."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Iterable
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing that is wrong.
+
+    Attributes:
+        message: What is wrong, in one sentence.
+        file: The file, as it was named, or the name of a run.
+        line: Line, counted from 1.
+        column: Number of a character, counted from 1, or the name of a column of a table.
+        help: A way out.
+    """
+
+    message: str
+    file: str | None = None
+    line: int | None = None
+    column: int | str | None = None
+    help: str | None = None
+
+
+class OveractError(Exception):
+    """What overact can't do, with all that is wrong at once.
+
+    Attributes:
+        problems: All of it, each with its place and a way out.
+    """
+
+    def __init__(self, message: str, problems: Iterable[tuple] = ()) -> None:
+        super().__init__(message)
+        self.problems: tuple[Problem, ...] = tuple(Problem(*one) for one in problems)
+
+    def _first(self, attribute: str):
+        return getattr(self.problems[0], attribute) if self.problems else None
+
+    @property
+    def file(self) -> str | None:
+        """The file of the first problem."""
+        return self._first("file")
+
+    @property
+    def line(self) -> int | None:
+        """Line of the first problem, counted from 1."""
+        return self._first("line")
+
+    @property
+    def column(self) -> int | str | None:
+        """Where the first problem is in its line."""
+        return self._first("column")
+
+    @property
+    def help(self) -> str | None:
+        """A way out of the first problem."""
+        return self._first("help")
+
+
+class DescriptionError(OveractError, ValueError):
+    """A description that is wrong: every error of it, each at its line."""
+
+
+class DataError(OveractError, ValueError):
+    """Files, logs or settings that can't be used."""
+
+
+class EvaluationError(OveractError, ArithmeticError):
+    """A state at which a function has no value: out of reach, singular, not finite.
+
+    Attributes:
+        sample: Number of the first such sample, counted from 0 through all axes but the last.
+        reason: What is wrong there.
+    """
+
+    def __init__(self, message: str, sample: int = 0, reason: str = "") -> None:
+        super().__init__(message)
+        self.sample = sample
+        self.reason = reason
+
+
+class InternalError(OveractError, RuntimeError):
+    """Something is wrong with overact itself; please report it."""

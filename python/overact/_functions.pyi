@@ -1,0 +1,165 @@
+"""The functions of robots. This file is written by `tools/functions.py`.
+
+r are the degrees of freedom, n the actuators, n_t the joints, n_st, n_b and n_l the standard, base and
+payload parameters. Robots without a platform call pose, twist and acceleration `joints`,
+`joint_velocities` and `joint_accelerations`; `Function.inputs` has the names of a robot's.
+"""
+
+from ._overact import Function
+
+class Functions:
+    pose_in_closed_form: Function
+    """The pose from the actuators in closed form, in the assembly mode of the home configuration; of
+    redundant actuators only some are used. Inputs: actuators (n; m, rad). Output: (pose,)."""
+    joints: Function
+    """Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home
+    configuration. Inputs: pose (m, rad). Output: (n_t,)."""
+    actuator_positions: Function
+    """Positions q of the actuated joints (m, rad), in the working mode of the home configuration. Inputs:
+    pose (m, rad). Output: (n,)."""
+    inverse_jacobian: Function
+    """J_p^inv: actuator velocities = J_p^inv v, eq. (20). Inputs: pose (m, rad). Output: (n, r)."""
+    inverse_jacobian_from_joints: Function
+    """J_p^inv: actuator velocities = J_p^inv v, eq. (20). Inputs: joints (n_t; m, rad) and, as its
+    `inputs` say, what else it takes. Output: (n, r)."""
+    jacobian: Function
+    """The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
+    Inputs: pose (m, rad). Output: (r, n)."""
+    legs_jacobian_from_joints: Function
+    """J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base
+    frame, leg by leg, per joint rate. Inputs: pose (m, rad), joints (n_t; m, rad). Output: (n_t, n_t)."""
+    legs_platform_jacobian_from_joints: Function
+    """J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate. Inputs: pose
+    (m, rad), joints (n_t; m, rad). Output: (n_t, r)."""
+    closure_platform_jacobian_from_joints: Function
+    """A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
+    Inputs: pose (m, rad), joints (n_t; m, rad). Output: (n, r)."""
+    closure_actuator_jacobian_from_joints: Function
+    """B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal. Inputs: pose (m, rad), joints
+    (n_t; m, rad). Output: (n, n)."""
+    closure_error_from_joints: Function
+    """By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m,
+    rad). Inputs: pose (m, rad), joints (n_t; m, rad). Output: (n_t,)."""
+    joint_velocities: Function
+    """Velocities of all joints (m/s, rad/s), eq. (9). Inputs: pose (m, rad), twist (r; m/s, rad/s).
+    Output: (n_t,)."""
+    joint_accelerations: Function
+    """Accelerations of all joints (m/s², rad/s²), eq. (10). Inputs: pose (m, rad), twist (r; m/s, rad/s),
+    acceleration (r; m/s², rad/s²). Output: (n_t,)."""
+    twist_from_actuators: Function
+    """The twist v that fits the actuator velocities in the sense of least squares, eq. (21). Inputs: pose
+    (m, rad), actuator_velocities (n; m/s, rad/s). Output: (r,)."""
+    acceleration_from_actuators: Function
+    """The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on
+    J_p^inv. Inputs: pose (m, rad), twist (r; m/s, rad/s), actuator_accelerations (n; m/s², rad/s²).
+    Output: (r,)."""
+    idm_red_platform: Function
+    """IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30). Inputs: pose (m,
+    rad), twist (r; m/s, rad/s), acceleration (r; m/s², rad/s²). Output: (r, n_st)."""
+    idm_red_platform_from_joints: Function
+    """IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30). Inputs: joints (n_t;
+    m, rad) and, as its `inputs` say, what else it takes. Output: (r, n_st)."""
+    idm_red_platform_from_actuators: Function
+    """IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30). Inputs: actuators (n;
+    m, rad) and, as its `inputs` say, what else it takes; the pose is found. Output: (r, n_st)."""
+    idm_red_actuators: Function
+    """IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36). Inputs: pose
+    (m, rad), twist (r; m/s, rad/s), acceleration (r; m/s², rad/s²). Output: (r, n_st)."""
+    idm_red_actuators_from_joints: Function
+    """IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36). Inputs: joints
+    (n_t; m, rad) and, as its `inputs` say, what else it takes. Output: (r, n_st)."""
+    idm_red_actuators_from_actuators: Function
+    """IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36). Inputs:
+    actuators (n; m, rad) and, as its `inputs` say, what else it takes; the pose is found. Output: (r,
+    n_st)."""
+    idm_red_platform_base: Function
+    """IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30). Inputs: pose (m,
+    rad), twist (r; m/s, rad/s), acceleration (r; m/s², rad/s²). Output: (r, n_b)."""
+    idm_red_platform_base_from_joints: Function
+    """IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30). Inputs: joints (n_t;
+    m, rad) and, as its `inputs` say, what else it takes. Output: (r, n_b)."""
+    idm_red_platform_base_from_actuators: Function
+    """IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30). Inputs: actuators (n;
+    m, rad) and, as its `inputs` say, what else it takes; the pose is found. Output: (r, n_b)."""
+    idm_red_actuators_base: Function
+    """IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36). Inputs: pose
+    (m, rad), twist (r; m/s, rad/s), acceleration (r; m/s², rad/s²). Output: (r, n_b)."""
+    idm_red_actuators_base_from_joints: Function
+    """IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36). Inputs: joints
+    (n_t; m, rad) and, as its `inputs` say, what else it takes. Output: (r, n_b)."""
+    idm_red_actuators_base_from_actuators: Function
+    """IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36). Inputs:
+    actuators (n; m, rad) and, as its `inputs` say, what else it takes; the pose is found. Output: (r,
+    n_b)."""
+    idm_red_payload: Function
+    """The payload's columns of case 1, eq. (38). Inputs: pose (m, rad), twist (r; m/s, rad/s),
+    acceleration (r; m/s², rad/s²). Output: (r, n_l)."""
+    idm_red_payload_from_joints: Function
+    """The payload's columns of case 1, eq. (38). Inputs: joints (n_t; m, rad) and, as its `inputs` say,
+    what else it takes. Output: (r, n_l)."""
+    idm_red_payload_from_actuators: Function
+    """The payload's columns of case 1, eq. (38). Inputs: actuators (n; m, rad) and, as its `inputs` say,
+    what else it takes; the pose is found. Output: (r, n_l)."""
+    idm_red_payload_actuators: Function
+    """The payload's columns of case 2, eq. (38). Inputs: pose (m, rad), twist (r; m/s, rad/s),
+    acceleration (r; m/s², rad/s²). Output: (r, n_l)."""
+    project_platform: Function
+    """Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30). Inputs: pose (m, rad), torques
+    (n; N, N m). Output: (r,)."""
+    project_actuators: Function
+    """Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36). Inputs: pose (m,
+    rad), torques (n; N, N m). Output: (r,)."""
+    inverse_dynamics: Function
+    """Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only
+    ones where there is no redundancy, eq. (19). Inputs: pose (m, rad), twist (r; m/s, rad/s),
+    acceleration (r; m/s², rad/s²), parameters (n_st + n_l; SI). Output: (n,)."""
+    inverse_dynamics_from_joints: Function
+    """Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only
+    ones where there is no redundancy, eq. (19). Inputs: joints (n_t; m, rad) and, as its `inputs` say,
+    what else it takes. Output: (n,)."""
+    inverse_dynamics_from_actuators: Function
+    """Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only
+    ones where there is no redundancy, eq. (19). Inputs: actuators (n; m, rad) and, as its `inputs` say,
+    what else it takes; the pose is found. Output: (n,)."""
+    inverse_dynamics_base: Function
+    """Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only
+    ones where there is no redundancy, eq. (19). Inputs: pose (m, rad), twist (r; m/s, rad/s),
+    acceleration (r; m/s², rad/s²), base_parameters (n_b + n_l; SI). Output: (n,)."""
+    inverse_dynamics_base_from_joints: Function
+    """Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only
+    ones where there is no redundancy, eq. (19). Inputs: joints (n_t; m, rad) and, as its `inputs` say,
+    what else it takes. Output: (n,)."""
+    inverse_dynamics_base_from_actuators: Function
+    """Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only
+    ones where there is no redundancy, eq. (19). Inputs: actuators (n; m, rad) and, as its `inputs` say,
+    what else it takes; the pose is found. Output: (n,)."""
+    mass_matrix: Function
+    """Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias. Inputs: pose (m, rad), parameters (n_st +
+    n_l; SI). Output: (r, r)."""
+    mass_matrix_base: Function
+    """Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias. Inputs: pose (m, rad), base_parameters (n_b
+    + n_l; SI). Output: (r, r)."""
+    bias: Function
+    """Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces. Inputs: pose (m, rad), twist (r;
+    m/s, rad/s), parameters (n_st + n_l; SI). Output: (r,)."""
+    bias_base: Function
+    """Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces. Inputs: pose (m, rad), twist (r;
+    m/s, rad/s), base_parameters (n_b + n_l; SI). Output: (r,)."""
+    forward_dynamics: Function
+    """Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    Inputs: pose (m, rad), twist (r; m/s, rad/s), torques (n; N, N m), parameters (n_st + n_l; SI).
+    Output: (r,)."""
+    forward_dynamics_base: Function
+    """Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
+    Inputs: pose (m, rad), twist (r; m/s, rad/s), torques (n; N, N m), base_parameters (n_b + n_l; SI).
+    Output: (r,)."""
+    inverse_dynamics_preloaded: Function
+    """Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives. Inputs:
+    pose (m, rad), twist (r; m/s, rad/s), acceleration (r; m/s², rad/s²), parameters (n_st + n_l; SI),
+    preload (n - r; N, N m). Output: (n,)."""
+    project_torques: Function
+    """τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no
+    redundancy. Inputs: pose (m, rad), torques (n; N, N m). Output: (n,)."""
+    null_space: Function
+    """N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that
+    case 2 projects. Inputs: pose (m, rad). Output: (n, n - r)."""

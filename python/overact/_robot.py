@@ -1,0 +1,377 @@
+"""A robot, compiled from its description."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence
+
+import numpy as np
+
+from ._functions import Functions
+from ._model import BaseParameter, Cost, Parameter
+from ._overact import Function, Handle
+from ._run import Run
+from ._symbolic import Symbolic
+
+if TYPE_CHECKING:
+    from ._result import Identification
+
+
+class _Table(tuple):
+    """A tuple whose elements can be called by their names, too."""
+
+    def __getitem__(self, key: Any) -> Any:
+        if isinstance(key, str):
+            for one in self:
+                if one.name == key:
+                    return one
+            raise KeyError(key)
+        return super().__getitem__(key)
+
+
+class Robot(Functions):
+    """A robot, compiled from its description in TOML.
+
+    The functions of the robot are attributes of it: ``robot.idm_red_platform(pose, twist,
+    acceleration)``; `functions` lists them. Each input is an array whose last axis has the numbers of a
+    sample, all axes before are samples; an input of one axis serves all samples. Contiguous float64 is
+    read where it lies, and ``out=`` takes a contiguous float64 array that the result is written to.
+    Other threads of Python run meanwhile. A state at which a function has no value (out of reach,
+    singular, not a finite number) is an `EvaluationError` that names the sample, or rows of NaN with
+    ``invalid="nan"``. Functions ``…_from_actuators`` find the pose first, sample after sample, from
+    ``start=`` or from the home configuration.
+
+    Args:
+        path: The description.
+
+    Raises:
+        DescriptionError: Everything that is wrong with the description, each at its line.
+        DataError: A file that can't be read.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self._take(Handle.from_file(os.fspath(path)))
+
+    @classmethod
+    def from_string(cls, text: str, name: str = "robot.toml") -> Robot:
+        """The robot of a description in memory; errors call it `name`."""
+        robot = cls.__new__(cls)
+        robot._take(Handle.from_text(text, name))
+        return robot
+
+    def _take(self, handle: Handle) -> None:
+        self._handle = handle
+        self._info = json.loads(handle.info())
+        parameter = lambda one: Parameter(one["name"], one["symbol"], one["unit"])  # noqa: E731
+        self._parameters = _Table(map(parameter, self._info["parameters"]))
+        self._payload_parameters = _Table(map(parameter, self._info["payload_parameters"]))
+        self._base_parameters = _Table(
+            BaseParameter(one["name"], one["parameter"], one["unit"], dict(one["regrouped"]))
+            for one in self._info["base_parameters"]
+        )
+
+    def _missing(self, name: str) -> Function:
+        # Asked for what is not there: a function, which stays from then on.
+        if name.startswith("_"):
+            raise AttributeError(name)
+        function = self._handle.function(name)
+        self.__dict__[name] = function
+        return function
+
+    if not TYPE_CHECKING:
+        # Type checkers know the functions of `Functions`, and no others.
+        __getattr__ = _missing
+
+    def __dir__(self) -> Iterable[str]:
+        return [*super().__dir__(), *self.functions]
+
+    def __reduce__(self) -> tuple:
+        return _rebuilt, (self.text, self.file)
+
+    # Names and sizes
+
+    @property
+    def name(self) -> str:
+        """Name of the robot."""
+        return self._info["name"]
+
+    @property
+    def summary(self) -> str:
+        """What the robot is, in a sentence."""
+        return self._info["summary"]
+
+    @property
+    def file(self) -> str:
+        """The description's path, or the name that it was given."""
+        return self._handle.file
+
+    @property
+    def text(self) -> str:
+        """The text of the description."""
+        return self._handle.text
+
+    @property
+    def r(self) -> int:
+        """Degrees of freedom: numbers of a twist."""
+        return self._info["r"]
+
+    @property
+    def n(self) -> int:
+        """Number of actuators."""
+        return self._info["n"]
+
+    @property
+    def legs(self) -> tuple[str, ...]:
+        """Names of the legs."""
+        return tuple(self._info["legs"])
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of all joints, in the order of ``joints``."""
+        return tuple(self._info["joints"])
+
+    @property
+    def actuators(self) -> tuple[str, ...]:
+        """Names of the actuators, in the order of positions and torques."""
+        return tuple(self._info["actuators"])
+
+    @property
+    def kept_actuators(self) -> tuple[str, ...]:
+        """Names of the actuators that case 2 keeps."""
+        return tuple(self.actuators[at] for at in self._info["kept_actuators"])
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates of a twist."""
+        return tuple(self._info["coordinates"])
+
+    @property
+    def pose_coordinates(self) -> tuple[str, ...]:
+        """Names of the numbers of a pose (m, rad); a spatial one ends with a quaternion."""
+        return tuple(self._info["pose_coordinates"])
+
+    @property
+    def home_pose(self) -> np.ndarray:
+        """The pose of the home configuration (m, rad)."""
+        return np.array(self._info["home_pose"])
+
+    @property
+    def home_joints(self) -> np.ndarray:
+        """Positions of all joints in the home configuration (m, rad)."""
+        return np.array(self._info["home_joints"])
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Standard parameters whose columns are not identically zero, in the order of the columns; they
+        can be called by name, too."""
+        return self._parameters
+
+    @property
+    def payload_parameters(self) -> Sequence[Parameter]:
+        """The payload's parameters in the order of their columns."""
+        return self._payload_parameters
+
+    @property
+    def base_parameters(self) -> Sequence[BaseParameter]:
+        """The base parameters with what is regrouped into each, in the order of the columns."""
+        return self._base_parameters
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """Names of the runs of the virtual experiment."""
+        return tuple(self._info["runs"])
+
+    @property
+    def held_out(self) -> tuple[str, ...]:
+        """Names of the runs that the description holds out, to validate with."""
+        return tuple(self._info["held_out"])
+
+    @property
+    def true_values(self) -> dict[str, float] | None:
+        """Standard parameters of the virtual robot (SI units); None without a virtual experiment."""
+        return self._info["true_values"]
+
+    # Functions
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """Names of all functions of the robot."""
+        return tuple(self._handle.function_names())
+
+    def function(self, name: str) -> Function:
+        """A function by its name, as ``getattr(robot, name)``."""
+        return self._handle.function(name)
+
+    def pose_from_actuators(self, actuators: Any, start: Any = None, out: Any = None) -> np.ndarray:
+        """Forward kinematics: the poses that fit the positions of all actuators best.
+
+        Args:
+            actuators: Positions of the actuators, (n,) or (N, n) (rad, m).
+            start: The pose from which the first sample is searched; each other one is searched from the
+                sample before. The home configuration if not given.
+            out: An array that the poses are written to.
+
+        Returns:
+            Poses (m, rad), one for each sample.
+        """
+        return self._handle.pose_from_actuators(actuators, start, out)
+
+    def cost(self, function: str, effort: str = "quick") -> Cost:
+        """What a function costs in generated code.
+
+        Args:
+            function: Its name.
+            effort: How hard fewer operations are searched: "none", "quick" or "thorough".
+        """
+        return self.costs([function], effort)[function]
+
+    def costs(self, functions: Iterable[str] | None = None, effort: str = "quick") -> dict[str, Cost]:
+        """What functions cost in generated code, and what they call; all functions if none are named.
+        Groups are "control", "identification" and "kinematics"."""
+        names = None if functions is None else list(functions)
+        document = json.loads(self._handle.costs(names, effort))
+        return {name: Cost._of(one["cost"]) for name, one in document.items()}
+
+    def to_sympy(self, function: str, effort: str = "quick") -> Symbolic:
+        """A function as expressions of SymPy (``pip install "overact[sympy]"``), for those who want to
+        look inside.
+
+        Args:
+            function: Its name.
+            effort: How hard fewer operations are searched: "none", "quick" or "thorough".
+        """
+        names = {
+            "pose": self.pose_coordinates,
+            "twist": [f"v_{one}" for one in self.coordinates],
+            "acceleration": [f"a_{one}" for one in self.coordinates],
+            "joints": [f"q_{one}" for one in self.joint_names],
+            "joint_velocities": [f"qd_{one}" for one in self.joint_names],
+            "joint_accelerations": [f"qdd_{one}" for one in self.joint_names],
+            "torques": [f"tau_{one}" for one in self.actuators],
+            "parameters": [one.name for one in (*self.parameters, *self.payload_parameters)],
+            "base_parameters": [one.name for one in (*self.base_parameters, *self.payload_parameters)],
+        }
+        from ._symbolic import _sympy
+
+        _sympy()
+        return Symbolic(function, self._handle.program(function, effort), names)
+
+    # Values of parameters
+
+    def parameter_vector(self, values: Mapping[str, float]) -> np.ndarray:
+        """Standard parameters by name as the array that functions take as ``parameters``: the robot's,
+        then the payload's, which may be left out all together.
+
+        Raises:
+            ValueError: Names that the robot does not have, or values that are missing.
+        """
+        self._complete(values)
+        names = [one.name for one in (*self.parameters, *self.payload_parameters)]
+        return np.array([float(values.get(name, 0.0)) for name in names])
+
+    def base_parameter_vector(self, values: Mapping[str, float]) -> np.ndarray:
+        """The array that functions take as ``base_parameters`` from standard parameters by name: all that
+        is regrouped into the base parameters, then the payload's."""
+        self._complete(values)
+        return np.array(self._handle.regrouped({name: float(one) for name, one in values.items()}))
+
+    def _complete(self, values: Mapping[str, float]) -> None:
+        own = [one.name for one in self.parameters]
+        load = [one.name for one in self.payload_parameters]
+        unknown = [name for name in values if name not in {*own, *load}]
+        if unknown:
+            raise ValueError(f"{self.name} has no parameters {', '.join(unknown)}")
+        missing = [name for name in own if name not in values]
+        lacking = [name for name in load if name not in values]
+        if len(lacking) < len(load):
+            missing += lacking
+        if missing:
+            raise ValueError(f"missing parameters: {', '.join(missing)}; write 0 for one that is absent")
+
+    # Simulation and identification
+
+    def simulate(
+        self,
+        runs: str | Iterable[str] | None = None,
+        *,
+        seed: int | None = None,
+        parameters: Mapping[str, float] | None = None,
+        progress: Callable[[float, str], None] | None = None,
+    ) -> list[Run]:
+        """Makes the virtual experiment of the description.
+
+        Args:
+            runs: Names of the runs; all if not given.
+            seed: Of the noise; the description's if not given.
+            parameters: Standard parameters of the virtual robot by name (SI units); those that are not
+                given are the description's.
+            progress: Is told the part that is done, from 0 to 1, and the name of a run.
+
+        Returns:
+            The runs, in their order.
+
+        Raises:
+            DescriptionError, DataError: An experiment that is not described, or can't be made.
+        """
+        names = [runs] if isinstance(runs, str) else list(runs or ())
+        given = None if parameters is None else {name: float(one) for name, one in parameters.items()}
+        if given is not None:
+            known = {one.name for one in (*self.parameters, *self.payload_parameters)}
+            unknown = [name for name in given if name not in known]
+            if unknown:
+                raise ValueError(f"{self.name} has no parameters {', '.join(unknown)}")
+        made, without_effect = self._handle.simulate(names, seed, given, progress)
+        if without_effect:
+            warnings.warn(f"without effect on the model: {', '.join(without_effect)}", stacklevel=2)
+        return [
+            Run(
+                name=name,
+                payload=payload,
+                sampling=sampling,
+                actuators=tuple(actuators),
+                time=time,
+                positions=positions,
+                torques=torques,
+                tracking_error=errors,
+            )
+            for name, payload, sampling, actuators, time, positions, torques, errors in made
+        ]
+
+    def identify(self, data: Any = None, **options: Any) -> Identification:
+        """`overact.identify` of this robot."""
+        from ._identify import identify
+
+        return identify(self, data, **options)
+
+    # How it is shown
+
+    def drawing(self) -> str:
+        """A drawing of the robot at its home configuration, SVG."""
+        return self._handle.drawing()
+
+    def __repr__(self) -> str:
+        counts = [
+            (len(self.parameters), "standard"),
+            (len(self.base_parameters), "base"),
+            (len(self.payload_parameters), "payload"),
+        ]
+        told = ", ".join(f"{count} {what}" for count, what in counts if count)
+        return (
+            f"<Robot {self.name}: r = {self.r}, n = {self.n}, {len(self.joint_names)} joints, "
+            f"parameters: {told}>"
+        )
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        return (
+            f"<div><p><strong>{escape(self.name)}</strong> {escape(self.summary)}</p>"
+            f'<div style="max-width: 32em">{self.drawing()}</div>'
+            f"<p>{escape(repr(self))}</p></div>"
+        )
+
+
+def _rebuilt(text: str, name: str) -> Robot:
+    return Robot.from_string(text, name)

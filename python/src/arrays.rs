@@ -1,0 +1,201 @@
+//! NumPy arrays as rows of numbers: without a copy where they are float64 and lie row after row, else
+//! converted once; what is no array of real numbers is refused by its name.
+
+use numpy::{
+    PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::{
+    exceptions::{PyTypeError, PyValueError},
+    intern,
+    prelude::*,
+};
+
+/// An input: a row of numbers for each sample, or one row for all.
+pub(crate) struct Rows<'py> {
+    array: PyReadonlyArrayDyn<'py, f64>,
+    name: String,
+    width: usize,
+}
+
+impl<'py> Rows<'py> {
+    /// The rows of a value; `width` is how many numbers a row has, `what` says which.
+    ///
+    /// # Errors
+    /// What is no array of real numbers, or of another shape.
+    pub(crate) fn new(
+        value: &Bound<'py, PyAny>,
+        name: &str,
+        (width, what): (usize, &str),
+    ) -> PyResult<Self> {
+        let array = match as_it_lies(value) {
+            Some(array) => array,
+            None => converted(value, name)?,
+        };
+        let shape = array.shape();
+        if shape.last() != Some(&width) {
+            return Err(wrong_shape(name, shape, width, what));
+        }
+        let array = array.try_readonly().map_err(|_| {
+            PyValueError::new_err(format!("`{name}` is being written by another call"))
+        })?;
+        let name = name.to_owned();
+        Ok(Self { array, name, width })
+    }
+
+    /// The shape of the samples; nothing of a single row.
+    fn samples(&self) -> &[usize] {
+        self.array.shape().split_last().map_or(&[], |(_, all)| all)
+    }
+
+    /// All numbers, row after row.
+    pub(crate) fn values(&self) -> PyResult<&[f64]> {
+        Ok(self.array.as_slice()?)
+    }
+
+    /// Whether one row serves all samples.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.array.ndim() == 1
+    }
+
+    /// Numbers of a row.
+    pub(crate) const fn width(&self) -> usize {
+        self.width
+    }
+}
+
+/// The shape that all inputs with more than a row have in common.
+///
+/// # Errors
+/// Inputs of different shapes.
+pub(crate) fn common_samples(inputs: &[Rows<'_>]) -> PyResult<Vec<usize>> {
+    let mut found: Option<&Rows<'_>> = None;
+    for input in inputs.iter().filter(|input| !input.is_shared()) {
+        match found {
+            None => found = Some(input),
+            Some(first) if first.samples() == input.samples() => {}
+            Some(first) => {
+                return Err(PyValueError::new_err(format!(
+                    "`{}` and `{}` have different samples: their shapes are {} and {}. A row that \
+                     serves all samples has the shape ({},)",
+                    first.name,
+                    input.name,
+                    shown(first.array.shape()),
+                    shown(input.array.shape()),
+                    input.width
+                )));
+            }
+        }
+    }
+    Ok(found.map_or_else(Vec::new, |input| input.samples().to_vec()))
+}
+
+/// An array that can be read as it lies.
+fn as_it_lies<'py>(value: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f64>>> {
+    // Subclasses may mean something else by the same numbers.
+    let array = value.cast::<PyArrayDyn<f64>>().ok()?;
+    let is_plain = value.is_exact_instance_of::<PyUntypedArray>();
+    let lies_right = is_plain && array.is_c_contiguous() && array.is_aligned();
+    lies_right.then(|| array.clone())
+}
+
+/// A copy as float64, row after row.
+fn converted<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let py = value.py();
+    if value.hasattr(intern!(py, "mask"))? && value.hasattr(intern!(py, "filled"))? {
+        return Err(PyTypeError::new_err(format!(
+            "`{name}` is a masked array; fill it first, `{name}.filled(...)`"
+        )));
+    }
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let array = numpy
+        .call_method1(intern!(py, "asarray"), (value,))
+        .map_err(|error| {
+            PyTypeError::new_err(format!("`{name}` is no array of numbers: {error}"))
+        })?;
+    let kind = array.getattr("dtype")?.getattr("kind")?;
+    if !matches!(kind.extract::<&str>()?, "f" | "i" | "u" | "b") {
+        return Err(PyTypeError::new_err(format!(
+            "`{name}` has the dtype {}; real numbers are wanted (float64)",
+            array.getattr("dtype")?.str()?
+        )));
+    }
+    let wanted = numpy.getattr("float64")?;
+    let array = numpy.call_method1(intern!(py, "require"), (array, wanted, "CA"))?;
+    Ok(array.cast_into::<PyArrayDyn<f64>>()?)
+}
+
+fn wrong_shape(name: &str, shape: &[usize], width: usize, what: &str) -> PyErr {
+    let hint = match shape {
+        [_] if width == 1 => {
+            format!("; one number a sample has the shape (N, 1): `{name}[:, None]`")
+        }
+        [first, .., _] if *first == width => format!("; is it turned? `{name}.T`"),
+        _ => String::new(),
+    };
+    let numbers = if width == 1 { "number" } else { "numbers" };
+    PyValueError::new_err(format!(
+        "`{name}` has the shape {}, but its last axis has to have {width} {numbers}{what}{hint}",
+        shown(shape)
+    ))
+}
+
+/// An array that results are written to: the caller's, or a new one.
+///
+/// # Errors
+/// A caller's that is not float64, of another shape, not row after row, or not to be written.
+pub(crate) fn output<'py>(
+    py: Python<'py>,
+    given: Option<&Bound<'py, PyAny>>,
+    shape: &[usize],
+) -> PyResult<PyReadwriteArrayDyn<'py, f64>> {
+    let array = match given {
+        None => py
+            .import(intern!(py, "numpy"))?
+            .call_method1(intern!(py, "empty"), (shape.to_vec(),))?
+            .cast_into::<PyArrayDyn<f64>>()?,
+        Some(given) => right_output(given, shape)?,
+    };
+    array.try_readwrite().map_err(|error| {
+        PyValueError::new_err(format!(
+            "`out` can't be written: {error}; it may be read-only, or share memory with an input"
+        ))
+    })
+}
+
+fn right_output<'py>(
+    given: &Bound<'py, PyAny>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let Ok(array) = given.cast::<PyArrayDyn<f64>>() else {
+        let found = match given.getattr("dtype") {
+            Ok(dtype) => format!("an array of {}", dtype.str()?),
+            Err(_) => format!("a {}", given.get_type().name()?),
+        };
+        return Err(PyTypeError::new_err(format!(
+            "`out` has to be an array of float64, not {found}"
+        )));
+    };
+    if array.shape() != shape {
+        return Err(PyValueError::new_err(format!(
+            "`out` has the shape {}, but the result has {}",
+            shown(array.shape()),
+            shown(shape)
+        )));
+    }
+    if !(array.is_c_contiguous() && array.is_aligned()) {
+        return Err(PyValueError::new_err(
+            "`out` has to lie row after row in memory (C order), without gaps",
+        ));
+    }
+    Ok(array.clone())
+}
+
+/// A shape as Python shows it.
+pub(crate) fn shown(shape: &[usize]) -> String {
+    let parts: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    match parts.as_slice() {
+        [one] => format!("({one},)"),
+        all => format!("({})", all.join(", ")),
+    }
+}

@@ -1,0 +1,91 @@
+//! Errors of the libraries as exceptions of the package, which are classes of `overact._errors`.
+
+use overact::SampleError;
+use overact_cli::failure::Failure;
+use overact_robot::{Column, Error, Problem};
+use pyo3::{call::PyCallArgs, exceptions::PyValueError, prelude::*};
+
+/// An exception of the package.
+fn raised<'py, A>(py: Python<'py>, class: &str, arguments: A) -> PyErr
+where
+    A: PyCallArgs<'py>,
+{
+    let made = py
+        .import("overact._errors")
+        .and_then(|module| module.getattr(class))
+        .and_then(|class| class.call1(arguments));
+    match made {
+        Ok(value) => PyErr::from_value(value),
+        Err(error) => error,
+    }
+}
+
+/// What is wrong with a description, with data or with overact itself.
+pub(crate) fn of_robot(py: Python<'_>, error: &Error) -> PyErr {
+    let class = match error {
+        _ if error.internal().is_some() => "InternalError",
+        error if is_of_description(error) => "DescriptionError",
+        _ => "DataError",
+    };
+    let problems: Vec<_> = error.problems().into_iter().map(parts).collect();
+    raised(py, class, (error.render(false), problems))
+}
+
+/// What a part of the command line says.
+pub(crate) fn of_command(py: Python<'_>, failure: &Failure) -> PyErr {
+    match failure {
+        Failure::Input(error) => of_robot(py, error),
+        Failure::Internal(_) => raised(py, "InternalError", (failure.render(false),)),
+        Failure::Usage(message) | Failure::Refused(message) => {
+            PyValueError::new_err(message.clone())
+        }
+    }
+}
+
+/// A sample at which a function has no value.
+pub(crate) fn of_sample(py: Python<'_>, function: &str, error: &SampleError) -> PyErr {
+    let message = format!("{function}: {error}");
+    raised(
+        py,
+        "EvaluationError",
+        (message, error.sample, error.error.to_string()),
+    )
+}
+
+fn is_of_description(error: &Error) -> bool {
+    match error {
+        Error::Description { .. } => true,
+        Error::Problems(_) => false,
+        Error::Several(all) => all.iter().any(is_of_description),
+    }
+}
+
+/// Message, file, line, column and a way out.
+type Parts = (
+    String,
+    Option<String>,
+    Option<usize>,
+    Option<Place>,
+    Option<String>,
+);
+
+/// A place in a line: the number of a character, or the name of a column.
+#[derive(IntoPyObject)]
+pub(crate) enum Place {
+    Number(usize),
+    Name(String),
+}
+
+fn parts(problem: Problem) -> Parts {
+    let column = problem.column.map(|column| match column {
+        Column::Number(number) => Place::Number(number),
+        Column::Name(name) => Place::Name(name),
+    });
+    (
+        problem.message,
+        problem.file,
+        problem.line,
+        column,
+        problem.help,
+    )
+}

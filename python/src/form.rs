@@ -1,0 +1,330 @@
+//! A function of a robot in one of its forms (from the pose, from joints, from actuators), evaluated over
+//! samples.
+
+use overact::{Error, Function, Input, Model, SampleError};
+use overact_codegen::{
+    CompiledFunction, RobotModel,
+    derivation::MotionInput,
+    evaluation::{Evaluator, Rows},
+};
+use overact_robot::{InterpretedRobot, Robot};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Who has the program of a form.
+pub(crate) enum Owner {
+    /// The robot, whose usual functions are compiled with it.
+    Robot(Arc<Robot>),
+    /// A model of this function alone.
+    Own(InterpretedRobot),
+}
+
+impl Owner {
+    pub(crate) fn model(&self) -> &InterpretedRobot {
+        match self {
+            Self::Robot(robot) => robot.model(),
+            Self::Own(model) => model,
+        }
+    }
+}
+
+/// An argument of a form.
+#[derive(Debug, Clone)]
+pub(crate) struct Argument {
+    pub(crate) name: String,
+    pub(crate) length: usize,
+}
+
+/// A function in one of its forms.
+pub(crate) struct Form {
+    owner: Owner,
+    /// Its place among the model's functions.
+    index: usize,
+    /// What it takes from its caller.
+    pub(crate) arguments: Vec<Argument>,
+    /// Whether it is the form that [`Model::evaluate`] serves.
+    is_served: bool,
+    evaluators: Mutex<Vec<Evaluator>>,
+}
+
+impl Form {
+    /// A form of an owner's model by its full name.
+    pub(crate) fn new(owner: Owner, name: &str) -> Option<Self> {
+        let model = owner.model().model();
+        let index = model.functions.iter().position(|f| f.name == name)?;
+        let function = &model.functions[index];
+        let is_served = is_served(model, function);
+        let arguments = match is_served {
+            true => served_arguments(owner.model(), function.computes),
+            false => own_arguments(model, function),
+        };
+        Some(Self {
+            owner,
+            index,
+            arguments,
+            is_served,
+            evaluators: Mutex::default(),
+        })
+    }
+
+    /// The model that has it.
+    pub(crate) fn model(&self) -> &InterpretedRobot {
+        self.owner.model()
+    }
+
+    /// The function with its program.
+    pub(crate) fn function(&self) -> &CompiledFunction {
+        &self.model().model().functions[self.index]
+    }
+
+    /// The shape of the output at a sample.
+    pub(crate) fn shape(&self) -> &[usize] {
+        &self.function().program.output.shape
+    }
+
+    /// Whether forward kinematics finds its poses, from a start.
+    pub(crate) fn follows(&self) -> bool {
+        self.model().model().finds_pose(self.function())
+    }
+
+    /// Evaluates the form at `samples` samples; each input is a row for each, or one row for all. `start` is
+    /// the pose from which forward kinematics starts, and then the last pose that it found.
+    pub(crate) fn evaluate(
+        &self,
+        inputs: &[&[f64]],
+        samples: usize,
+        start: &mut [f64],
+        output: &mut [f64],
+    ) -> Result<(), SampleError> {
+        if self.is_served {
+            return self
+                .model()
+                .evaluate(self.function().computes, inputs, output);
+        }
+        self.run(inputs, samples, start, output)
+    }
+
+    /// Runs the program itself, after what it needs has been found.
+    fn run(
+        &self,
+        inputs: &[&[f64]],
+        samples: usize,
+        start: &mut [f64],
+        output: &mut [f64],
+    ) -> Result<(), SampleError> {
+        self.check_finite(inputs)?;
+        let given = |name: &str| {
+            let at = self.arguments.iter().position(|one| one.name == name);
+            at.map(|at| (inputs[at], self.arguments[at].length))
+        };
+        let function = self.function();
+        let mut found: Vec<Vec<f64>> = Vec::new();
+        let mut places = Vec::new();
+        let mut pose: Option<Vec<f64>> = None;
+        for array in &function.program.inputs {
+            let own = match array.name.as_str() {
+                "pose" if self.follows() => {
+                    let actuators = given("actuators").map_or(&[][..], |(values, _)| values);
+                    Some(self.poses(actuators, samples, start)?)
+                }
+                "pose" => given("pose")
+                    .map(|(poses, _)| self.unit(poses))
+                    .transpose()?,
+                "joints" if given("joints").is_none() => {
+                    let poses = pose.as_deref().unwrap_or_default();
+                    Some(self.joints(poses)?)
+                }
+                _ => None,
+            };
+            if array.name == "pose" {
+                pose.clone_from(&own);
+            }
+            places.push(own.map(|own| {
+                found.push(own);
+                found.len() - 1
+            }));
+        }
+        let rows = function.program.inputs.iter().zip(&places);
+        let rows = rows.map(|(array, place)| {
+            let values = match place {
+                Some(place) => found[*place].as_slice(),
+                None => given(&array.name).map_or(&[][..], |(values, _)| values),
+            };
+            Rows {
+                values,
+                shared: values.len() == array.len(),
+            }
+        });
+        let rows: Vec<Rows<'_>> = rows.collect();
+        self.with_evaluator(|evaluator| evaluator.evaluate(samples, &rows, output))
+            .map_err(|failed| self.model().error(&function.program, &failed))
+    }
+
+    /// Lends memory of earlier calls.
+    fn with_evaluator<R>(&self, work: impl FnOnce(&mut Evaluator) -> R) -> R {
+        let free = || {
+            self.evaluators
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+        };
+        let kept = free().pop();
+        let mut evaluator = kept.unwrap_or_else(|| Evaluator::new(&self.function().program));
+        let result = work(&mut evaluator);
+        free().push(evaluator);
+        result
+    }
+
+    /// The first sample with a number that is not finite is an error.
+    fn check_finite(&self, inputs: &[&[f64]]) -> Result<(), SampleError> {
+        let bad = self
+            .arguments
+            .iter()
+            .zip(inputs)
+            .filter_map(|(own, values)| {
+                let at = values.iter().position(|value| !value.is_finite())?;
+                let is_row = values.len() == own.length;
+                Some(SampleError {
+                    sample: if is_row { 0 } else { at / own.length },
+                    error: Error::NotFinite {
+                        input: known_name(&own.name),
+                    },
+                })
+            });
+        bad.min_by_key(|error| error.sample).map_or(Ok(()), Err)
+    }
+
+    /// Poses by forward kinematics, one after the other.
+    fn poses(
+        &self,
+        actuators: &[f64],
+        samples: usize,
+        start: &mut [f64],
+    ) -> Result<Vec<f64>, SampleError> {
+        let info = self.model().info();
+        let mut poses = Vec::with_capacity(samples * info.sizes.pose);
+        let rows = actuators.chunks(info.sizes.actuators.max(1)).cycle();
+        for (sample, row) in rows.take(samples).enumerate() {
+            follow(self.model(), row, start).map_err(|error| SampleError { sample, error })?;
+            poses.extend_from_slice(start);
+        }
+        Ok(poses)
+    }
+
+    /// Poses whose quaternions have length 1.
+    fn unit(&self, poses: &[f64]) -> Result<Vec<f64>, SampleError> {
+        let length = self.model().info().sizes.pose.max(1);
+        let mut unit = Vec::with_capacity(poses.len());
+        for (sample, pose) in poses.chunks(length).enumerate() {
+            let pose = self.model().unit_pose(pose);
+            unit.extend(pose.map_err(|error| SampleError { sample, error })?);
+        }
+        Ok(unit)
+    }
+
+    /// Joints that the function does not take, by inverse kinematics.
+    fn joints(&self, poses: &[f64]) -> Result<Vec<f64>, SampleError> {
+        let sizes = self.model().info().sizes;
+        let mut joints = vec![0.0; poses.len() / sizes.pose.max(1) * sizes.joints];
+        self.model()
+            .evaluate(Function::Joints, &[poses], &mut joints)?;
+        Ok(joints)
+    }
+}
+
+/// Forward kinematics from the last pose, else from home.
+pub(crate) fn follow(
+    model: &InterpretedRobot,
+    actuators: &[f64],
+    pose: &mut [f64],
+) -> Result<(), Error> {
+    model.follow_actuators(actuators, pose).or_else(|error| {
+        let mut home = model.info().home_pose.to_vec();
+        model
+            .follow_actuators(actuators, &mut home)
+            .map_err(|_| error)?;
+        pose.copy_from_slice(&home);
+        Ok(())
+    })
+}
+
+/// Whether a form is the one that [`Model::evaluate`] serves. A model of one form alone serves that one for want
+/// of others, with inputs that are not its own.
+fn is_served(model: &RobotModel, function: &CompiledFunction) -> bool {
+    let computes = function.computes;
+    let has_own_inputs = match function.from {
+        MotionInput::Pose => true,
+        MotionInput::Joints => model.is_tree() || computes.inputs().contains(&Input::Joints),
+        MotionInput::Actuators => computes == Function::PoseInClosedForm,
+    };
+    let served = model.served(computes);
+    has_own_inputs && served.is_some_and(|served| std::ptr::eq(served, function))
+}
+
+/// What a function takes that [`Model::evaluate`] serves.
+fn served_arguments(robot: &InterpretedRobot, function: Function) -> Vec<Argument> {
+    let sizes = robot.info().sizes;
+    let is_tree = robot.model().is_tree();
+    let argument = |input: &Input| Argument {
+        name: match is_tree {
+            true => input.name_without_platform(),
+            false => input.name(),
+        }
+        .to_owned(),
+        length: sizes.of(*input),
+    };
+    function.inputs().iter().map(argument).collect()
+}
+
+/// What a program takes whose pose or joints are found first.
+fn own_arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Argument> {
+    let follows = model.finds_pose(function);
+    let finds_joints = model.finds_joints(function);
+    let arrays = function.program.inputs.iter();
+    let kept = arrays.filter(|array| {
+        !(follows && array.name == "pose" || finds_joints && array.name == "joints")
+    });
+    let own = kept.map(|array| Argument {
+        name: array.name.clone(),
+        length: array.len(),
+    });
+    let actuators = follows.then(|| Argument {
+        name: Input::Actuators.name().to_owned(),
+        length: model.mechanism.actuated().len(),
+    });
+    let mut all: Vec<Argument> = actuators.into_iter().chain(own).collect();
+    // Joints that Newton's method finds from a pose need that pose.
+    let has = |all: &[Argument], name: &str| all.iter().any(|one| one.name == name);
+    if finds_joints && function.from == MotionInput::Pose && !has(&all, "pose") {
+        all.insert(
+            0,
+            Argument {
+                name: Input::Pose.name().to_owned(),
+                length: model.mechanism.pose_len(),
+            },
+        );
+    }
+    all
+}
+
+/// The name of an argument with the life that errors need.
+fn known_name(name: &str) -> &'static str {
+    let all = [
+        Input::Pose,
+        Input::Joints,
+        Input::Twist,
+        Input::Acceleration,
+        Input::Actuators,
+        Input::ActuatorVelocities,
+        Input::ActuatorAccelerations,
+        Input::Torques,
+        Input::Parameters,
+        Input::BaseParameters,
+        Input::Preload,
+    ];
+    let names = all
+        .into_iter()
+        .flat_map(|input| [input.name(), input.name_without_platform()]);
+    names
+        .into_iter()
+        .find(|own| *own == name)
+        .unwrap_or("input")
+}

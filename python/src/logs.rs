@@ -1,0 +1,157 @@
+//! Runs as Python hands them over: files, arrays by the names of columns, or samples in SI units.
+
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use overact_identification::{Log, data::Array};
+use overact_robot::{Error, Robot};
+use pyo3::{exceptions::PyValueError, prelude::*, types::PyTuple};
+use std::path::{Path, PathBuf};
+
+/// A run.
+pub(crate) enum Given {
+    /// A file, or several joined by `+`.
+    File(PathBuf),
+    /// Arrays whose names are those that the description gives columns of a log.
+    Arrays(String, Vec<Named>),
+    /// Samples of all actuators in SI units.
+    Samples(Samples),
+}
+
+/// An array with its name; its numbers stand one column after the other.
+pub(crate) struct Named {
+    name: String,
+    shape: (usize, usize),
+    values: Vec<f64>,
+}
+
+/// Samples x n, row after row.
+pub(crate) struct Samples {
+    name: String,
+    frequency: f64,
+    actuators: usize,
+    positions: Vec<f64>,
+    torques: Vec<f64>,
+    velocities: Vec<f64>,
+}
+
+/// A run with a word on whether the platform carried the payload: `("file", payload, path)`,
+/// `("arrays", payload, name, [(column, rows, columns, values)])` or
+/// `("samples", payload, name, frequency, positions, torques, velocities or None)`.
+///
+/// # Errors
+/// Anything else.
+pub(crate) fn given(item: &Bound<'_, PyTuple>) -> PyResult<(Given, bool)> {
+    let kind: String = item.get_item(0)?.extract()?;
+    let payload: bool = item.get_item(1)?.extract()?;
+    let run = match kind.as_str() {
+        "file" => Given::File(item.get_item(2)?.extract()?),
+        "arrays" => {
+            let arrays = item.get_item(3)?;
+            let arrays = arrays.try_iter()?.map(|one| named(&one?));
+            Given::Arrays(
+                item.get_item(2)?.extract()?,
+                arrays.collect::<PyResult<_>>()?,
+            )
+        }
+        "samples" => Given::Samples(samples(item)?),
+        other => {
+            let message = format!("there is no run of the kind {other}");
+            return Err(PyValueError::new_err(message));
+        }
+    };
+    Ok((run, payload))
+}
+
+fn named(item: &Bound<'_, PyAny>) -> PyResult<Named> {
+    let (name, rows, columns, values): (String, usize, usize, PyReadonlyArrayDyn<'_, f64>) =
+        item.extract()?;
+    Ok(Named {
+        name,
+        shape: (rows, columns),
+        values: values.as_slice()?.to_vec(),
+    })
+}
+
+fn samples(item: &Bound<'_, PyTuple>) -> PyResult<Samples> {
+    let array = |at: usize| -> PyResult<(Vec<f64>, usize)> {
+        let array: PyReadonlyArrayDyn<'_, f64> = item.get_item(at)?.extract()?;
+        let width = array.shape().last().copied().unwrap_or_default();
+        Ok((array.as_slice()?.to_vec(), width))
+    };
+    let (positions, actuators) = array(4)?;
+    let velocities = item.get_item(6)?;
+    Ok(Samples {
+        name: item.get_item(2)?.extract()?,
+        frequency: item.get_item(3)?.extract()?,
+        actuators,
+        positions,
+        torques: array(5)?.0,
+        velocities: match velocities.is_none() {
+            true => Vec::new(),
+            false => array(6)?.0,
+        },
+    })
+}
+
+/// The runs as logs, in their order.
+///
+/// # Errors
+/// What is wrong with all of them.
+pub(crate) fn logs(
+    robot: &Robot,
+    runs: &[(Given, bool)],
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Vec<Log>, Error> {
+    let (mut logs, mut errors) = (Vec::new(), Vec::new());
+    let files = runs.iter().filter_map(|(run, payload)| match run {
+        Given::File(path) => Some((path.as_path(), *payload)),
+        _ => None,
+    });
+    let files: Vec<(&Path, bool)> = files.collect();
+    let read = robot.read_logs(&files, progress);
+    let mut read = match read {
+        Ok(read) => read.into_iter(),
+        Err(error) => {
+            errors.push(error);
+            Vec::new().into_iter()
+        }
+    };
+    for (run, payload) in runs {
+        let log = match run {
+            Given::File(_) => match read.next() {
+                Some(log) => Ok(log),
+                None => continue,
+            },
+            Given::Arrays(name, arrays) => {
+                let arrays = arrays.iter().map(|one| Array {
+                    name: &one.name,
+                    shape: one.shape,
+                    values: &one.values,
+                });
+                robot.log_of_arrays(name, &arrays.collect::<Vec<_>>(), *payload)
+            }
+            Given::Samples(samples) => samples.log(*payload),
+        };
+        match log {
+            Ok(log) => logs.push(log),
+            Err(error) => errors.push(error),
+        }
+    }
+    match errors.is_empty() {
+        true => Ok(logs),
+        false => Err(Error::Several(errors)),
+    }
+}
+
+impl Samples {
+    fn log(&self, payload: bool) -> Result<Log, Error> {
+        let log = Log::new(
+            self.name.as_str(),
+            self.frequency,
+            self.actuators,
+            self.positions.clone(),
+            self.torques.clone(),
+            payload,
+        )?;
+        Ok(log.with_velocities(self.velocities.clone()))
+    }
+}

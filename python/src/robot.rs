@@ -1,0 +1,333 @@
+//! A description as an object of Python.
+
+use crate::{
+    arrays::{Rows, common_samples, output},
+    errors,
+    form::{Form, Owner, follow},
+    function::{Function, names},
+    identification::{self, Identified},
+    operations,
+    simulation::{self, Made, Wishes},
+};
+use overact::{Model, Parameter, SampleError};
+use overact_codegen::{
+    Choice, Effort, Request,
+    derivation::{MotionInput, function_name},
+    diagnostic::did_you_mean,
+    mechanism::Mechanism,
+};
+use overact_identification::Time;
+use overact_robot::{CompiledFile, Error, InterpretedRobot, Robot};
+use pyo3::{
+    exceptions::{PyAttributeError, PyValueError},
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
+use std::{
+    collections::{BTreeMap, HashMap},
+    path::PathBuf,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+/// A robot, compiled from its description; `overact.Robot` stands on it.
+#[pyclass(module = "overact._overact", frozen)]
+pub(crate) struct Handle {
+    robot: Arc<Robot>,
+    forms: Mutex<HashMap<String, Arc<Form>>>,
+}
+
+impl Handle {
+    fn new(py: Python<'_>, robot: Result<Robot, Error>) -> PyResult<Self> {
+        let robot = robot.map_err(|error| errors::of_robot(py, &error))?;
+        Ok(Self {
+            robot: Arc::new(robot),
+            forms: Mutex::default(),
+        })
+    }
+
+    /// A form by its name; one that the robot has not been compiled with is compiled now.
+    fn form(&self, py: Python<'_>, name: &str) -> PyResult<Arc<Form>> {
+        let forms = || self.forms.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(form) = forms().get(name) {
+            return Ok(Arc::clone(form));
+        }
+        let own = self.robot.model().model();
+        let known = names(own);
+        if !known.iter().any(|one| one == name) {
+            let known = known.iter().map(String::as_str);
+            let help = did_you_mean(name, known)
+                .unwrap_or_else(|| "`Robot.functions` lists them".to_owned());
+            let robot = &own.mechanism.name;
+            let message = format!("the robot {robot} has no function `{name}`; {help}");
+            return Err(PyAttributeError::new_err(message));
+        }
+        let owner = match own.functions.iter().any(|one| one.name == name) {
+            true => Owner::Robot(Arc::clone(&self.robot)),
+            false => Owner::Own(
+                py.detach(|| self.compiled_alone(name))
+                    .map_err(|error| errors::of_robot(py, &error))?,
+            ),
+        };
+        let form = Form::new(owner, name);
+        let form = form.ok_or_else(|| {
+            PyAttributeError::new_err(format!("the function `{name}` can't be derived"))
+        })?;
+        let form = Arc::new(form);
+        forms().insert(name.to_owned(), Arc::clone(&form));
+        Ok(form)
+    }
+
+    /// The model of a function alone, with what finds its pose.
+    fn compiled_alone(&self, name: &str) -> Result<InterpretedRobot, Error> {
+        let wanted = |mechanism: &Mechanism, function, from: MotionInput| {
+            InterpretedRobot::finds_pose(mechanism, function, from)
+                || function_name(function, from, mechanism.is_tree()) == name
+        };
+        let request = Request {
+            wanted: &wanted,
+            ..Request::with_effort(Effort::None)
+        };
+        let compiled = CompiledFile::new(self.robot.source().clone(), &request)?;
+        Ok(InterpretedRobot::new(compiled.model))
+    }
+
+    /// The description compiled with an effort.
+    fn compiled(
+        &self,
+        py: Python<'_>,
+        functions: Option<Vec<String>>,
+        effort: &str,
+    ) -> PyResult<CompiledFile> {
+        let effort = Effort::named(effort).ok_or_else(|| {
+            let known = Effort::ALL.map(Effort::name).join(", ");
+            PyValueError::new_err(format!("effort=\"{effort}\" is none of {known}"))
+        })?;
+        let choice = functions.map(|names| Choice::new(names.iter().map(String::as_str)));
+        let choice = choice.transpose().map_err(|unknown| {
+            let told = unknown.iter().map(|one| format!("{one}; {}", one.help));
+            PyValueError::new_err(told.collect::<Vec<_>>().join("\n"))
+        })?;
+        let request = Request {
+            functions: choice.as_ref(),
+            ..Request::with_effort(effort)
+        };
+        py.detach(|| CompiledFile::new(self.robot.source().clone(), &request))
+            .map_err(|error| errors::of_robot(py, &error))
+    }
+}
+
+#[pymethods]
+impl Handle {
+    /// The robot of a description in a file.
+    #[staticmethod]
+    fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let robot = py.detach(|| Robot::from_toml(path));
+        Self::new(py, robot)
+    }
+
+    /// The robot of a description in memory; errors call it `name`.
+    #[staticmethod]
+    fn from_text(py: Python<'_>, text: &str, name: &str) -> PyResult<Self> {
+        let robot = py.detach(|| Robot::from_text(name, text));
+        Self::new(py, robot)
+    }
+
+    /// The text of the description.
+    #[getter]
+    fn text(&self) -> &str {
+        &self.robot.source().text
+    }
+
+    /// The path or name by which errors call the description.
+    #[getter]
+    fn file(&self) -> &str {
+        self.robot.file()
+    }
+
+    /// Names, sizes and parameters as a document.
+    fn info(&self) -> String {
+        info(&self.robot).to_string()
+    }
+
+    /// Names of all functions.
+    fn function_names(&self) -> Vec<String> {
+        names(self.robot.model().model())
+    }
+
+    /// A function by its name.
+    fn function(&self, py: Python<'_>, name: &str) -> PyResult<Function> {
+        self.form(py, name).map(Function::new)
+    }
+
+    /// What functions cost, as a document.
+    #[pyo3(signature = (functions=None, effort="quick"))]
+    fn costs(
+        &self,
+        py: Python<'_>,
+        functions: Option<Vec<String>>,
+        effort: &str,
+    ) -> PyResult<String> {
+        let compiled = self.compiled(py, functions, effort)?;
+        Ok(operations::costs(&compiled.model).to_string())
+    }
+
+    /// The program of a function, step by step.
+    #[pyo3(signature = (name, effort="quick"))]
+    fn program<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        effort: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        // Unknown names are told with those that are near.
+        self.form(py, name)?;
+        let compiled = self.compiled(py, Some(vec![name.to_owned()]), effort)?;
+        let function = compiled.model.functions.iter().find(|one| one.name == name);
+        let function = function.ok_or_else(|| {
+            PyAttributeError::new_err(format!("the function `{name}` can't be derived"))
+        })?;
+        operations::steps(py, &function.program)
+    }
+
+    /// Forward kinematics: poses from the positions of all actuators, sample after sample.
+    #[pyo3(signature = (actuators, start=None, out=None))]
+    fn pose_from_actuators<'py>(
+        &self,
+        py: Python<'py>,
+        actuators: &Bound<'py, PyAny>,
+        start: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let info = self.robot.model().info();
+        let names = format!(" ({})", info.actuators.join(", "));
+        let rows = Rows::new(actuators, "actuators", (info.sizes.actuators, &names))?;
+        let rows = [rows];
+        let leading = common_samples(&rows)?;
+        let mut pose = match start {
+            None => info.home_pose.to_vec(),
+            Some(start) => {
+                let start = Rows::new(start, "start", (info.sizes.pose, ""))?;
+                start.values()?[..info.sizes.pose].to_vec()
+            }
+        };
+        let shape = [leading.as_slice(), &[info.sizes.pose]].concat();
+        let mut result = output(py, out, &shape)?;
+        let values = rows[0].values()?;
+        let written = result.as_slice_mut()?;
+        let model = self.robot.model();
+        let done = py.detach(|| {
+            let samples = values.chunks(info.sizes.actuators.max(1));
+            let places = written.chunks_mut(info.sizes.pose.max(1));
+            for (sample, (row, place)) in samples.zip(places).enumerate() {
+                follow(model, row, &mut pose).map_err(|error| SampleError { sample, error })?;
+                place.copy_from_slice(&pose);
+            }
+            Ok(())
+        });
+        done.map_err(|error| errors::of_sample(py, "pose_from_actuators", &error))?;
+        let array = (**result).clone().into_any();
+        drop(result);
+        Ok(array)
+    }
+
+    /// Values of the base parameters, followed by the payload's, of standard parameters by name.
+    fn regrouped(&self, values: BTreeMap<String, f64>) -> Vec<f64> {
+        let base = self.robot.model().model().regrouped(&values).into_iter();
+        base.map(|(_, value)| value).collect()
+    }
+
+    /// A drawing of the robot at its home configuration, SVG.
+    fn drawing(&self) -> String {
+        overact_cli::drawing::svg(&self.robot.model().model().mechanism)
+    }
+
+    /// Makes the virtual experiment.
+    #[pyo3(signature = (runs, seed=None, parameters=None, progress=None))]
+    fn simulate<'py>(
+        &self,
+        py: Python<'py>,
+        runs: Vec<String>,
+        seed: Option<u64>,
+        parameters: Option<BTreeMap<String, f64>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Made<'py>> {
+        let wishes = Wishes {
+            runs,
+            seed,
+            parameters,
+        };
+        simulation::simulate(py, &self.robot, &wishes, progress)
+    }
+
+    /// Identifies the robot.
+    fn identify(
+        &self,
+        py: Python<'_>,
+        runs: Vec<Bound<'_, PyTuple>>,
+        validation: Vec<Bound<'_, PyTuple>>,
+        options: &Bound<'_, PyDict>,
+    ) -> PyResult<Identified> {
+        identification::identify(py, &self.robot, (&runs, &validation), options)
+    }
+}
+
+/// Names, sizes and parameters.
+fn info(robot: &Robot) -> serde_json::Value {
+    let (info, model) = (robot.model().info(), robot.model().model());
+    let mechanism = &model.mechanism;
+    let description = robot.description();
+    let parameter = |one: &Parameter| serde_json::json!({ "name": one.name, "symbol": one.symbol.name(), "unit": one.unit });
+    let parameters = |all: &[Parameter]| all.iter().map(parameter).collect::<Vec<_>>();
+    let base = model.base.iter().map(|base| {
+        let regrouped = base.regrouped.iter();
+        let regrouped = regrouped.map(|&(one, factor)| (model.parameter_name(one), factor));
+        serde_json::json!({
+            "name": model.base_name(base),
+            "parameter": model.parameter_name(base.parameter),
+            "unit": model.parameter_unit(base.parameter),
+            "regrouped": regrouped.collect::<Vec<_>>(),
+        })
+    });
+    let joints = mechanism.joints();
+    let joints: Vec<String> = joints.iter().map(|&at| mechanism.joint_name(at)).collect();
+    let experiment = description.experiment.as_ref();
+    let runs = experiment.iter().flat_map(|table| &table.runs);
+    let runs: Vec<&str> = runs.map(|run| run.name.value.as_str()).collect();
+    serde_json::json!({
+        "name": info.name,
+        "summary": description.summary,
+        "source": description.source,
+        "r": info.sizes.dof,
+        "n": info.sizes.actuators,
+        "joints": joints,
+        "legs": info.legs,
+        "actuators": info.actuators,
+        "actuator_is_revolute": info.actuator_is_revolute,
+        "coordinates": info.coordinates,
+        "pose_coordinates": match model.is_tree() {
+            true => mechanism.coordinates(),
+            false => mechanism.pose_coordinates(),
+        },
+        "home_pose": info.home_pose,
+        "home_joints": info.home_joints,
+        "kept_actuators": info.kept_actuators,
+        "parameters": parameters(info.parameters),
+        "payload_parameters": parameters(info.payload_parameters),
+        "base_parameters": base.collect::<Vec<_>>(),
+        "runs": runs,
+        "columns": columns(robot),
+        "held_out": robot.held_out(),
+        "true_values": robot.true_values(),
+    })
+}
+
+/// Names of the columns of a log, and expressions of such.
+fn columns(robot: &Robot) -> Vec<String> {
+    let mapping = robot.mapping();
+    let time = match mapping.time {
+        Time::Column(name) => Some(name),
+        Time::Frequency(_) => None,
+    };
+    let signals = [mapping.positions, mapping.torques, mapping.velocities];
+    time.into_iter().chain(signals.concat()).collect()
+}

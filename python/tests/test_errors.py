@@ -1,0 +1,60 @@
+"""What is wrong comes as an exception that names the place."""
+
+import pathlib
+import pickle
+
+import pytest
+
+import overact
+
+
+def test_every_error_of_a_description_is_told_at_its_line(dualv):
+    text = dualv.text.replace('l_ab = "0.28 m"', 'l_ab = "0.28 kg"').replace(
+        'motion = "planar"', 'motion = "plannar"'
+    )
+    with pytest.raises(overact.DescriptionError) as caught:
+        overact.Robot.from_string(text, "mine.toml")
+    error = caught.value
+    assert isinstance(error, ValueError) and isinstance(error, overact.OveractError)
+    lines = text.splitlines()
+    assert len(error.problems) >= 2
+    assert error.file == "mine.toml" and error.line == error.problems[0].line
+    # A wrong constant is told where it is used, a wrong word where it stands.
+    for problem in error.problems[:2]:
+        assert any(word in lines[problem.line - 1] for word in ('d = "l_ab"', "plannar"))
+        assert problem.column >= 1
+    assert any(one.help and "planar" in one.help for one in error.problems)
+    assert "mine.toml:" in str(error) and "^" in str(error)
+    again = pickle.loads(pickle.dumps(error))
+    assert again.problems == error.problems and str(again) == str(error)
+
+
+def test_what_is_no_toml_is_told_too():
+    with pytest.raises(overact.DescriptionError) as caught:
+        overact.Robot.from_string("name = ")
+    assert (caught.value.file, caught.value.line) == ("robot.toml", 1)
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(overact.DataError, match="can't be read") as caught:
+        overact.Robot(tmp_path / "none.toml")
+    assert caught.value.file == str(tmp_path / "none.toml")
+    assert "overact new" in caught.value.help
+
+
+def test_a_file_that_is_no_text(tmp_path):
+    path = pathlib.Path(tmp_path, "broken.toml")
+    path.write_bytes(b'name = "\xff\xfe"')
+    with pytest.raises(overact.DataError, match="can't be read"):
+        overact.Robot(path)
+
+
+def test_an_experiment_that_can_not_be_made(emps):
+    with pytest.raises(overact.OveractError, match="no run `nonsense`"):
+        emps.simulate("nonsense")
+    with pytest.raises(ValueError, match="no parameters m_9"):
+        emps.simulate(parameters={"m_9": 1.0})
+    text = emps.text[: emps.text.index("[experiment")]
+    without = overact.Robot.from_string(text)
+    with pytest.raises(overact.DataError, match="no virtual experiment"):
+        without.simulate()

@@ -1,0 +1,27 @@
+"""The examples run, and say what they should."""
+
+import pathlib
+import runpy
+
+import numpy as np
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
+
+
+def test_dualv(capsys):
+    found = runpy.run_path(str(EXAMPLES / "dualv.py"), run_name="__main__")
+    said = capsys.readouterr().out
+    assert "<Robot DualV: r = 3, n = 4" in said and "DualV: identified from" in said
+    result, robot = found["result"], found["robot"]
+    # The estimates are those of a robot whose parameters are known.
+    truth = robot.true_values
+    for name, one in result.base.items():
+        expected = robot.base_parameters[name].value(truth) if "payload" not in name else truth[name]
+        assert abs(one.value - expected) < 6 * one.correlated_standard_deviation, name
+    pose, twist, acceleration = found["pose"], found["twist"], found["acceleration"]
+    exact = robot.inverse_dynamics(pose, twist, acceleration, robot.parameter_vector(truth))
+    np.testing.assert_allclose(found["torques"], exact, atol=0.1)
+
+
+def test_no_example_is_left_out():
+    assert [path.name for path in EXAMPLES.glob("*.py")] == ["dualv.py"]
