@@ -1,20 +1,17 @@
-//! `gains`: gains of drives that are all wrong, found by a payload that was weighed, for virtual runs of two
-//! robots: how many of their deviations the gains, and what is estimated beside them, are off.
+//! Gains of drives that are all wrong, found by a payload that was weighed, for virtual runs of robots with a
+//! payload or serial ones: how many of their deviations the gains, and what is estimated beside them, are off.
 //!
-//! `cargo run --release -p overact-trust --bin gains -- --draws 10 robots/rx90.toml robots/dualv.toml`
+//! `cargo run --release -p overact-robot --example gains -- 10 robots/rx90.toml robots/dualv.toml` draws ten times.
 
-use clap::Parser;
 use overact::Model;
 use overact_identification::{Identification, Log, Stage};
 use overact_robot::{Identifier, Robot, Runs};
-use overact_trust::Failure;
-use rand::RngExt;
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
-use std::{
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::{error::Error, process::ExitCode};
+
+/// What can go wrong, in words.
+type Failure = Box<dyn Error>;
 
 /// By which part a gain is wrong.
 const WRONG: [f64; 2] = [0.12, 0.33];
@@ -22,17 +19,6 @@ const WRONG: [f64; 2] = [0.12, 0.33];
 /// The payload of a robot without platform: mass, first moments and inertias, fixed on the last body.
 const PAYLOAD: &str = "m_payload = 5\nmx_payload = 0.25\nmy_payload = -0.1\nmz_payload = 0.9\n\
                        xx_payload = 0.18\nyy_payload = 0.2\nzz_payload = 0.03\n";
-
-/// Finds gains that are wrong.
-#[derive(Debug, Parser)]
-struct Arguments {
-    /// Descriptions with virtual experiments, of a robot with a payload or a serial one
-    #[arg(value_name = "TOML", required = true)]
-    robots: Vec<PathBuf>,
-    /// Gains and noise that are drawn for each robot
-    #[arg(long, default_value_t = 10)]
-    draws: u64,
-}
 
 /// The description with a payload, if it has none, whose mass is known.
 fn with_payload(text: &str) -> Result<String, Failure> {
@@ -129,15 +115,15 @@ fn logged(
     Ok(logs)
 }
 
-fn largest(misses: impl Iterator<Item = f64>) -> f64 {
-    misses.map(f64::abs).fold(0.0, f64::max)
+fn largest(misses: &[f64]) -> f64 {
+    misses.iter().map(|miss| miss.abs()).fold(0.0, f64::max)
 }
 
 /// Prints a row for each draw.
-fn rows(path: &Path, draws: u64) -> Result<(), Failure> {
+fn rows(path: &str, draws: u64) -> Result<(), Failure> {
     let text = with_payload(&std::fs::read_to_string(path)?)?;
     let told = |error: overact_robot::Error| error.render(false);
-    let robot = Robot::from_text(&path.to_string_lossy(), &text).map_err(told)?;
+    let robot = Robot::from_text(path, &text).map_err(told)?;
     let mut experiment = robot.experiment().map_err(told)?;
     let noise = std::mem::take(&mut experiment.plan_mut().torque_noise);
     // A serial robot needs all of its runs.
@@ -145,18 +131,13 @@ fn rows(path: &Path, draws: u64) -> Result<(), Failure> {
     let exact = experiment.runs(&held_out, &|_, _| {}).map_err(told)?;
     let name = robot.model().info().name.to_owned();
     let n = robot.model().info().sizes.actuators;
+    let parts = Uniform::new(WRONG[0], WRONG[1])?;
+    let sides = Uniform::new(-1.0, 1.0)?;
     let mut squares = (0.0, 0.0);
     for draw in 1..=draws {
         let mut random = Pcg64::new(u128::from(draw), 0x6761_696e);
-        let mut gain = || {
-            let part = WRONG[0] + (WRONG[1] - WRONG[0]) * random.random::<f64>();
-            if random.random::<f64>() < 0.5 {
-                1.0 - part
-            } else {
-                1.0 + part
-            }
-        };
-        let gains: Vec<f64> = (0..n).map(|_| gain()).collect();
+        let gain = |_| 1.0 + f64::copysign(parts.sample(&mut random), sides.sample(&mut random));
+        let gains: Vec<f64> = (0..n).map(gain).collect();
         let runs = Runs {
             identified: logged(&exact.identified, (&gains, &noise), &mut random)?,
             validation: Vec::new(),
@@ -164,39 +145,39 @@ fn rows(path: &Path, draws: u64) -> Result<(), Failure> {
         };
         let result = Identifier::new(&robot).data(&runs).run().map_err(told)?;
         let own = misses(&result, &gains)?;
+        let gains: Vec<String> = gains.iter().map(|gain| format!("{gain:.2}")).collect();
         println!(
             "| {name} | {draw} | {} | {:.2} | {:.2} | {:.2} | {:.2} of {} | {:.2} |",
-            gains
-                .iter()
-                .map(|gain| format!("{gain:.2}"))
-                .collect::<Vec<_>>()
-                .join(", "),
+            gains.join(", "),
             100.0 * own.largest,
-            largest(own.gains.iter().copied()),
-            largest(own.masses.iter().copied()),
-            largest(own.parameters.iter().copied()),
+            largest(&own.gains),
+            largest(&own.masses),
+            largest(&own.parameters),
             own.parameters.len(),
             100.0 * own.weighed,
         );
         squares.0 += own.gains.iter().map(|miss| miss * miss).sum::<f64>();
         squares.1 += own.gains.len() as f64;
     }
-    eprintln!(
-        "{name}: gains are off by {:.2} deviations, as a root mean square",
-        (squares.0 / f64::max(squares.1, 1.0)).sqrt()
-    );
+    let size = (squares.0 / f64::max(squares.1, 1.0)).sqrt();
+    eprintln!("{name}: gains are off by {size:.2} deviations, as a root mean square");
     Ok(())
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let draws = arguments.first().and_then(|draws| draws.parse().ok());
+    let (Some(draws), Some(robots)) = (draws, arguments.get(1..)) else {
+        eprintln!("how often is drawn, and descriptions with virtual experiments");
+        return ExitCode::FAILURE;
+    };
     println!(
         "| robot | draw | gains | gains off by at most, % | gains, deviations | masses, deviations | all parameters, deviations | the weighed mass is off by, % |\n|---|---:|---|---:|---:|---:|---:|---:|"
     );
     let mut all = ExitCode::SUCCESS;
-    for path in &arguments.robots {
-        if let Err(error) = rows(path, arguments.draws) {
-            eprintln!("{}: {error}", path.display());
+    for path in robots {
+        if let Err(error) = rows(path, draws) {
+            eprintln!("{path}: {error}");
             all = ExitCode::FAILURE;
         }
     }
