@@ -56,7 +56,7 @@ fn what_simulation_refuses_is_found_by_the_check() {
     let said = said(&bench);
     let expected = [
         (
-            "`bandwidth` the controlled robot would be unstable; lower `bandwidth`, or raise `sampling`, `derivative_cutoff` or `damping`",
+            "`bandwidth` makes the controlled robot unstable; lower `bandwidth`, or raise `sampling`, `derivative_cutoff` or `damping`",
             "bandwidth = \"900",
         ),
         (

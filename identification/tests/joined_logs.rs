@@ -65,7 +65,8 @@ fn files_are_joined_sample_by_sample() {
     assert_eq!(
         joined("file3.b", "$5").expect_err("missing"),
         "pos.csv+torque.csv: there are no columns `file3.b`, `$5`; the file has `a`, `b`, `a`, `c`\n  help: the \
-         columns that can be called by number are `$1` to `$4`"
+         columns that can be called by number are `$1` to `$4`; where the others stand in \
+         another file of this run, give both as one, `a.csv+b.csv`"
     );
     let missing = run("pos.csv+none.csv", &files, &mapping(at(10.0), "b", "c"));
     assert!(

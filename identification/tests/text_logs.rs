@@ -157,7 +157,8 @@ fn columns_that_are_not_there_are_named_by_number() {
     assert_eq!(
         refused(b"0 0\n0.1 0\n", &numbered(Time::Frequency(10.0))),
         "log.txt: there is no column `$3`; the file has 2 columns, without names\n  help: \
-         the columns that can be called by number are `$1` to `$2`"
+         the columns that can be called by number are `$1` to `$2`; where the others stand in \
+         another file of this run, give both as one, `a.csv+b.csv`"
     );
     assert_eq!(
         refused(

@@ -184,7 +184,7 @@ fn control(found: &mut Problems, experiment: &Experiment) {
     if good && spectral_radius(experiment) >= 1.0 {
         found.add(
             "bandwidth_hz",
-            "the controlled robot would be unstable; lower `bandwidth_hz`, or raise `sampling_hz`, `derivative_cutoff_hz` or `damping`",
+            "makes the controlled robot unstable; lower `bandwidth_hz`, or raise `sampling_hz`, `derivative_cutoff_hz` or `damping`",
         );
     }
     if !(1..=1000).contains(&experiment.integration_steps) {

@@ -104,12 +104,27 @@ pub enum DiagnosticKind {
     NotHeld,
 }
 
+/// Characters of a message that are shown, at most.
+const LONGEST_MESSAGE: usize = 2000;
+
+/// A message without its middle, if a value that it repeats is beyond reading.
+fn short(message: String) -> String {
+    let count = message.chars().count();
+    if count <= LONGEST_MESSAGE {
+        return message;
+    }
+    let half = LONGEST_MESSAGE / 2;
+    let start: String = message.chars().take(half).collect();
+    let end: String = message.chars().skip(count - half).collect();
+    format!("{start}…{end}")
+}
+
 impl Diagnostic {
     /// An error at a place.
     #[must_use]
     pub fn new(message: impl Into<String>, span: Span) -> Self {
         Self {
-            message: message.into(),
+            message: short(message.into()),
             span: Some(span),
             label: String::new(),
             help: None,
@@ -121,7 +136,7 @@ impl Diagnostic {
     #[must_use]
     pub fn global(message: impl Into<String>) -> Self {
         Self {
-            message: message.into(),
+            message: short(message.into()),
             span: None,
             label: String::new(),
             help: None,
@@ -139,7 +154,7 @@ impl Diagnostic {
     #[must_use]
     pub fn label(self, label: impl Into<String>) -> Self {
         Self {
-            label: label.into(),
+            label: short(label.into()),
             ..self
         }
     }
@@ -148,7 +163,7 @@ impl Diagnostic {
     #[must_use]
     pub fn help(self, help: impl Into<String>) -> Self {
         Self {
-            help: Some(help.into()),
+            help: Some(short(help.into())),
             ..self
         }
     }
@@ -269,6 +284,19 @@ mod tests {
             source.position(&(900..901)),
             Position { line: 3, column: 1 }
         );
+    }
+
+    #[test]
+    fn values_beyond_reading_are_cut_in_the_middle() {
+        let said = |value: &str| Diagnostic::global(format!("there is no `{value}` here"));
+        let value = "é".repeat(100_000);
+        let both = said(&value).help(value).label("short");
+        for text in [&both.message, both.help.as_ref().expect("a help")] {
+            assert_eq!(text.chars().count(), LONGEST_MESSAGE + 1);
+        }
+        assert!(both.message.starts_with("there is no `é") && both.message.ends_with("é` here"));
+        assert_eq!(said("x").message, "there is no `x` here");
+        assert_eq!(both.label, "short");
     }
 
     #[test]

@@ -66,7 +66,7 @@ impl Fault {
                 CheckKind::Degrees,
                 None,
                 String::from(
-                    "the positions look like degrees, or like angles of motors before their gears: give `position_scale = \"1 deg\"` in the table [data], or the inverse of each gear ratio",
+                    "the positions look like degrees, or like angles of motors before their gears: give `position_scale = \"1 deg\"` in the table [data], or the inverse of each gear ratio, or `coordinates = \"motors\"` where the description has motors with their ratios",
                 ),
             ),
             Self::Swapped(i, j) => (

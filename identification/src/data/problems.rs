@@ -132,7 +132,7 @@ pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<
         .collect();
     if *columns > 0 && missing.iter().any(|name| name.starts_with('$')) {
         problem.help(format!(
-            "the columns that can be called by number are `$1` to `${columns}`"
+            "the columns that can be called by number are `$1` to `${columns}`; where the others stand in another file of this run, give both as one, `a.csv+b.csv`"
         ))
     } else if !guesses.is_empty() {
         problem.help(format!("did you mean {}?", guesses.join(", ")))

@@ -153,20 +153,34 @@ impl Butterflies<'_> {
             // The angles of the coarser steps stand before these, half - 1 in all.
             let cosines = &self.fourier.cosines[half - 1..2 * half - 1];
             let sines = &self.fourier.sines[half - 1..2 * half - 1];
-            let parts = self.real.chunks_exact_mut(2 * half);
-            for (real, imaginary) in parts.zip(self.imaginary.chunks_exact_mut(2 * half)) {
-                let (x, u) = real.split_at_mut(half);
-                let (y, v) = imaginary.split_at_mut(half);
-                // Loops: closures that iterators call would not be compiled for wide vectors.
-                for k in 0..half {
-                    let a = cosines[k] * u[k] + sines[k] * v[k];
-                    let b = cosines[k] * v[k] - sines[k] * u[k];
-                    (u[k], v[k]) = (x[k] - a, y[k] - b);
-                    x[k] += a;
-                    y[k] += b;
-                }
+            let (turns, parts) = ([cosines, sines], [&mut *self.real, &mut *self.imaginary]);
+            // Short loops are unrolled where their length is known.
+            match half {
+                1 => step(turns, parts, 1),
+                2 => step(turns, parts, 2),
+                4 => step(turns, parts, 4),
+                _ => step(turns, parts, half),
             }
             half *= 2;
+        }
+    }
+}
+
+/// Makes transforms of `2 half` values of pairs of those of `half`.
+#[inline(always)]
+fn step([cosines, sines]: [&[f64]; 2], [real, imaginary]: [&mut [f64]; 2], half: usize) {
+    let (cosines, sines) = (&cosines[..half], &sines[..half]);
+    let parts = real.chunks_exact_mut(2 * half);
+    for (real, imaginary) in parts.zip(imaginary.chunks_exact_mut(2 * half)) {
+        let (x, u) = real.split_at_mut(half);
+        let (y, v) = imaginary.split_at_mut(half);
+        // Loops: closures that iterators call would not be compiled for wide vectors.
+        for k in 0..half {
+            let a = cosines[k] * u[k] + sines[k] * v[k];
+            let b = cosines[k] * v[k] - sines[k] * u[k];
+            (u[k], v[k]) = (x[k] - a, y[k] - b);
+            x[k] += a;
+            y[k] += b;
         }
     }
 }

@@ -5,7 +5,17 @@ use super::dense::invert;
 /// J (Jᵀ J)^-1 of J_p^inv (n x r, row-major), which turns Γ¹ into the torques of least norm; `None` where
 /// the actuators do not determine the platform.
 pub(crate) fn least_norm(jacobian: &[f64], r: usize) -> Option<Vec<f64>> {
+    // The actuators of most serial robots are their coordinates.
+    if is_identity(jacobian, r) {
+        return Some(jacobian.to_vec());
+    }
     distribution(jacobian, jacobian, r)
+}
+
+/// Whether a matrix of `r` columns is the identity.
+fn is_identity(matrix: &[f64], r: usize) -> bool {
+    let one = |(place, value): (usize, &f64)| *value == f64::from(u8::from(place % (r + 1) == 0));
+    matrix.len() == r * r && matrix.iter().enumerate().all(one)
 }
 
 /// Bᵀ B J (Jᵀ Bᵀ B J)^-1 with B_p of the closure (n x n): with A_p = -B_p J_p^inv, this is what turns Γ¹

@@ -7,7 +7,7 @@
 use nalgebra::DMatrix;
 
 use super::{
-    power::{Neighbours, Powers},
+    power::{FORMS, Forms, Neighbours, Powers},
     signs::{Drawn, weighted, weighted_residual},
 };
 use crate::estimation::{
@@ -62,6 +62,14 @@ impl Line {
         Self { columns, influence }
     }
 
+    /// c of all parameters at a frequency, real and imaginary parts.
+    fn at(&self, bin: usize) -> [&[f64]; 2] {
+        self.influence.each_ref().map(|part| {
+            let count = part.nrows();
+            &part.as_slice()[bin * count..(bin + 1) * count]
+        })
+    }
+
     /// H_jk/N of two lines at a frequency, real and imaginary part.
     fn leverage(&self, other: &Self, bin: usize, count: usize) -> [f64; 2] {
         let [a, b] = self.columns.each_ref().map(|part| part.column(bin));
@@ -78,49 +86,74 @@ pub(super) fn shares<'a>(
     views: impl Iterator<Item = (View<'a>, f64)>,
     signs: &Drawn<'_>,
 ) -> Vec<Share> {
-    let (mut lines, mut spectra, mut drawn, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let (mut lines, mut spectra, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
+    let views: Vec<_> = views.collect();
+    let count = views.first().map_or(0, |(rows, _)| rows.nrows());
+    let fourier = Fourier::for_correlation(count);
     for (rows, weight) in views {
-        count = rows.nrows();
-        let fourier = Fourier::for_correlation(count);
         let columns = weighted(context, &rows, weight);
         let residual = weighted_residual(context, &rows, weight);
         drawn.push(fourier.columns(&signs.residuals(&columns, &residual)));
         spectra.push(vec![fourier.single(&residual)]);
         lines.push(Line::new(context, &fourier, &columns));
     }
-    let bins = Fourier::for_correlation(count).frequencies();
+    let bins = fourier.frequencies();
     let taken = taken(&lines, count, bins);
     let neighbours = Neighbours::new(count, bins, cosines(count));
     let means = |powers: &Powers| neighbours.means(powers, &taken);
     let own = Powers::new(&spectra, bins);
     let drawn = Powers::new(&drawn, bins);
     let (around, drawn_around) = (means(&own), means(&drawn));
-    let padding = neighbours.padding();
-    let mut shares = vec![Share::default(); context.selected.len()];
+    let powers = [&taken, &own, &around, &drawn, &drawn_around];
+    summed(
+        context.selected.len(),
+        &lines,
+        (powers, bins),
+        neighbours.padding(),
+    )
+}
+
+/// The shares of all parameters, of what is taken and the powers of the residual and of those drawn, their own
+/// and their neighbours'.
+fn summed(
+    parameters: usize,
+    lines: &[Line],
+    (powers, bins): ([&Powers; FORMS], usize),
+    padding: f64,
+) -> Vec<Share> {
+    let mut shares = vec![Share::default(); parameters];
+    let mut sums = [const { Vec::new() }; FORMS];
+    sums.iter_mut().for_each(|own| own.resize(parameters, 0.0));
     for bin in 0..bins {
         // Frequencies inside stand for their negative ones, too.
         let edge = bin == 0 || bin + 1 == bins;
         let twice = if edge { 1.0 } else { 2.0 };
+        let c: Vec<[&[f64]; 2]> = lines.iter().map(|line| line.at(bin)).collect();
+        let forms = Forms {
+            matrices: powers,
+            bin,
+            vectors: &c,
+            sums: &mut sums,
+        };
+        forms.tell();
         for (i, share) in shares.iter_mut().enumerate() {
-            let c = lines.iter().map(|line| line.influence.each_ref());
-            let c: Vec<[f64; 2]> = c.map(|parts| parts.map(|part| part[(i, bin)])).collect();
-            let plain: f64 = c.iter().flatten().map(|part| part * part).sum();
-            let left = 1.0 - taken.quadratic(&c, bin) / plain.max(f64::MIN_POSITIVE);
+            let plain: f64 = c.iter().flatten().map(|part| part[i] * part[i]).sum();
+            let [taken, own, around, drawn, drawn_around] = sums.each_ref().map(|sum| sum[i]);
+            let left = 1.0 - taken / plain.max(f64::MIN_POSITIVE);
             let left = left.clamp(0.0, 1.0);
             let factor = 1.0 / left.max(LEAST_LEFT);
-            let filled = |own: &Powers, around: &Powers| {
-                let mean = around.quadratic(&c, bin);
-                let own = factor * own.quadratic(&c, bin) + (1.0 - factor * left) * mean;
+            let filled = |own: f64, mean: f64| {
+                let own = factor * own + (1.0 - factor * left) * mean;
                 [own, mean].map(|part| twice * part)
             };
-            let [square, mean] = filled(&own, &around);
+            let [square, mean] = filled(own, around);
             share.own += square;
             share.around += mean;
             // The transform is padded: so many frequencies tell one thing. The fit takes either of the
             // two degrees of freedom of a frequency; what is filled in does not vary.
             let varies = (factor * left).powi(2) * (1.0 / left.max(LEAST_LEFT));
             share.squares += padding * mean.powi(2) * varies;
-            let [square, mean] = filled(&drawn, &drawn_around);
+            let [square, mean] = filled(drawn, drawn_around);
             share.drawn.own += square;
             share.drawn.around += mean;
         }

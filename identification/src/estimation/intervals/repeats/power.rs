@@ -1,5 +1,8 @@
 //! Cross spectra of the lines of a piece.
 
+#[cfg(target_arch = "x86_64")]
+use pulp::NullaryFnOnce;
+
 use crate::estimation::fourier::Spectrum;
 
 /// A Hermitian matrix over pairs of lines for each frequency from 0 to half the sampling frequency.
@@ -12,13 +15,28 @@ pub(super) struct Powers {
 impl Powers {
     /// Σ ρ_j ρ_k* over the residuals of each line, which are as many for each.
     pub(super) fn new(residuals: &[Vec<Spectrum>], bins: usize) -> Self {
-        Self::from_fn(residuals.len(), bins, |j, k, bin| {
-            let both = residuals[j].iter().zip(&residuals[k]);
-            both.fold([0.0; 2], |[real, imaginary], (a, b)| {
-                let (x, y, u, v) = (a.real[bin], a.imaginary[bin], b.real[bin], b.imaginary[bin]);
-                [real + x * u + y * v, imaginary + y * u - x * v]
-            })
-        })
+        let lines = residuals.len();
+        let below = (0..lines).flat_map(|j| (0..=j).map(move |k| (j, k)));
+        let pairs = below.map(|(j, k)| {
+            let (mut real, mut imaginary) = (vec![0.0; bins], vec![0.0; bins]);
+            // Residual by residual, as they lie in memory.
+            for (a, b) in residuals[j].iter().zip(&residuals[k]) {
+                let sums = real.iter_mut().zip(&mut imaginary);
+                let (first, second) = (
+                    a.real.iter().zip(&a.imaginary),
+                    b.real.iter().zip(&b.imaginary),
+                );
+                for (((to, turned), (x, y)), (u, v)) in sums.zip(first).zip(second) {
+                    *to = *to + x * u + y * v;
+                    *turned = *turned + y * u - x * v;
+                }
+            }
+            [real, imaginary]
+        });
+        Self {
+            lines,
+            pairs: pairs.collect(),
+        }
     }
 
     /// The matrices with entries `of` row, column and frequency.
@@ -41,18 +59,70 @@ impl Powers {
     fn pair(&self, j: usize, k: usize) -> &[Vec<f64>; 2] {
         &self.pairs[j * (j + 1) / 2 + k]
     }
+}
 
-    /// Σ_jk Re(c_j* M_jk c_k) at a frequency.
-    pub(super) fn quadratic(&self, c: &[[f64; 2]], bin: usize) -> f64 {
-        let mut sum = 0.0;
-        let mut pairs = self.pairs.iter();
-        for (j, [a, b]) in c.iter().enumerate() {
-            for (([d, e], k), [real, imaginary]) in c.iter().zip(0..=j).zip(&mut pairs) {
+/// How many matrices have their forms told at a time.
+pub(super) const FORMS: usize = 5;
+
+/// Σ_jk Re(c_j* M_jk c_k) of several matrices at a frequency, for many vectors c.
+pub(super) struct Forms<'a> {
+    pub(super) matrices: [&'a Powers; FORMS],
+    pub(super) bin: usize,
+    /// For each line the real and imaginary parts of c_j of all vectors.
+    pub(super) vectors: &'a [[&'a [f64]; 2]],
+    /// For each matrix the forms of all vectors, as many as these are.
+    pub(super) sums: &'a mut [Vec<f64>; FORMS],
+}
+
+impl Forms<'_> {
+    /// Puts the forms into `sums`.
+    pub(super) fn tell(self) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            simd.vectorize(self);
+            return;
+        }
+        self.run();
+    }
+
+    #[inline(always)]
+    fn run(self) {
+        let count = self.sums[0].len();
+        let [first, second, third, fourth, fifth] = self.sums.each_mut().map(|sums| {
+            sums.fill(0.0);
+            &mut sums[..count]
+        });
+        let mut pair = 0;
+        for (j, [a, b]) in self.vectors.iter().enumerate() {
+            for (k, [d, e]) in self.vectors[..=j].iter().enumerate() {
                 let both = if k == j { 1.0 } else { 2.0 };
-                sum += both * ((a * d + b * e) * real[bin] - (a * e - b * d) * imaginary[bin]);
+                let [m, n, o, p, q] = self.matrices.map(|matrix| {
+                    let [real, imaginary] = &matrix.pairs[pair];
+                    [real[self.bin], imaginary[self.bin]]
+                });
+                pair += 1;
+                let (a, b, d, e) = (&a[..count], &b[..count], &d[..count], &e[..count]);
+                // A loop: closures that iterators call would not be compiled for wide vectors.
+                for i in 0..count {
+                    let (x, y) = (a[i] * d[i] + b[i] * e[i], a[i] * e[i] - b[i] * d[i]);
+                    first[i] += both * (x * m[0] - y * m[1]);
+                    second[i] += both * (x * n[0] - y * n[1]);
+                    third[i] += both * (x * o[0] - y * o[1]);
+                    fourth[i] += both * (x * p[0] - y * p[1]);
+                    fifth[i] += both * (x * q[0] - y * q[1]);
+                }
             }
         }
-        sum
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl NullaryFnOnce for Forms<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.run();
     }
 }
 
@@ -141,7 +211,7 @@ impl Neighbours {
 
 #[cfg(test)]
 mod tests {
-    use super::{Neighbours, Powers};
+    use super::{FORMS, Forms, Neighbours, Powers};
     use crate::estimation::fourier::Spectrum;
     use nalgebra::Complex;
 
@@ -232,7 +302,21 @@ mod tests {
                     Complex::new(*a, *b).conj() * rho
                 })
                 .sum();
-            let found = powers.quadratic(&c, bin);
+            let parts = c.map(|both| both.map(|part| [part]));
+            let vectors = parts
+                .each_ref()
+                .map(|both| both.each_ref().map(|part| &part[..]));
+            let mut sums = [const { Vec::new() }; FORMS];
+            sums.iter_mut().for_each(|own| own.push(f64::NAN));
+            let forms = Forms {
+                matrices: [&powers; FORMS],
+                bin,
+                vectors: &vectors,
+                sums: &mut sums,
+            };
+            forms.tell();
+            let found = sums[0][0];
+            assert!(sums.iter().all(|own| own[..] == [found]), "{sums:?}");
             assert!((found - sum.norm_sqr()).abs() < 1e-12 * sum.norm_sqr());
         }
     }
