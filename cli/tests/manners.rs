@@ -73,6 +73,12 @@ fn a_dash_is_standard_input_and_output() {
     let renamed = streamed.replace("\"-\"", "\"log.csv\"");
     assert!(estimates(&renamed) == estimates(&read), "other estimates");
     assert_eq!(bench.files(), ["log.csv", "my.toml"]);
+    let broken = piped(&bench, &["identify", "my.toml", "--data", "-"], b"\0\x01");
+    let err = String::from_utf8_lossy(&broken.stderr).into_owned();
+    assert!(
+        err.contains("error[OA302]") && err.contains(" --> -\n"),
+        "{err}"
+    );
     // Standard input can be read once, and standard output takes one result.
     let twice = piped(&bench, &["identify", "-", "--data", "-"], &text);
     let err = String::from_utf8_lossy(&twice.stderr).into_owned();
@@ -169,6 +175,7 @@ fn shells_and_man_are_served() {
     }
     let first = bench.good(&["manual"]);
     assert!(first.starts_with(".ie"), "{first}");
+    assert_eq!(bench.good(&["manual", "-o", "-"]), first);
     fs::create_dir(bench.path("man")).expect("a folder");
     let written = bench.good(&["manual", "-o", "man"]);
     assert_eq!(

@@ -27,7 +27,8 @@ cargo xtask freshness           fail unless generated/ is what the generator wri
 cargo xtask measure EFFORT FILE what generation makes of a description, in numbers (JSON)
 cargo xtask book                write docs/errors.md, and the book to target/book for mdbook
 cargo xtask links               fail unless every link of the documentation leads somewhere and errors.md is fresh
-cargo xtask release             versions, licences and Rust versions of all packages
+cargo xtask package [OPTION]... archives of all published packages, built as they will be (cargo package)
+cargo xtask release             versions, licences, Rust versions and registry keys of all packages
 cargo xtask tests               all test binaries, one for each processor at a time
 cargo xtask times [SECONDS]     processor time of each test binary; fail if all take more";
 
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         ["freshness"] => freshness::check(),
         ["book"] => book::write_all(),
         ["links"] => links::check().and_then(|()| book::check()),
+        ["package", ref options @ ..] => release::package(options),
         ["release"] => release::check(),
         ["tests"] => at_once::run(),
         ["times"] => times::table(None),

@@ -11,7 +11,7 @@ use crate::{
 };
 use clap::ValueEnum;
 use overact_identification::{Log, Progress as Doing, Settings, data};
-use overact_robot::{Robot, Runs};
+use overact_robot::{Error, Robot, Runs};
 use std::{
     cell::OnceCell,
     path::{Path, PathBuf},
@@ -117,7 +117,8 @@ impl Arguments {
         let logs: Vec<&Path> = files.iter().map(|(path, _)| *path).collect();
         same::check(&logs, own.len())?;
         let bar = Progress::new("reading", as_json);
-        let logs = robot.read_logs(&files, &|part: f64| bar.at(part, ""))?;
+        let logs = robot.read_logs(&files, &|part: f64| bar.at(part, ""));
+        let logs = logs.map_err(|error| self.as_given(error))?;
         let logs = logs.into_iter().zip(all());
         let mut identified: Vec<Log> = logs.map(|(log, one)| one.label(log)).collect();
         let validation = identified.split_off(own.len());
@@ -126,6 +127,24 @@ impl Arguments {
             validation,
             true_values: None,
         })
+    }
+
+    /// An error that calls standard input as the user does, and not by the file that it was read to.
+    fn as_given(&self, error: Error) -> Error {
+        let spooled = self
+            .spool
+            .get()
+            .map(|spool| spool.path().display().to_string());
+        let mut problems = error.problems();
+        for problem in &mut problems {
+            if problem.file.is_some() && problem.file == spooled {
+                problem.file = Some("-".to_owned());
+            }
+        }
+        match error {
+            description @ Error::Description { .. } => description,
+            _ => Error::Problems(problems),
+        }
     }
 
     /// The file that standard input was read to.

@@ -45,7 +45,7 @@ pub(super) fn completions(arguments: &Completions) -> Result<(), Failure> {
 pub(super) fn manual(arguments: &Manual) -> Result<(), Failure> {
     let mut command = super::Arguments::command();
     command.build();
-    let Some(folder) = arguments.output.as_deref() else {
+    let Some(folder) = output::file(arguments.output.as_ref()) else {
         return print(&as_text(page(&command)?)?);
     };
     let mut files = vec![(folder.join("overact.1"), page(&command)?)];

@@ -129,7 +129,7 @@ mod tests {
             assert_eq!(one.code.explanation(), one);
             for text in [one.cause, one.cure] {
                 assert!(
-                    text.ends_with('.') && text.len() > 20,
+                    text.ends_with('.') && text.len() > 15,
                     "{}: {text}",
                     one.code
                 );
