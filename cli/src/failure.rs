@@ -1,10 +1,14 @@
 //! Why a command has no result, as text for people or as JSON for machines.
 
+use overact_codegen::diagnostic::Code;
 use overact_codegen::diagnostic::InternalError;
 use overact_robot::Error;
 use std::io::{self, IsTerminal, Write};
 
 pub use overact_robot::Problem;
+
+/// More codes than these are not offered at once.
+const EXPLAINED: usize = 4;
 
 /// Why a command has no result.
 #[derive(Debug)]
@@ -37,7 +41,8 @@ impl Failure {
     #[must_use]
     pub fn problems(&self) -> Vec<Problem> {
         match self {
-            Self::Usage(message) | Self::Refused(message) => vec![Problem::new(message)],
+            Self::Usage(message) => vec![Problem::new(Code::USAGE, message)],
+            Self::Refused(message) => vec![Problem::new(Code::NOT_TO_BE_USED, message)],
             Self::Input(error) => error.problems(),
             Self::Internal(error) => vec![Problem::from(error)],
         }
@@ -47,10 +52,21 @@ impl Failure {
     #[must_use]
     pub fn render(&self, styled: bool) -> String {
         match self {
-            Self::Usage(message) | Self::Refused(message) => Problem::new(message).to_string(),
             Self::Input(error) => error.render(styled),
-            Self::Internal(error) => Problem::from(error).to_string(),
+            Self::Usage(_) | Self::Refused(_) | Self::Internal(_) => {
+                let texts: Vec<String> = self.problems().iter().map(Problem::to_string).collect();
+                texts.join("\n\n")
+            }
         }
+    }
+
+    /// Where more is told of the problems: the command that explains their codes.
+    fn more(&self) -> String {
+        let mut codes: Vec<Code> = self.problems().iter().map(|one| one.code).collect();
+        codes.sort_unstable();
+        codes.dedup();
+        let names: Vec<String> = codes.iter().take(EXPLAINED).map(Code::to_string).collect();
+        format!("cause and cure: overact explain {}", names.join(" "))
     }
 
     /// Writes all problems to stderr: coloured on a terminal that wants colours, plain in a pipe, as
@@ -60,7 +76,8 @@ impl Failure {
             serde_json::json!({ "errors": self.problems() }).to_string()
         } else {
             let colours = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-            self.render(colours && io::stderr().is_terminal())
+            let text = self.render(colours && io::stderr().is_terminal());
+            format!("{text}\n\n{}", self.more())
         };
         // There is nobody left to tell that stderr is closed.
         let _ = writeln!(io::stderr(), "{text}");
@@ -101,14 +118,20 @@ impl From<overact_identification::Error> for Failure {
 
 #[cfg(test)]
 mod tests {
-    use super::{Error, Failure, InternalError, Problem};
+    use super::{Code, Error, Failure, InternalError, Problem};
     use overact_codegen::diagnostic::{Diagnostics, Source};
 
     #[test]
     fn only_arguments_that_do_not_go_together_are_a_usage_error() {
-        assert_eq!(Failure::from(Problem::new("no column")).exit_code(), 1);
+        assert_eq!(
+            Failure::from(Problem::new(Code::USAGE, "no column")).exit_code(),
+            1
+        );
         assert_eq!(Failure::Usage("no".into()).exit_code(), 2);
-        assert_eq!(Failure::Usage("no".into()).render(false), "error: no");
+        assert_eq!(
+            Failure::Usage("no".into()).render(false),
+            "error[OA601]: no"
+        );
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, Problem};
 use overact_codegen::Choice;
+use overact_codegen::diagnostic::Code;
 
 /// Which functions are written.
 #[derive(Debug, clap::Args)]
@@ -26,7 +27,9 @@ impl Arguments {
             Ok(choice) => Ok(Some(choice)),
             Err(unknown) => {
                 let unknown = unknown.into_iter();
-                let problems = unknown.map(|one| Problem::new(one.to_string()).help(one.help));
+                let problems = unknown.map(|one| {
+                    Problem::new(Code::NO_SUCH_FUNCTION, one.to_string()).help(one.help)
+                });
                 Err(problems.collect::<Vec<_>>().into())
             }
         }

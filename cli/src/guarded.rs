@@ -58,11 +58,12 @@ fn described(info: &PanicHookInfo<'_>) -> String {
 mod tests {
     use super::guarded;
     use crate::failure::{Failure, Problem};
+    use overact_codegen::diagnostic::Code;
 
     #[test]
     fn a_panic_is_an_internal_error_and_anything_else_stays_what_it_is() {
         let empty: &[f64] = &[];
-        let panics = || Err(Problem::new(format!("{}", empty[3])).into());
+        let panics = || Err(Problem::new(Code::USAGE, format!("{}", empty[3])).into());
         let failure = guarded("identify", "dualv.toml", panics).expect_err("a panic");
         assert_eq!(failure.exit_code(), 4);
         let text = failure.render(false);

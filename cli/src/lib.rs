@@ -10,9 +10,11 @@
 //! - `guarded`: a defect of the program is told as such;
 //! - `effort`: how hard the generator searches;
 //! - `functions`: which functions are generated;
+//! - `input`: descriptions with a bar, standard input;
 //! - `names`: names of results in names of files;
 //! - `note`: what a description says that may not be meant;
 //! - [`report`]: an identification as a page, a document or a flat table;
+//! - `signals`: what is left when a signal ends the process: nothing;
 //! - `states`: states of a robot from JSON or CSV.
 
 mod commands;
@@ -21,19 +23,30 @@ mod effort;
 pub mod failure;
 mod functions;
 mod guarded;
+mod input;
 mod names;
 mod note;
 mod output;
 mod progress;
 pub mod report;
+mod signals;
 mod states;
 
-use clap::Parser;
-use std::{ffi::OsString, process::ExitCode};
+use clap::{Parser, error::ErrorKind};
+use overact_codegen::diagnostic::Code;
+use std::{
+    ffi::OsString,
+    io::{self, IsTerminal, Write},
+    process::ExitCode,
+};
+
+/// What is printed where no command is given is the help.
+const NO_COMMAND: ErrorKind = ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 
 /// Runs the command that the process was started with.
 #[must_use]
 pub fn run() -> ExitCode {
+    signals::watch();
     ExitCode::from(run_with(std::env::args_os().collect()))
 }
 
@@ -46,6 +59,7 @@ pub fn run_with(arguments: Vec<OsString>) -> u8 {
         Err(error) => return misused(&error, wants_json),
     };
     let json = arguments.json;
+    note::set_quiet(arguments.quiet);
     match guarded::run(&arguments.command, json) {
         Ok(()) => 0,
         Err(failure) => {
@@ -57,6 +71,16 @@ pub fn run_with(arguments: Vec<OsString>) -> u8 {
 
 /// Help and the version go to stdout; what is wrong with the arguments is told as everything else is.
 fn misused(error: &clap::Error, wants_json: bool) -> u8 {
+    if error.use_stderr() && !wants_json && error.kind() != NO_COMMAND {
+        let colours = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        let said = match colours && io::stderr().is_terminal() {
+            true => error.render().ansi().to_string(),
+            false => error.render().to_string(),
+        };
+        let code = format!("error[{}]", Code::USAGE);
+        let _ = write!(io::stderr(), "{}", said.replacen("error", &code, 1));
+        return u8::try_from(error.exit_code()).unwrap_or(2);
+    }
     if !(error.use_stderr() && wants_json) {
         // There is nobody left to tell that the output is closed.
         let _ = error.print();

@@ -4,13 +4,23 @@ mod files;
 
 pub(crate) use files::{check, check_distinct, write};
 
-use crate::failure::{Failure, Problem};
+use crate::{
+    failure::{Failure, Problem},
+    input::is_stream,
+};
+use overact_codegen::diagnostic::Code;
 use serde::Serialize;
 use std::{
     io,
     io::Write,
     path::{Path, PathBuf},
 };
+
+/// The file that a result goes to; `-` is stdout, as no file is.
+pub(crate) fn file(path: Option<&PathBuf>) -> Option<&Path> {
+    let path = path.map(PathBuf::as_path);
+    path.filter(|path| !is_stream(path))
+}
 
 /// Writes a text to stdout. A reader that has gone away (`| head`) is not an error.
 ///
@@ -26,7 +36,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let written = write!(stdout, "{text}{newline}").and_then(|()| stdout.flush());
     match written {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Problem::new(format!("stdout can't be written: {error}")).into())
+            Err(Problem::new(Code::STREAM, format!("stdout can't be written: {error}")).into())
         }
         _ => Ok(()),
     }
@@ -66,8 +76,13 @@ pub(crate) fn emit_with(
 /// # Errors
 /// Never for the documents of this program: their keys are texts.
 pub(crate) fn json(document: &impl Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(document)
-        .map_err(|error| Problem::new(format!("the result is no JSON: {error}")).into())
+    serde_json::to_string_pretty(document).map_err(|error| {
+        Problem::new(
+            Code::NO_RESULT_TEXT,
+            format!("the result is no JSON: {error}"),
+        )
+        .into()
+    })
 }
 
 /// `1 leg`, `2 legs`.

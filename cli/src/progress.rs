@@ -1,5 +1,6 @@
 //! Progress of long work on stderr: a bar on a terminal, nothing in a pipe or with `--json`.
 
+use crate::note::is_quiet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
 
@@ -12,7 +13,7 @@ pub(crate) struct Progress(Option<ProgressBar>);
 impl Progress {
     /// A bar for the work `what`.
     pub(crate) fn new(what: &str, json: bool) -> Self {
-        if json || !io::stderr().is_terminal() {
+        if json || is_quiet() || !io::stderr().is_terminal() {
             return Self(None);
         }
         let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());

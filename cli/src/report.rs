@@ -8,6 +8,7 @@ use crate::{
     output,
 };
 use overact::Info;
+use overact_codegen::diagnostic::Code;
 use overact_identification::{Figures, Identification};
 use overact_report::{Attachment, Contents, Published, Units, numbers, page};
 use overact_robot::Robot;
@@ -221,15 +222,22 @@ pub fn beside(description: &Path) -> Option<PathBuf> {
 pub fn published(path: &Path) -> Result<Published, Failure> {
     let file = path.display().to_string();
     let text = fs::read_to_string(path).map_err(|error| {
-        Problem::new(format!("the published results can't be read: {error}")).file(file.as_str())
+        Problem::new(
+            Code::PUBLISHED,
+            format!("the published results can't be read: {error}"),
+        )
+        .file(file.as_str())
     })?;
     let published: Published = toml::from_str(&text).map_err(|error| {
         let before = error.span().and_then(|span| text.get(..span.start));
         let line = before.map(|before| before.matches('\n').count() + 1);
-        Problem::new(format!("published results: {}", error.message()))
-            .file(file.as_str())
-            .line(line)
-            .help("robots/README.md documents the keys")
+        Problem::new(
+            Code::PUBLISHED,
+            format!("published results: {}", error.message()),
+        )
+        .file(file.as_str())
+        .line(line)
+        .help("robots/README.md documents the keys")
     })?;
     let wrong = published.wrong_lengths();
     let problems: Vec<Problem> = wrong
@@ -239,7 +247,7 @@ pub fn published(path: &Path) -> Result<Published, Failure> {
                 "published results: {what} has {length} numbers for {} actuators",
                 published.actuators.len()
             );
-            Problem::new(message)
+            Problem::new(Code::PUBLISHED, message)
                 .file(file.as_str())
                 .help("give one number for each name in `actuators`")
         })

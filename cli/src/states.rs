@@ -2,6 +2,7 @@
 //! `pose[0]` for each number).
 
 use crate::failure::{Failure, Problem};
+use overact_codegen::diagnostic::Code;
 use serde::{
     Deserialize, Deserializer,
     de::{Error as _, MapAccess, Visitor},
@@ -53,7 +54,8 @@ impl States {
         } else {
             fs::read_to_string(path)
         };
-        let problem = |error| Problem::new(format!("the states can't be read: {error}"));
+        let problem =
+            |error| Problem::new(Code::STATES, format!("the states can't be read: {error}"));
         let text = text.map_err(|error| problem(error).file(file.as_str()))?;
         Self::parse(file, &text)
     }
@@ -71,7 +73,7 @@ impl States {
         match states {
             Ok(states) if states.is_empty() => {
                 let help = "give a JSON array of objects keyed by input name, or CSV with a header such as `pose[0],pose[1]`";
-                Err(Problem::new("the file holds no state")
+                Err(Problem::new(Code::STATES, "the file holds no state")
                     .file(file)
                     .help(help)
                     .into())
@@ -156,7 +158,10 @@ impl States {
     /// A problem with a state.
     pub(crate) fn problem(&self, at: usize, message: &str) -> Problem {
         let count = self.len();
-        let problem = Problem::new(format!("state {} of {count}: {message}", at + 1));
+        let problem = Problem::new(
+            Code::STATES,
+            format!("state {} of {count}: {message}", at + 1),
+        );
         let line = self.states.get(at).and_then(|state| state.line);
         problem.file(self.file.as_str()).line(line)
     }
@@ -175,7 +180,7 @@ fn from_json(text: &str) -> Result<Vec<State>, Problem> {
             Category::Data => "the states can't be taken",
             _ => "the states are not JSON",
         };
-        Problem::new(format!("{what}: {error}"))
+        Problem::new(Code::STATES, format!("{what}: {error}"))
             .line(line)
             .help("write [{ \"pose\": [0.1, 0.2, 0.3], ... }, ...], each name once in a state")
     })
@@ -234,7 +239,7 @@ fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
         .from_reader(text.as_bytes());
     let broken = |error: csv::Error| {
         let line = error.position().map(|position| position.line() as usize);
-        Problem::new(format!("the states are not CSV: {error}")).line(line)
+        Problem::new(Code::STATES, format!("the states are not CSV: {error}")).line(line)
     };
     let header: Vec<(String, usize)> = reader
         .headers()
@@ -255,7 +260,7 @@ fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
             let message = format!("{found} cells in a line, and {named} names in the header");
             let help =
                 "name every column, or leave out what has no name; numbers take a decimal point";
-            return Err(Problem::new(message).line(line).help(help));
+            return Err(Problem::new(Code::STATES, message).line(line).help(help));
         }
         let mut cells: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
         for ((name, index), cell) in header.iter().zip(&record) {

@@ -118,7 +118,7 @@ fn usage_errors_have_their_own_code() {
         &["evaluate", "my.toml", "joints"],
         &["generate", "--check", &dualv],
         &["simulate", &dualv],
-        &["inspect", &dualv, "-o", "-"],
+        &["inspect", &dualv, "--svg", "-"],
     ];
     for usage in usages {
         let outcome = bench.run(usage);

@@ -266,49 +266,51 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
     );
 }
 
-/// The program of `docs/c.md` compiles and says what it shall.
+/// The programs of documents compile and say what they shall.
 #[test]
-fn the_program_of_the_document_runs() {
-    let document = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/c.md");
-    let document = fs::read_to_string(document).expect("the document");
-    let (_, rest) = document.split_once("```c\n").expect("a program");
-    let (program, _) = rest.split_once("```").expect("its end");
+fn the_programs_of_the_documents_run() {
+    let shown = |text: &str| {
+        text.split_once("```text\n")
+            .map(|(_, rest)| rest.to_owned())
+    };
+    for (document, name) in [("c.md", "dualv"), ("interfaces.md", "emps")] {
+        let text = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../docs")
+            .join(document);
+        let text = fs::read_to_string(text).expect("the document");
+        let (_, rest) = text.split_once("```c\n").expect("a program");
+        let (program, _) = rest.split_once("```").expect("its end");
+        let Some(said) = compiled_and_run(name, program) else {
+            eprintln!("skipped: there is no gcc");
+            return;
+        };
+        match shown(&text) {
+            Some(shown) => assert!(shown.starts_with(&said), "{said}"),
+            None => assert!(said.starts_with("zz_1_leg1 in row x: "), "{said}"),
+        }
+    }
+}
+
+/// What a program in C says that uses the robot of a description; nothing where there is no compiler.
+fn compiled_and_run(name: &str, program: &str) -> Option<String> {
     let bench = Bench::new();
-    let dualv = robot("dualv.toml");
+    let file = robot(&format!("{name}.toml"));
     bench.good(&[
-        "generate", &dualv, "--effort", "none", "--lang", "c", "-o", ".",
+        "generate", &file, "--effort", "none", "--lang", "c", "-o", ".",
     ]);
     bench.write("main.c", program);
-    let words = [
-        "-std=c99",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-pedantic",
-        "-o",
-        "main",
-        "main.c",
-        "dualv.c",
-        "-lm",
-    ];
-    let Ok(done) = Command::new("gcc")
-        .args(words)
-        .current_dir(bench.path("."))
-        .output()
-    else {
-        eprintln!("skipped: there is no gcc");
-        return;
-    };
-    assert!(
-        done.status.success(),
-        "{}",
-        String::from_utf8_lossy(&done.stderr)
-    );
+    let source = format!("{name}.c");
+    let warnings = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"];
+    let mut gcc = Command::new("gcc");
+    gcc.args(warnings)
+        .args(["-o", "main", "main.c", &source, "-lm"]);
+    let done = gcc.current_dir(bench.path(".")).output().ok()?;
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{said}");
     let said = Command::new(bench.path("main"))
         .output()
         .expect("the program");
-    let said = String::from_utf8_lossy(&said.stdout).into_owned();
-    assert!(said.starts_with("zz_1_leg1 in row x: "), "{said}");
+    Some(String::from_utf8_lossy(&said.stdout).into_owned())
 }
 
 /// The example of a C++ controller generates, builds and passes its own check.

@@ -1,4 +1,5 @@
-//! The tutorial: its blocks make the robot, its commands print what it shows.
+//! The tutorial, and the page of answers that are not to be trusted: blocks make the robot, commands print what
+//! is shown.
 //!
 //! Blocks of TOML are appended to `rrr.toml` in their order. The commands of a console block run in a
 //! shell in the same folder; a line `…` stands for any lines, and numbers may differ in their last
@@ -84,17 +85,11 @@ fn matches(shown: &[&str], printed: &[&str]) -> bool {
     }
 }
 
-#[test]
-fn the_tutorial_does_what_it_says() {
-    // Its robot, like the one that comes with the tool, is derived and identified several times over.
-    if !overact_tier::is_full() {
-        return;
-    }
-    let text = fs::read_to_string(docs().join("tutorial.md")).expect("the tutorial");
-    let bench = Bench::new();
+/// Does what the blocks of a document say; returns how many commands there were.
+fn follow(bench: &Bench, text: &str) -> usize {
     let mut robot = String::new();
     let mut commands = 0;
-    for block in blocks(&text) {
+    for block in blocks(text) {
         match block.language {
             "toml" => {
                 robot += &(block.lines.join("\n") + "\n");
@@ -103,7 +98,7 @@ fn the_tutorial_does_what_it_says() {
             "console" => {
                 for part in block.lines.join("\n").split("$ ").skip(1) {
                     let (command, shown) = part.split_once('\n').unwrap_or((part, ""));
-                    let printed = run(&bench, command);
+                    let printed = run(bench, command);
                     let shown: Vec<&str> = shown.trim_end().lines().collect();
                     let lines: Vec<&str> = printed.trim_end().lines().collect();
                     assert!(
@@ -117,6 +112,24 @@ fn the_tutorial_does_what_it_says() {
             _ => {}
         }
     }
+    commands
+}
+
+#[test]
+fn answers_that_are_not_to_be_trusted_are_those_that_are_shown() {
+    let text = fs::read_to_string(docs().join("untrusted.md")).expect("the page");
+    assert_eq!(follow(&Bench::new(), &text), 9);
+}
+
+#[test]
+fn the_tutorial_does_what_it_says() {
+    // Its robot, like the one that comes with the tool, is derived and identified several times over.
+    if !overact_tier::is_full() {
+        return;
+    }
+    let text = fs::read_to_string(docs().join("tutorial.md")).expect("the tutorial");
+    let bench = Bench::new();
+    let commands = follow(&bench, &text);
     assert!(commands > 10, "{commands} commands");
     let drawing = fs::read_to_string(docs().join("tutorial.svg")).unwrap_or_default();
     assert!(

@@ -9,6 +9,7 @@
 //! The crate is `no_std`, has no dependencies and allocates nothing.
 #![no_std]
 
+pub mod code;
 pub mod error;
 pub mod function;
 pub mod parameter;
@@ -17,6 +18,7 @@ pub mod size;
 pub mod text;
 pub mod trigonometry;
 
+pub use code::{Code, Explanation};
 pub use error::{ActuatorGroup, Actuators, Error, SampleError};
 pub use function::{Columns, Condition, Function};
 pub use parameter::StandardParameter;

@@ -3,12 +3,21 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use overact::Code;
+use serde::{Serialize, Serializer};
+
+/// A code as its text.
+fn as_text<S: Serializer>(code: &Code, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(code)
+}
 
 /// One thing that is wrong.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Problem {
+    /// What kind of problem it is, under which it is explained.
+    #[serde(serialize_with = "as_text")]
+    pub code: Code,
     /// What is wrong, in one sentence.
     pub message: String,
     /// The file, or the name of the run, where it is wrong.
@@ -24,8 +33,9 @@ pub struct Problem {
 impl Problem {
     /// A problem without a place.
     #[must_use]
-    pub fn new(message: impl Into<String>) -> Self {
+    pub fn new(code: Code, message: impl Into<String>) -> Self {
         Self {
+            code,
             message: message.into(),
             file: None,
             line: None,

@@ -5,6 +5,7 @@
 //! The low-pass on the positions must not bend the signals inside of it: cutoff >= 10 f_dyn. The
 //! decimation removes all above the model's band: 0.8 f_m/(2 n_d) about 2 to 5 times f_dyn.
 
+use overact::Code;
 use std::collections::BTreeMap;
 
 use overact::Info;
@@ -236,54 +237,60 @@ impl Settings {
         let mut problems = Vec::new();
         if !(self.filter_cutoff_hz.is_finite() && self.filter_cutoff_hz > 0.0) {
             problems.push(
-                Problem::new(format!(
-                    "the cutoff frequency is {} Hz",
-                    self.filter_cutoff_hz
-                ))
-                .help("choose about ten times the bandwidth of the motion"),
+                Problem::new(
+                    Code::SETTINGS,
+                    format!("the cutoff frequency is {} Hz", self.filter_cutoff_hz),
+                )
+                .help("give `filter_cutoff` of [identification] about ten times the bandwidth of the motion"),
             );
         }
         if !matches!(self.difference_order, 2 | 4) {
             problems.push(
-                Problem::new(format!(
-                    "there are no central differences of order {}",
-                    self.difference_order
-                ))
-                .help("use order 4, or 2 as published work does"),
+                Problem::new(
+                    Code::SETTINGS,
+                    format!(
+                        "there are no central differences of order {}",
+                        self.difference_order
+                    ),
+                )
+                .help("set `difference_order` of [identification] to 4, or to 2 as published work does"),
             );
         }
         if self.filter_order == 0 {
-            problems.push(Problem::new("the filter's order is 0").help("4 is usual"));
+            problems.push(
+                Problem::new(Code::SETTINGS, "the filter's order is 0")
+                    .help("`filter_order` of [identification]: 4 is usual"),
+            );
         }
         if self.decimation == 0 {
             problems.push(
-                Problem::new("a decimation by 0 is not possible")
-                    .help("choose 1 to keep every sample"),
+                Problem::new(Code::SETTINGS, "a decimation by 0 is not possible")
+                    .help("set `decimation` of [identification] to 1 to keep every sample"),
             );
         }
         if !(self.velocity_dead_band.is_finite() && self.velocity_dead_band >= 0.0) {
             problems.push(
-                Problem::new(format!(
-                    "the velocity dead band is {}",
-                    self.velocity_dead_band
-                ))
-                .help("choose about three times the noise of the velocities, or 0 for none"),
+                Problem::new(
+                    Code::SETTINGS,
+                    format!("the velocity dead band is {}", self.velocity_dead_band),
+                )
+                .help("give `velocity_dead_band` of [identification] about three times the noise of the velocities, or 0 for none"),
             );
         }
         if self.filter_torques && self.filter_equations {
             problems.push(
-                Problem::new("the torques would pass the low-pass twice: both `filter_torques` and `filter_equations` are set")
+                Problem::new(Code::SETTINGS, "the torques would pass the low-pass twice: both `filter_torques` and `filter_equations` are set")
                     .help("`filter_equations` filters torques and columns alike; leave out the other one"),
             );
         }
         problems.extend(self.check_standstill(info));
         if self.r_sigma.is_nan() || self.r_sigma <= 1.0 {
             problems.push(
-                Problem::new(format!(
-                    "r_sigma is {}; it must be greater than 1",
-                    self.r_sigma
-                ))
-                .help("choose between 10 and 30"),
+                Problem::new(
+                    Code::SETTINGS,
+                    format!("r_sigma is {}; it must be greater than 1", self.r_sigma),
+                )
+                .help("choose `r_sigma` of [identification] between 10 and 30"),
             );
         }
         if info.sizes.actuators > info.sizes.dof {
@@ -301,7 +308,7 @@ impl Settings {
         if actuators > info.sizes.dof {
             let message = "equations can't be left out at a joint's standstill: those of a redundant robot are not those of single joints";
             let help = "leave out `standstill_velocity`; `velocity_dead_band` serves any robot";
-            return Some(Problem::new(message).help(help));
+            return Some(Problem::new(Code::SETTINGS, message).help(help));
         }
         if limits.len() != actuators {
             let message = format!(
@@ -309,11 +316,17 @@ impl Settings {
                 limits.len(),
                 if actuators == 1 { "" } else { "s" }
             );
-            return Some(Problem::new(message).help("give one for each actuator, or none"));
+            return Some(
+                Problem::new(Code::SETTINGS, message)
+                    .help("give `standstill_velocity` one for each actuator, or none"),
+            );
         }
         let mut limits = limits.iter();
         let bad = limits.find(|limit| !(limit.is_finite() && **limit >= 0.0))?;
-        Some(Problem::new(format!("a velocity of standstill is {bad}")))
+        Some(Problem::new(
+            Code::SETTINGS,
+            format!("a velocity of standstill is {bad}"),
+        ))
     }
 }
 
@@ -325,7 +338,7 @@ pub(crate) fn check_partition(kept: &[usize], info: &Info<'_>) -> Option<Problem
     sorted.dedup();
     let right = sorted.len() == dof && kept.len() == dof && sorted.iter().all(|k| *k < actuators);
     (!right).then(|| {
-        Problem::new(format!(
+        Problem::new(Code::KEPT_ACTUATORS, format!(
             "the kept actuators {kept:?} are not a choice of {dof} among the {actuators} actuators"
         ))
         .help(format!(

@@ -215,8 +215,8 @@ fn short_runs_and_other_robots_are_errors() {
     assert_eq!(
         text,
         "run 1: the run has 1 actuator, the robot `pair` has 2\n  help: map one position and one torque column to each actuator\n\
-         run 1: the run has 20 samples; the filters, the decimation and the skipped samples need at least 55\n  help: record a longer run, or skip fewer samples\n\
-         run 1: the cutoff frequency of 60 Hz is not below half the sampling frequency, 50 Hz\n  help: choose about ten times the bandwidth of the motion"
+         run 1: the run has 20 samples; the filters, the decimation and the skipped samples need at least 55\n  help: record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]\n\
+         run 1: the cutoff frequency of 60 Hz is not below half the sampling frequency, 50 Hz\n  help: give `filter_cutoff` of [identification] about ten times the bandwidth of the motion"
     );
 }
 
@@ -271,12 +271,12 @@ fn experiments_are_checked() {
     };
     assert_eq!(
         run(&[], &PAIR),
-        "there is no run to identify from\n  help: give at least one log"
+        "there is no run to identify from\n  help: give at least one log with --data, or runs in [[experiment.run]]"
     );
     let loaded = Log::new("run 3", 100.0, 1, vec![0.0; 200], vec![0.0; 200], true).expect("a log");
     assert_eq!(
         run(&[loaded], &EMPS),
-        "run 3: the run carries a payload, but the description of `emps` has none\n  help: add a payload to the description, or declare the run unloaded"
+        "run 3: the run carries a payload, but the description of `emps` has none\n  help: describe the payload in [platform.payload], or declare the run unloaded"
     );
     let still = Log::new("run 4", 100.0, 2, vec![0.0; 400], vec![0.0; 400], false).expect("a log");
     let dataset = Dataset {

@@ -157,7 +157,7 @@ fn impossible_filters_are_errors() {
     assert_eq!(
         text,
         "a filter of order 8 run forwards and backwards needs at least 25 samples; there are 24\n  \
-         help: record a longer run, or skip fewer samples"
+         help: record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]"
     );
     assert!(decimate(&[1.0; 30], 0).is_err());
     assert_eq!(decimate(&[1.0, 2.0], 1).expect("unfiltered"), [1.0, 2.0]);

@@ -102,7 +102,7 @@ fn limits_that_make_no_sense_are_refused() {
     };
     assert_eq!(
         refused(&EMPS, vec![0.1, 0.1]),
-        "there are 2 velocities of standstill for 1 actuator\n  help: give one for each actuator, or none"
+        "there are 2 velocities of standstill for 1 actuator\n  help: give `standstill_velocity` one for each actuator, or none"
     );
     assert_eq!(refused(&EMPS, vec![-1.0]), "a velocity of standstill is -1");
     assert!(refused(&PAIR, vec![0.1; 2]).contains("of a redundant robot"));

@@ -2,6 +2,7 @@
 //! without knowing what there is. Series over time are not among them; they are in the document of
 //! [`Figures`](overact_identification::Figures).
 
+use overact::Code;
 use overact_identification::{Error, Estimate, Identification, LineError, Problem, Stage};
 
 /// The names of the columns.
@@ -220,7 +221,10 @@ impl Rows<'_> {
 
     fn csv(&self) -> Result<String, Error> {
         let failed = |error: &dyn std::fmt::Display| {
-            Error::from(Problem::new(format!("the table can't be written: {error}")))
+            Error::from(Problem::new(
+                Code::NO_RESULT_TEXT,
+                format!("the table can't be written: {error}"),
+            ))
         };
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer

@@ -11,6 +11,7 @@ use crate::{
     settings::settings,
 };
 use overact::{Info, Sizes};
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     Checked,
     derivation::BodyParameter,
@@ -103,7 +104,11 @@ fn check_prior(
         let name = problem.column.unwrap_or_default();
         let at = description::place(source, &format!("prior.values.{name}"));
         let help = problem.help.unwrap_or_default();
-        errors.push(Diagnostic::global(problem.message).help(help).at(at));
+        errors.push(
+            Diagnostic::global(Code::KNOWN, problem.message)
+                .help(help)
+                .at(at),
+        );
     }
 }
 
@@ -148,14 +153,17 @@ fn check_filters(
     let settings = settings(description, info, frequency);
     let at = |path: &str, message: String, help: &str| {
         let place = description::place(source, path);
-        Diagnostic::global(message).help(help).at(place)
+        Diagnostic::global(Code::KNOWN, message)
+            .help(help)
+            .at(place)
     };
     let (cutoff, nyquist) = (settings.filter_cutoff_hz, frequency / 2.0);
     if cutoff >= nyquist {
         let message = format!(
             "the cutoff frequency of {cutoff} Hz is not below half the sampling frequency of the virtual experiment, {nyquist} Hz"
         );
-        let help = "choose about ten times the bandwidth of the motion";
+        let help =
+            "give `filter_cutoff` of [identification] about ten times the bandwidth of the motion";
         errors.push(at("identification.filter_cutoff", message, help));
     } else if let Err(refused) = butterworth(settings.filter_order, cutoff / nyquist) {
         for problem in refused.problems {
@@ -169,7 +177,8 @@ fn check_filters(
         let message = format!(
             "the cutoff frequency of {cutoff} Hz is below one period in the longest run, of {longest} s: nothing of the motion would be left"
         );
-        let help = "choose about ten times the bandwidth of the motion";
+        let help =
+            "give `filter_cutoff` of [identification] about ten times the bandwidth of the motion";
         errors.push(at("identification.filter_cutoff", message, help));
     }
     let needed = settings.samples_needed();

@@ -1,11 +1,12 @@
 //! A description from a file, read and compiled, with what is asked for.
 
 use crate::error::{Error, Problem};
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     Request, RobotModel, compile_with, description::Description, diagnostic::Source,
     mechanism::Mechanism,
 };
-use std::{fs, path::Path};
+use std::{fs, io, path::Path};
 
 /// A description with its model.
 #[derive(Debug)]
@@ -88,17 +89,25 @@ pub(crate) fn read(path: &Path) -> Result<Source, Error> {
     read_or(path, "`overact new planar-4rrr my.toml` writes a first one")
 }
 
-/// Reads a text; `origin` says what writes such a file, where there is none.
+/// Reads a text, from standard input where the path is `-`; `origin` says what writes such a file, where there is none.
 ///
 /// # Errors
 /// A file that can't be read or is not UTF-8.
 pub(crate) fn read_or(path: &Path, origin: &str) -> Result<Source, Error> {
     let name = path.display().to_string();
-    match fs::read_to_string(path) {
+    let text = match name.as_str() {
+        "-" => io::read_to_string(io::stdin()),
+        _ => fs::read_to_string(path),
+    };
+    match text {
         Ok(text) => Ok(Source::new(name, text)),
         Err(error) => {
             let missing = error.kind() == std::io::ErrorKind::NotFound;
-            let problem = Problem::new(format!("the file can't be read: {error}")).file(name);
+            let problem = Problem::new(
+                Code::UNREADABLE_DESCRIPTION,
+                format!("the file can't be read: {error}"),
+            )
+            .file(name);
             Err(match missing {
                 true => problem.help(origin),
                 false => problem,

@@ -1,12 +1,21 @@
 //! What is wrong, all of it at once, each at its place and with a way out.
 
+use overact_codegen::diagnostic::{Code, Diagnostic};
 use overact_codegen::diagnostic::{Diagnostics, InternalError, Located, Source, visible};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::fmt;
+
+/// A code as its text.
+fn as_text<S: Serializer>(code: &Code, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(code)
+}
 
 /// One thing that is wrong.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Problem {
+    /// What kind of problem it is, under which it is explained.
+    #[serde(serialize_with = "as_text")]
+    pub code: Code,
     /// What is wrong, in one sentence.
     pub message: String,
     /// The file, as the user named it.
@@ -32,9 +41,10 @@ pub enum Column {
 impl Problem {
     /// A problem without a place.
     #[must_use]
-    pub fn new(message: impl Into<String>) -> Self {
+    pub fn new(code: Code, message: impl Into<String>) -> Self {
         let message = message.into();
         Self {
+            code,
             message,
             file: None,
             line: None,
@@ -66,7 +76,7 @@ impl Problem {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "error: {}", visible(&self.message))?;
+        write!(f, "error[{}]: {}", self.code, visible(&self.message))?;
         if let Some(file) = &self.file {
             write!(f, "\n --> {}", visible(file))?;
             if let Some(line) = self.line {
@@ -110,8 +120,9 @@ impl Error {
                 source,
                 diagnostics,
             } => {
-                let located = diagnostics.located(source).into_iter();
-                let problem = |l: Located| Problem {
+                let located = diagnostics.located(source).into_iter().zip(diagnostics);
+                let problem = |(l, d): (Located, &Diagnostic)| Problem {
+                    code: d.code,
                     message: l.message,
                     file: Some(l.file),
                     line: l.line,
@@ -168,7 +179,7 @@ impl std::error::Error for Error {}
 /// An error of the program as a problem without a place.
 impl From<&InternalError> for Problem {
     fn from(error: &InternalError) -> Self {
-        Self::new(error.to_string()).help(InternalError::HELP)
+        Self::new(Code::INTERNAL, error.to_string()).help(InternalError::HELP)
     }
 }
 
@@ -181,6 +192,7 @@ impl From<Problem> for Error {
 impl From<overact_identification::Error> for Error {
     fn from(error: overact_identification::Error) -> Self {
         let problem = |p: overact_identification::Problem| Problem {
+            code: p.code,
             message: p.message,
             file: p.file,
             line: p.line,
@@ -193,13 +205,15 @@ impl From<overact_identification::Error> for Error {
 
 #[cfg(test)]
 mod tests {
-    use super::{Error, Problem};
+    use super::{Code, Error, Problem};
 
     #[test]
     fn a_problem_reads_like_a_compiler_error() {
-        let problem = Problem::new("no column").file("log.csv").line(Some(3));
+        let problem = Problem::new(Code::MISSING_KEY, "no column")
+            .file("log.csv")
+            .line(Some(3));
         let error = Error::from(problem.help("name it"));
-        let expected = "error: no column\n --> log.csv:3\n  = help: name it";
+        let expected = "error[OA103]: no column\n --> log.csv:3\n  = help: name it";
         assert_eq!(error.render(false), expected);
     }
 }

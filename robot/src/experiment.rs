@@ -8,6 +8,7 @@ use crate::{
     robot::Robot,
 };
 use overact::{Info, Model, Parameter};
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{description, diagnostic::did_you_mean};
 use overact_identification::is_carried;
 use overact_simulation::{Drives, Experiment, Record, Run, Term, Trajectory, simulate};
@@ -31,7 +32,9 @@ impl Robot {
     pub fn experiment(&self) -> Result<VirtualExperiment<'_>, Error> {
         let missing = |message: &str| {
             let help = "describe it in the tables [experiment] and [[experiment.run]], or give measured logs with --data";
-            Problem::new(message).file(self.file()).help(help)
+            Problem::new(Code::NO_EXPERIMENT, message)
+                .file(self.file())
+                .help(help)
         };
         let Some(table) = &self.description().experiment else {
             return Err(missing("the description has no virtual experiment").into());
@@ -147,9 +150,12 @@ impl VirtualExperiment<'_> {
         let problem = |name: &String| {
             let help = did_you_mean(name, known.iter().copied());
             let help = help.unwrap_or_else(|| format!("the runs are {}", known.join(", ")));
-            Problem::new(format!("the experiment has no run `{name}`"))
-                .file(self.robot.file())
-                .help(help)
+            Problem::new(
+                Code::NO_EXPERIMENT,
+                format!("the experiment has no run `{name}`"),
+            )
+            .file(self.robot.file())
+            .help(help)
         };
         let problems: Vec<Problem> = unknown.map(problem).collect();
         match problems.is_empty() {

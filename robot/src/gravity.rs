@@ -6,6 +6,7 @@ use crate::{
     robot::{Robot, served},
     variants::regressor,
 };
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     description::Description,
     mechanism::{Mechanism, Number, Ratio},
@@ -27,7 +28,7 @@ impl Robot {
         let mechanism = &self.model().model().mechanism;
         if !mechanism.is_tree() {
             let message = "the direction of gravity is identified of robots without loops only";
-            return Err(Problem::new(message)
+            return Err(Problem::new(Code::GRAVITY_DIRECTION, message)
                 .file(self.file())
                 .help("leave `gravity_direction` out, measure how the base stands with a level, and write it as `gravity`")
                 .into());
@@ -88,6 +89,8 @@ impl Robot {
 
     fn without_model(&self) -> Error {
         let message = "there is no model of this robot in another gravity";
-        Problem::new(message).file(self.file()).into()
+        Problem::new(Code::GRAVITY_DIRECTION, message)
+            .file(self.file())
+            .into()
     }
 }

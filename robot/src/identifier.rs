@@ -9,6 +9,7 @@ use crate::{
 };
 use overact::Model;
 use overact_codegen::description::{COUPLED_MOTORS, GAINS_AND_GRAVITY, KNOWN_TORQUES, Leg};
+use overact_codegen::diagnostic::Code;
 use overact_identification::{
     Before, Calibration, CalibrationScope, Dataset, Gains, GravityDirection, Identification,
     Instruments, Log, Progress, Settings, Stage, Study, drive_gains, identify_after, study,
@@ -203,14 +204,14 @@ impl<'a> Identifier<'a> {
     fn drive_gains(&self) -> Result<Gains, Error> {
         let mut legs = self.robot.description().legs.iter();
         if legs.any(Leg::has_coupled_motors) {
-            let problem = Problem::new(COUPLED_MOTORS).file(self.robot.file());
+            let problem = Problem::new(Code::CONTRADICTION, COUPLED_MOTORS).file(self.robot.file());
             let help =
                 "identify without gains; a gain of a motor scales its `torque_gain` in [data]";
             return Err(problem.help(help).into());
         }
         let mut legs = self.robot.description().legs.iter();
         if legs.any(Leg::has_known_torques) {
-            let problem = Problem::new(KNOWN_TORQUES).file(self.robot.file());
+            let problem = Problem::new(Code::CONTRADICTION, KNOWN_TORQUES).file(self.robot.file());
             let help = "identify without gains, or leave out the key `known` of the joints";
             return Err(problem.help(help).into());
         }
@@ -247,7 +248,8 @@ impl<'a> Identifier<'a> {
     ) -> Result<(T, GravityDirection), Error> {
         if self.gains {
             let help = "identify the gains first, put them into `torque_gain` of [data], then ask for the direction";
-            let problem = Problem::new(GAINS_AND_GRAVITY).file(self.robot.file());
+            let problem =
+                Problem::new(Code::CONTRADICTION, GAINS_AND_GRAVITY).file(self.robot.file());
             return Err(problem.help(help).into());
         }
         let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });

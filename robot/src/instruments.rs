@@ -7,6 +7,7 @@
 
 use crate::{error::Error, prior::of_load, robot::Robot};
 use overact::{Info, Model};
+use overact_codegen::diagnostic::Code;
 use overact_identification::{
     Estimate, Instruments, Log, Prepared, Projection, Settings, estimate_projection, is_carried,
     prepare,
@@ -189,7 +190,7 @@ fn as_log(record: &Record) -> Result<Log, overact_identification::Error> {
 /// A simulation that failed.
 fn failed(error: overact_simulation::Error) -> Error {
     let help = "the robot of the estimated parameters can't be simulated: set `instruments` to \"periods\" or \"none\"";
-    crate::error::Problem::new(error.to_string())
+    crate::error::Problem::new(Code::ESTIMATED_ROBOT, error.to_string())
         .help(help)
         .into()
 }

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Problem};
 use overact_codegen::RobotModel;
+use overact_codegen::diagnostic::Code;
 
 /// Indices of kept actuators that are given by name: as many different ones as there are degrees of
 /// freedom.
@@ -15,14 +16,15 @@ pub fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>
     for name in names {
         match known.find(name) {
             Some(index) if kept.contains(&index) => {
-                problems.push(Problem::new(format!(
-                    "the actuator `{name}` is listed twice"
-                )));
+                problems.push(Problem::new(
+                    Code::KEPT_ACTUATORS,
+                    format!("the actuator `{name}` is listed twice"),
+                ));
             }
             Some(index) => kept.push(index),
             None => {
                 let message = format!("there is no actuator `{name}`");
-                problems.push(Problem::new(message).help(known.help(name)));
+                problems.push(Problem::new(Code::KEPT_ACTUATORS, message).help(known.help(name)));
             }
         }
     }
@@ -32,7 +34,7 @@ pub fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>
             "case 2 keeps {dof} actuators, one for each degree of freedom, not {}",
             kept.len()
         );
-        problems.push(Problem::new(message));
+        problems.push(Problem::new(Code::KEPT_ACTUATORS, message));
     }
     match problems.is_empty() {
         true => Ok(kept),

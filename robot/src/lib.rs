@@ -35,6 +35,11 @@
 //! - `kept`: kept actuators of case 2 by name;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
 
+/// The programs of the page that shows languages side by side.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/interfaces.md")]
+mod interfaces {}
+
 mod body;
 mod calibration;
 mod check;

@@ -6,6 +6,7 @@ use crate::{
     physical::doubts,
 };
 use overact::{Info, Parameter};
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     Request, RobotModel,
     derivation::BodyParameter,
@@ -138,7 +139,7 @@ fn complete(
     let help =
         "`overact identify --parameters FILE` writes all of them; write 0 for one that is absent";
     let at = source.text.find(TABLE).unwrap_or_default();
-    let error = Diagnostic::new(message, at..at + TABLE.len()).help(help);
+    let error = Diagnostic::new(Code::PARAMETERS_FILE, message, at..at + TABLE.len()).help(help);
     Err(Error::Description {
         source,
         diagnostics: Diagnostics::from(error),

@@ -49,6 +49,14 @@ impl Robot {
         }
     }
 
+    /// What is compiled of a robot that runs: what an [`InterpretedRobot`] serves, without a search. With a
+    /// watcher in `progress` and [`CompiledFile::read`] a robot of many joints is waited for less blindly than with
+    /// [`Robot::from_toml`].
+    #[must_use]
+    pub fn request() -> Request<'static> {
+        served()
+    }
+
     /// The path or name by which errors call the description.
     #[must_use]
     pub fn file(&self) -> &str {

@@ -23,8 +23,8 @@ pub mod partition;
 
 pub use model::{BaseParameter, Body, Info, Model, Parameter};
 pub use overact_core::{
-    ActuatorGroup, Actuators, Columns, Condition, Error, Extent, Function, Input, SINGULAR,
-    SampleError, Sizes, StandardParameter,
+    ActuatorGroup, Actuators, Code, Columns, Condition, Error, Explanation, Extent, Function,
+    Input, SINGULAR, SampleError, Sizes, StandardParameter,
 };
 #[cfg(feature = "macro")]
 pub use overact_macros::redundant_robot;

@@ -2,10 +2,12 @@
 
 mod at_once;
 mod binaries;
+mod book;
 mod files;
 mod freshness;
 mod generated;
 mod licence;
+mod links;
 mod manifest;
 mod measure;
 mod metadata;
@@ -23,7 +25,10 @@ cargo xtask generated           write generated/: five robots as text, all in th
 cargo xtask generated ROBOT...  write robots/ROBOT.toml as target/generated/ROBOT.rs, to read
 cargo xtask freshness           fail unless generated/ is what the generator writes
 cargo xtask measure EFFORT FILE what generation makes of a description, in numbers (JSON)
-cargo xtask release             versions, licences and Rust versions of all packages
+cargo xtask book                write docs/errors.md, and the book to target/book for mdbook
+cargo xtask links               fail unless every link of the documentation leads somewhere and errors.md is fresh
+cargo xtask package [OPTION]... archives of all published packages, built as they will be (cargo package)
+cargo xtask release             versions, licences, Rust versions and registry keys of all packages
 cargo xtask tests               all test binaries, one for each processor at a time
 cargo xtask times [SECONDS]     processor time of each test binary; fail if all take more";
 
@@ -35,6 +40,9 @@ fn main() -> ExitCode {
         ["generated", ref robots @ ..] => generated::write_to_read(robots),
         ["measure", effort, file] => measure::print(effort, file),
         ["freshness"] => freshness::check(),
+        ["book"] => book::write_all(),
+        ["links"] => links::check().and_then(|()| book::check()),
+        ["package", ref options @ ..] => release::package(options),
         ["release"] => release::check(),
         ["tests"] => at_once::run(),
         ["times"] => times::table(None),

@@ -3,6 +3,7 @@
 use crate::Failure;
 use crate::files::repository;
 use serde_json::Value;
+use std::path::Path;
 use std::process::Command;
 
 /// A package of the workspace or below it.
@@ -18,6 +19,8 @@ pub(crate) struct Package {
     /// Whether it is meant for a registry.
     pub(crate) is_published: bool,
     pub(crate) description: Option<String>,
+    /// What else its archive or the registry's page lacks.
+    pub(crate) lacks: Vec<&'static str>,
     /// What it requires of packages of the workspace, by name; development alone left out.
     pub(crate) siblings: Vec<(String, String)>,
 }
@@ -63,8 +66,19 @@ fn package(one: &Value, members: &[Value]) -> Package {
         is_member: members.contains(&one["id"]),
         is_published: one["publish"].is_null(),
         description: text("description"),
+        lacks: lacks(one),
         siblings: siblings.collect(),
     }
+}
+
+/// What a package lacks that a registry shows, or that its archive has to hold.
+fn lacks(one: &Value) -> Vec<&'static str> {
+    let keys = ["documentation", "readme", "repository"].into_iter();
+    let keys = keys.filter(|key| one[*key].is_null());
+    let folder = Path::new(one["manifest_path"].as_str().unwrap_or_default()).parent();
+    let has = |file: &str| folder.is_some_and(|folder| folder.join(file).is_file());
+    let files = ["LICENSE-APACHE", "LICENSE-MIT"].into_iter();
+    keys.chain(files.filter(|file| !has(file))).collect()
 }
 
 /// Names of the workspace's libraries whose documentation has no example to look for.

@@ -3,7 +3,7 @@
 use crate::Failure;
 use crate::files::read;
 use crate::licence::is_permitted;
-use crate::metadata::{Package, packages};
+use crate::metadata::{Package, cargo, packages};
 
 /// Checks versions, licences and Rust versions; everything that is wrong is named.
 pub(crate) fn check() -> Result<(), Failure> {
@@ -19,6 +19,17 @@ pub(crate) fn check() -> Result<(), Failure> {
         return Ok(());
     }
     Err(problems.join("\n").into())
+}
+
+/// Makes the archives of all packages that are published, and builds each of them as it will be; with `--no-verify`
+/// the archives alone.
+pub(crate) fn package(options: &[&str]) -> Result<(), Failure> {
+    let packages = packages()?;
+    let private = packages.iter().filter(|p| p.is_member && !p.is_published);
+    let excluded = private.flat_map(|p| ["--exclude", p.name.as_str()]);
+    let arguments = ["package", "--workspace"].into_iter().chain(excluded);
+    let arguments: Vec<&str> = arguments.chain(options.iter().copied()).collect();
+    cargo(&arguments).map(drop)
 }
 
 /// Published packages have one version, which the changelog knows, and what a registry asks for; they
@@ -46,6 +57,9 @@ fn versions(packages: &[Package], changelog: &str) -> Vec<String> {
         }
         if package.description.is_none() || package.licence.is_none() {
             problems.push(format!("{name}: a description and a licence are needed"));
+        }
+        for what in &package.lacks {
+            problems.push(format!("{name}: lacks {what}"));
         }
         for (sibling, requirement) in &package.siblings {
             if !published.iter().any(|p| p.name == *sibling) {
@@ -109,6 +123,7 @@ mod tests {
             is_member: true,
             is_published: true,
             description: Some("a package".to_owned()),
+            lacks: Vec::new(),
             siblings: Vec::new(),
         }
     }
@@ -130,6 +145,7 @@ mod tests {
         let old = Package {
             version: "1.1.0".to_owned(),
             description: None,
+            lacks: vec!["LICENSE-MIT"],
             ..package("old")
         };
         let private = Package {
@@ -147,6 +163,7 @@ mod tests {
                 "CHANGELOG.md: no section `## 1.2.0`",
                 "old: version 1.1.0, not 1.2.0",
                 "old: a description and a licence are needed",
+                "old: lacks LICENSE-MIT",
                 "upper: depends on private, which is not published",
                 "upper: asks for private ^1.1.0",
             ]

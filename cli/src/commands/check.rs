@@ -3,11 +3,11 @@
 use crate::{
     failure::Failure,
     note::tell,
-    output::{counted, json, print},
+    output::{self, counted, json, print},
 };
 use overact_robot::{CheckedFile, check};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -35,6 +35,8 @@ struct Checked {
 /// # Errors
 /// All errors of all descriptions.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let files: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
+    output::check_distinct(&files, &[])?;
     let (mut good, mut bad) = (Vec::new(), Vec::new());
     for file in &arguments.files {
         match check(file) {

@@ -5,6 +5,7 @@ mod resolve;
 
 use crate::{
     failure::{Failure, Problem},
+    input,
     note::tell_doubts,
     output,
     states::States,
@@ -12,6 +13,7 @@ use crate::{
 use clap::ValueEnum;
 use overact::Model;
 use overact::{Columns, Function};
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     Effort, Request, RobotModel,
     derivation::{MotionInput, function_name},
@@ -110,7 +112,7 @@ struct Document {
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut inputs = vec![arguments.file.as_path(), arguments.states.as_path()];
     inputs.extend(arguments.parameters.as_deref());
-    output::check(&inputs, arguments.output.as_deref().as_slice())?;
+    output::check(&inputs, output::file(arguments.output.as_ref()).as_slice())?;
     let name = arguments.function.as_str();
     let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
         let full = || function_name(function, from, mechanism.platform.is_none());
@@ -126,7 +128,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         mut model,
         description,
         ..
-    } = CompiledFile::read(&arguments.file, &request)?;
+    } = input::compiled(&arguments.file, &request, as_json)?;
     let states = States::read(&arguments.states)?;
     if let Some(names) = &arguments.kept {
         model = with_kept(model, names, &request)?;
@@ -159,7 +161,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     } else {
         csv(function.name(), &shape, rows)
     };
-    output::emit(&text, arguments.output.as_deref())
+    output::emit(&text, output::file(arguments.output.as_ref()))
 }
 
 /// The model with other kept actuators than the description's.
@@ -174,7 +176,9 @@ fn with_kept(
     model_with(mechanism, request).map_err(|_| {
         let message = "these kept actuators never determine the platform's motion";
         let help = "choose other ones; `overact inspect` lists how well each choice does";
-        Problem::new(message).help(help).into()
+        Problem::new(Code::KEPT_ACTUATORS, message)
+            .help(help)
+            .into()
     })
 }
 

@@ -2,12 +2,13 @@
 
 use crate::{
     failure::Failure,
+    input,
     output::{self, counted, json, print, table},
     progress::Progress,
 };
 use overact::{Info, Model};
 use overact_identification::significant;
-use overact_robot::{Excitation, ExcitationEffort, JudgedRuns, Limit, Robot};
+use overact_robot::{Excitation, ExcitationEffort, JudgedRuns, Limit};
 use std::{
     path::{Path, PathBuf},
     time::Duration,
@@ -19,7 +20,7 @@ pub(crate) struct Arguments {
     /// Description
     #[arg(value_name = "TOML")]
     pub(super) file: PathBuf,
-    /// Write the description with the runs that were found in the place of those to identify from; without it
+    /// Write the description with the runs that were found in the place of those to identify from, `-` to stdout; without it
     /// the runs go to stdout
     #[arg(short, long, value_name = "TOML")]
     output: Option<PathBuf>,
@@ -39,9 +40,14 @@ pub(crate) struct Arguments {
 /// # Errors
 /// A description with errors, or limits that no motion keeps.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let written = arguments.output.as_deref();
+    let written = output::file(arguments.output.as_ref());
+    let is_printed = written.is_none() && arguments.output.is_some();
+    if is_printed && as_json {
+        let message = "--json and `-o -` both go to standard output: give a file";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     output::check(&[&arguments.file], written.as_slice())?;
-    let robot = Robot::from_toml(&arguments.file)?;
+    let robot = input::robot(&arguments.file, as_json)?;
     let effort = ExcitationEffort {
         runs: arguments.runs.map(usize::from),
         seed: arguments.seed,
@@ -54,6 +60,9 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let found = robot.excite(&effort, &|fraction, run| bar.at(fraction, run))?;
     drop(bar);
     let description = robot.with_runs(&found)?;
+    if is_printed {
+        return print(&description);
+    }
     if let Some(path) = written {
         output::write(vec![(path.to_owned(), description.into_bytes())])?;
     }

@@ -11,6 +11,7 @@ use crate::{
     progress::Progress,
 };
 use module::Module;
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{Choice, Progress as Step, Request, mechanism::Mechanism};
 use overact_robot::CompiledFile;
 use std::{
@@ -232,7 +233,8 @@ fn make_folder(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.output() {
         Some(output) if arguments.is_folder(output) => {
             fs::create_dir_all(output).map_err(|error| {
-                let problem = Problem::new(format!("the folder can't be made: {error}"));
+                let problem =
+                    Problem::new(Code::OUTPUT, format!("the folder can't be made: {error}"));
                 problem.file(output.display().to_string()).into()
             })
         }

@@ -6,14 +6,15 @@
 use super::runs;
 use crate::{
     failure::{Failure, Problem},
-    output,
+    input, note, output,
     progress::Progress,
     report as files,
 };
 use clap::ValueEnum;
 use overact::Model;
+use overact_codegen::diagnostic::Code;
 use overact_identification::{CalibrationScope, Grade, Identification, Progress as Doing};
-use overact_robot::{Identifier, Robot, tracking};
+use overact_robot::{Identifier, tracking};
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -98,13 +99,13 @@ impl From<Scope> for CalibrationScope {
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let reports = arguments.reports.check(&arguments.file)?;
     let inputs = [arguments.runs.inputs(&arguments.file), reports.inputs()].concat();
-    let output = arguments.output.as_deref();
+    let output = output::file(arguments.output.as_ref());
     let outputs = output
         .into_iter()
         .chain(arguments.calibrated_robot.as_deref())
         .chain(arguments.parameters.as_deref());
     output::check(&inputs, &[reports.outputs(), outputs.collect()].concat())?;
-    let robot = Robot::from_toml(&arguments.file)?;
+    let robot = input::robot(&arguments.file, as_json)?;
     let reports = reports.read()?;
     let kept = match &arguments.kept {
         Some(names) => Some(overact_robot::kept_actuators(robot.model().model(), names)?),
@@ -149,6 +150,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let text = overact_report::parameters_file(&result).ok_or_else(no_parameters)?;
         written.push((path.clone(), text.into_bytes()));
     }
+    note::tell_warnings(&warnings(&result), output.is_some(), as_json);
     output::emit_with(&text, output, written)?;
     match result.grade() {
         Grade::DoNotUse if arguments.strict => Err(refused(&result)),
@@ -156,8 +158,25 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
+/// What speaks against the result, and what is to be known of it.
+fn warnings(result: &Identification) -> Vec<String> {
+    let verdicts = result.verdicts.iter().filter(|one| !one.trusted);
+    let reasons = verdicts.flat_map(|one| {
+        let reasons = one.reasons.iter();
+        reasons.map(move |reason| format!("{}: {reason}", one.subject))
+    });
+    let mut all: Vec<String> = reasons.collect();
+    for warning in &result.warnings {
+        if !all.iter().any(|told| told.ends_with(warning.as_str())) {
+            all.push(warning.clone());
+        }
+    }
+    all
+}
+
 fn no_parameters() -> Failure {
     let problem = Problem::new(
+        Code::NOT_CONSISTENT,
         "there are no physically consistent parameters: the search for them did not end",
     );
     problem

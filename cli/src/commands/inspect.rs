@@ -4,9 +4,8 @@ mod conditioning;
 mod document;
 mod table;
 
-use crate::{drawing, effort, failure::Failure, note::tell_note, output};
+use crate::{drawing, effort, failure::Failure, input, note::tell_note, output};
 use document::Document;
-use overact_robot::CompiledFile;
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -30,10 +29,10 @@ pub(crate) struct Arguments {
 /// # Errors
 /// A description with errors.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let outputs = [&arguments.svg, &arguments.output];
-    let outputs = outputs.into_iter().flatten().map(PathBuf::as_path);
+    let written = output::file(arguments.output.as_ref());
+    let outputs = written.into_iter().chain(arguments.svg.as_deref());
     output::check(&[&arguments.file], &outputs.collect::<Vec<_>>())?;
-    let robot = CompiledFile::read(&arguments.file, &arguments.effort.request())?;
+    let robot = input::compiled(&arguments.file, &arguments.effort.request(), as_json)?;
     tell_note(&robot, as_json);
     let drawing = arguments.svg.clone().map(|file| {
         let text = drawing::svg(&robot.model.mechanism);
@@ -45,9 +44,5 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     } else {
         table::text(&document)
     };
-    output::emit_with(
-        &text,
-        arguments.output.as_deref(),
-        drawing.into_iter().collect(),
-    )
+    output::emit_with(&text, written, drawing.into_iter().collect())
 }

@@ -3,6 +3,7 @@
 mod check;
 mod evaluate;
 mod excite;
+mod explain;
 mod generate;
 mod identify;
 mod inspect;
@@ -11,6 +12,7 @@ mod partitions;
 mod payloads;
 mod runs;
 mod same;
+mod shell;
 mod simulate;
 
 use crate::failure::Failure;
@@ -24,6 +26,9 @@ pub(crate) struct Arguments {
     /// Print one JSON document instead of tables; errors as JSON, too
     #[arg(long, global = true)]
     pub(crate) json: bool,
+    /// Tell nothing but errors on standard error: no progress, no notes, no warnings
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
     #[command(subcommand)]
     pub(crate) command: Command,
 }
@@ -49,6 +54,12 @@ pub(crate) enum Command {
     Identify(identify::Arguments),
     /// Compare all choices of kept actuators of case 2
     Partitions(partitions::Arguments),
+    /// Tell the cause and the cure of an error by its code
+    Explain(explain::Arguments),
+    /// Print what a shell needs to complete commands and options
+    Completions(shell::Completions),
+    /// Print or write pages for `man`
+    Manual(shell::Manual),
 }
 
 impl Command {
@@ -67,6 +78,9 @@ impl Command {
             Self::Simulate(arguments) => simulate::run(arguments, json),
             Self::Identify(arguments) => identify::run(arguments, json),
             Self::Partitions(arguments) => partitions::run(arguments, json),
+            Self::Explain(arguments) => explain::run(arguments, json),
+            Self::Completions(arguments) => shell::completions(arguments),
+            Self::Manual(arguments) => shell::manual(arguments),
         }
     }
 
@@ -82,13 +96,16 @@ impl Command {
             Self::Simulate(_) => "simulate",
             Self::Identify(_) => "identify",
             Self::Partitions(_) => "partitions",
+            Self::Explain(_) => "explain",
+            Self::Completions(_) => "completions",
+            Self::Manual(_) => "manual",
         }
     }
 
     /// The descriptions that it is about, for a report of a defect.
     pub(crate) fn descriptions(&self) -> String {
         let files: &[PathBuf] = match self {
-            Self::New(_) => &[],
+            Self::New(_) | Self::Explain(_) | Self::Completions(_) | Self::Manual(_) => &[],
             Self::Check(arguments) => arguments.files.as_slice(),
             Self::Generate(arguments) => arguments.files.as_slice(),
             Self::Inspect(arguments) => slice::from_ref(&arguments.file),

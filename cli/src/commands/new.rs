@@ -2,9 +2,11 @@
 
 use crate::{
     failure::{Failure, Problem},
+    input::is_stream,
     output::{json, print, table, write},
 };
 use clap::builder::PossibleValuesParser;
+use overact_codegen::diagnostic::Code;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -44,7 +46,7 @@ pub(crate) struct Arguments {
     /// What kind of robot to start from; without it, all templates are listed
     #[arg(value_parser = PossibleValuesParser::new(TEMPLATES.map(|(name, _)| name)), requires = "file")]
     template: Option<String>,
-    /// The description to write; it must not exist
+    /// The description to write, which must not exist; `-` is standard output
     #[arg(value_name = "TOML")]
     file: Option<PathBuf>,
 }
@@ -65,17 +67,21 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         return list(as_json);
     };
     let file = path.display().to_string();
-    // A link that leads nowhere is a file, too.
-    if path.symlink_metadata().is_ok() {
-        let problem = Problem::new("the file exists and is not overwritten").file(file);
-        return Err(problem
-            .help("choose another name, or remove the file first")
-            .into());
-    }
     let text = TEMPLATES
         .iter()
         .find(|(name, _)| name == template)
         .map_or("", |t| t.1);
+    if is_stream(path) && !as_json {
+        return print(text);
+    }
+    // A link that leads nowhere is a file, too.
+    if path.symlink_metadata().is_ok() {
+        let problem =
+            Problem::new(Code::FILE_EXISTS, "the file exists and is not overwritten").file(file);
+        return Err(problem
+            .help("choose another name, or remove the file first")
+            .into());
+    }
     write(vec![(path.clone(), text.as_bytes().to_vec())])?;
     if as_json {
         return print(&json(

@@ -3,12 +3,13 @@
 use super::runs;
 use crate::{
     failure::{Failure, Problem},
-    output,
+    input, output,
     progress::Progress,
 };
 use overact::Model;
+use overact_codegen::diagnostic::Code;
 use overact_identification::{Progress as Doing, RankedProjection, Study, significant};
-use overact_robot::{Identifier, Robot};
+use overact_robot::Identifier;
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -31,11 +32,13 @@ pub(crate) struct Arguments {
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let inputs = arguments.runs.inputs(&arguments.file);
     output::check(&inputs, arguments.output.as_deref().as_slice())?;
-    let robot = Robot::from_toml(&arguments.file)?;
+    let robot = input::robot(&arguments.file, as_json)?;
     let sizes = robot.model().info().sizes;
     if sizes.actuators == sizes.dof {
         let message = "the robot has no more actuators than degrees of freedom, so there is nothing to choose";
-        return Err(Problem::new(message).file(robot.file()).into());
+        return Err(Problem::new(Code::NO_REDUNDANCY, message)
+            .file(robot.file())
+            .into());
     }
     let runs = arguments.runs.runs(&robot, as_json)?;
     let settings = arguments.runs.settings(&robot, &runs);

@@ -1,6 +1,7 @@
 //! Which payload a log of the command line is of: `NAME=LOG` where a description names several.
 
 use crate::failure::{Failure, Problem};
+use overact_codegen::diagnostic::Code;
 use overact_codegen::diagnostic::did_you_mean;
 use overact_identification::Log;
 use overact_robot::Robot;
@@ -18,11 +19,17 @@ pub(super) struct Given {
     pub(super) loaded: bool,
     /// The name before the equals sign, where payloads have names.
     name: Option<String>,
+    /// Whether it came from standard input.
+    pub(super) streamed: bool,
 }
 
 impl Given {
     /// The log with the name of its payload.
     pub(super) fn label(&self, log: Log) -> Log {
+        let log = match self.streamed {
+            true => log.with_name("-"),
+            false => log,
+        };
         match &self.name {
             Some(name) => log.with_payload_name(name),
             None => log,
@@ -43,6 +50,7 @@ impl<'a> Payloads<'a> {
             path: path.clone(),
             loaded: false,
             name: None,
+            streamed: false,
         };
         paths.iter().map(given).collect()
     }
@@ -55,6 +63,7 @@ impl<'a> Payloads<'a> {
                 path: file(path).to_path_buf(),
                 loaded: true,
                 name,
+                streamed: false,
             }
         };
         paths.iter().map(given).collect()
@@ -79,13 +88,21 @@ impl<'a> Payloads<'a> {
                         false => format!("its payloads are {list}"),
                     });
                     let message = format!("there is no payload `{name}`");
-                    Some(Problem::new(message).file(file).help(help))
+                    Some(
+                        Problem::new(Code::LOG_PAYLOAD, message)
+                            .file(file)
+                            .help(help),
+                    )
                 }
                 None if one.loaded && !self.names.is_empty() => {
                     let message =
                         "the robot has several payloads: it is not said which one this run carries";
                     let help = format!("write NAME=LOG, the name being one of {list}");
-                    Some(Problem::new(message).file(file).help(help))
+                    Some(
+                        Problem::new(Code::LOG_PAYLOAD, message)
+                            .file(file)
+                            .help(help),
+                    )
                 }
                 None => None,
             }

@@ -4,18 +4,25 @@ use super::{
     payloads::{self, Payloads},
     same, simulate,
 };
-use crate::{failure::Failure, progress::Progress};
+use crate::{
+    failure::Failure,
+    input::{Spool, is_stream},
+    progress::Progress,
+};
 use clap::ValueEnum;
 use overact_identification::{Log, Progress as Doing, Settings, data};
-use overact_robot::{Robot, Runs};
-use std::path::{Path, PathBuf};
+use overact_robot::{Error, Robot, Runs};
+use std::{
+    cell::OnceCell,
+    path::{Path, PathBuf},
+};
 
 /// Where the runs come from.
 #[derive(Debug, clap::Args)]
 #[group(id = "runs")]
 pub(super) struct Arguments {
     /// Logs (CSV and other text, MATLAB's .mat up to version 7, NumPy's .npz, Parquet),
-    /// `a.csv+b.csv` one run whose columns stand in two files; without any, the virtual experiment is made
+    /// `a.csv+b.csv` one run whose columns stand in two files, `-` standard input; without any, the virtual experiment is made
     #[arg(long, value_name = "LOG", num_args = 1..)]
     data: Vec<PathBuf>,
     /// Logs of runs with the payload on the platform; `NAME=LOG` where the description names several payloads
@@ -31,6 +38,9 @@ pub(super) struct Arguments {
     /// Seed of the virtual experiment's noise [default: the description's]
     #[arg(long)]
     seed: Option<u64>,
+    /// The log that came from standard input; it is gone when the command is.
+    #[arg(skip)]
+    spool: OnceCell<Spool>,
     /// Friction in both directions of motion [default: the description's]
     #[arg(long, value_enum)]
     friction: Option<Friction>,
@@ -87,20 +97,28 @@ impl Arguments {
     /// Reads logs; the problems of all of them are reported together.
     fn measured(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
         let payloads = Payloads::new(robot);
-        let own = [
+        let mut own = [
             payloads.without(&self.data),
             payloads.with(&self.payload_data),
         ]
         .concat();
         let (plain, loaded) = (&self.cross_validate, &self.cross_validate_payload);
-        let others = [payloads.without(plain), payloads.with(loaded)].concat();
+        let mut others = [payloads.without(plain), payloads.with(loaded)].concat();
         let all = || own.iter().chain(&others);
         payloads.check(all())?;
+        for one in own.iter_mut().chain(&mut others) {
+            if is_stream(&one.path) {
+                one.path = self.spooled()?;
+                one.streamed = true;
+            }
+        }
+        let all = || own.iter().chain(&others);
         let files: Vec<(&Path, bool)> = all().map(|one| (one.path.as_path(), one.loaded)).collect();
         let logs: Vec<&Path> = files.iter().map(|(path, _)| *path).collect();
         same::check(&logs, own.len())?;
         let bar = Progress::new("reading", as_json);
-        let logs = robot.read_logs(&files, &|part: f64| bar.at(part, ""))?;
+        let logs = robot.read_logs(&files, &|part: f64| bar.at(part, ""));
+        let logs = logs.map_err(|error| self.as_given(error))?;
         let logs = logs.into_iter().zip(all());
         let mut identified: Vec<Log> = logs.map(|(log, one)| one.label(log)).collect();
         let validation = identified.split_off(own.len());
@@ -109,6 +127,34 @@ impl Arguments {
             validation,
             true_values: None,
         })
+    }
+
+    /// An error that calls standard input as the user does, and not by the file that it was read to.
+    fn as_given(&self, error: Error) -> Error {
+        let spooled = self
+            .spool
+            .get()
+            .map(|spool| spool.path().display().to_string());
+        let mut problems = error.problems();
+        for problem in &mut problems {
+            if problem.file.is_some() && problem.file == spooled {
+                problem.file = Some("-".to_owned());
+            }
+        }
+        match error {
+            description @ Error::Description { .. } => description,
+            _ => Error::Problems(problems),
+        }
+    }
+
+    /// The file that standard input was read to.
+    fn spooled(&self) -> Result<PathBuf, Failure> {
+        if self.spool.get().is_none() {
+            // It was empty, as has just been seen.
+            let _ = self.spool.set(Spool::read()?);
+        }
+        let path = self.spool.get().map(Spool::path);
+        Ok(path.unwrap_or_default())
     }
 
     /// Makes the virtual experiment.

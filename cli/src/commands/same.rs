@@ -2,6 +2,7 @@
 //! data that parameters were estimated from says little.
 
 use crate::failure::{Failure, Problem};
+use overact_codegen::diagnostic::Code;
 use overact_identification::data;
 use std::{fs, path::Path};
 
@@ -50,7 +51,7 @@ fn problem(log: &Path, other: &Path, is_estimated: bool, is_other_estimated: boo
             "give each log once",
         )
     };
-    Problem::new(message)
+    Problem::new(Code::SAME_LOG, message)
         .file(log.display().to_string())
         .help(help)
 }

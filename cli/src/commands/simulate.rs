@@ -2,14 +2,16 @@
 
 use crate::{
     failure::{Failure, Problem},
+    input,
     names::file_stem,
-    note::tell_doubts,
+    note::{is_quiet, tell_doubts},
     output::{self, json, print, table},
     progress::Progress,
 };
 use overact::Model;
+use overact_codegen::diagnostic::Code;
 use overact_identification::significant;
-use overact_robot::{Robot, VirtualExperiment, read_parameters};
+use overact_robot::{VirtualExperiment, read_parameters};
 use overact_simulation::{Experiment, Record, write_csv};
 use serde::Serialize;
 use std::{
@@ -56,7 +58,7 @@ struct Summary {
 /// # Errors
 /// A description without an experiment, or a run that can't be made.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let robot = Robot::from_toml(&arguments.file)?;
+    let robot = input::robot(&arguments.file, as_json)?;
     let mut experiment = robot.experiment()?;
     keep_runs(&mut experiment, &arguments.runs)?;
     if let Some(path) = &arguments.parameters {
@@ -68,7 +70,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(seed) = arguments.seed {
         experiment.plan_mut().seed = seed;
     }
-    let files = files(experiment.plan(), arguments.output.as_deref())?;
+    let files = files(experiment.plan(), output::file(arguments.output.as_ref()))?;
     let outputs: Vec<&Path> = files.iter().flatten().map(PathBuf::as_path).collect();
     let mut inputs = vec![arguments.file.as_path()];
     inputs.extend(arguments.parameters.as_deref());
@@ -85,7 +87,9 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             .into_iter()
             .map(String::from_utf8)
             .collect::<Result<String, _>>();
-        return print(&text.map_err(|error| Problem::new(error.to_string()))?);
+        return print(
+            &text.map_err(|error| Problem::new(Code::NO_RESULT_TEXT, error.to_string()))?,
+        );
     }
     let files = files
         .into_iter()
@@ -104,7 +108,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 /// Parameters that the simulation does not feel are mentioned once; never beside a JSON document, whose
 /// errors share stderr with it.
 pub(super) fn warn(without_effect: &[String], as_json: bool) {
-    if !without_effect.is_empty() && !as_json {
+    if !without_effect.is_empty() && !as_json && !is_quiet() {
         let names = without_effect.join(", ");
         // A closed stderr is no reason to stop.
         let _ = writeln!(io::stderr(), "note: without effect on the model: {names}");
@@ -152,7 +156,7 @@ fn files(experiment: &Experiment, output: Option<&Path>) -> Result<Vec<Option<Pa
     for (run, file) in runs.iter().zip(&files) {
         if let Some(other) = known.insert(file, &run.name) {
             let message = format!("the runs `{other}` and `{}` would have one file", run.name);
-            return Err(Problem::new(message)
+            return Err(Problem::new(Code::MODULES_COLLIDE, message)
                 .file(file.display().to_string())
                 .into());
         }
@@ -168,7 +172,7 @@ fn make_folders(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Problem> {
     let folders = files.iter().filter_map(|(file, _)| file.parent());
     for folder in folders.filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(|error| {
-            let problem = Problem::new(format!("the folder can't be made: {error}"));
+            let problem = Problem::new(Code::OUTPUT, format!("the folder can't be made: {error}"));
             problem.file(folder.display().to_string())
         })?;
     }
@@ -177,7 +181,8 @@ fn make_folders(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Problem> {
 
 fn csv(record: &Record) -> Result<Vec<u8>, Problem> {
     let mut log = Vec::new();
-    write_csv(record, &mut log).map_err(|error| Problem::new(error.to_string()))?;
+    write_csv(record, &mut log)
+        .map_err(|error| Problem::new(Code::NO_RESULT_TEXT, error.to_string()))?;
     Ok(log)
 }
 

@@ -1,7 +1,12 @@
 //! Files that a command writes: before any work it is seen that none of them would destroy what the
 //! command reads or another result; then all are written, whole, or none.
 
-use crate::failure::{Failure, Problem};
+use crate::{
+    failure::{Failure, Problem},
+    input::is_stream,
+    signals,
+};
+use overact_codegen::diagnostic::Code;
 use std::{
     fs, io,
     io::Write,
@@ -34,8 +39,13 @@ pub(crate) fn check<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(),
 /// # Errors
 /// Arguments that do not go together, or files that may not be written.
 pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(), Failure> {
-    if outputs.iter().any(|output| output.as_os_str() == "-") {
-        let message = "`-` as an output would be a file of that name: leave `-o` out for stdout, or write `./-`";
+    if outputs.iter().any(|output| is_stream(output)) {
+        let message = "`-` is standard output, which takes the result of `-o` alone: write `./-` for a file of that name";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    if inputs.iter().filter(|input| is_stream(input)).count() > 1 {
+        let message =
+            "`-` is standard input, which can be read once: give the other inputs as files";
         return Err(Failure::Usage(message.to_owned()));
     }
     let replaced = |path: &&&Path| fs::metadata(path).map_or(true, |existing| existing.is_file());
@@ -152,9 +162,7 @@ pub(crate) fn write(files: Vec<(PathBuf, Vec<u8>)>) -> Result<(), Failure> {
     }
     for (path, staging, bytes) in staged {
         let done = match staging {
-            Staged::Temporary(file, target) => {
-                file.persist(target).map(drop).map_err(|error| error.error)
-            }
+            Staged::Temporary(file, target) => signals::persist(file, &target),
             Staged::Device => fs::write(&path, bytes),
         };
         done.map_err(|error| unwritable(&path, &error))?;
@@ -190,10 +198,10 @@ fn stage(path: &Path, bytes: &[u8]) -> io::Result<Staged> {
         .map(fs::Metadata::permissions)
         .or_else(usual_permissions);
     let folder = folder(&target);
-    let mut file = match permissions {
-        Some(permissions) => builder.permissions(permissions).tempfile_in(folder)?,
-        None => builder.tempfile_in(folder)?,
-    };
+    if let Some(permissions) = permissions {
+        builder.permissions(permissions);
+    }
+    let mut file = signals::guarded(|| builder.tempfile_in(folder))?;
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
     Ok(Staged::Temporary(file, target))
@@ -225,7 +233,7 @@ fn unwritable_problem(path: &Path, error: &io::Error) -> Problem {
         io::ErrorKind::StorageFull => "the disk is full".to_owned(),
         kind => kind.to_string(),
     };
-    let problem = Problem::new(format!("the file can't be written: {reason}"));
+    let problem = Problem::new(Code::OUTPUT, format!("the file can't be written: {reason}"));
     problem.file(path.display().to_string())
 }
 

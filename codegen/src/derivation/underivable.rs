@@ -1,7 +1,7 @@
 //! Why a function of a robot cannot be derived.
 
 use crate::description::Description;
-use crate::diagnostic::{Diagnostic, Diagnostics, InternalError};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, InternalError};
 
 /// Why a model cannot be derived in the wanted form.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -47,18 +47,20 @@ impl Underivable {
             Self::InverseKinematics { leg } => {
                 let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
                 Diagnostic::new(
+                    Code::NO_CLOSED_SOLUTION,
                     format!("no rule solves the inverse kinematics of leg `{leg}`"),
                     span,
                 )
                 .help("the robot's functions then start from Newton's method")
             }
             Self::ForwardKinematics => Diagnostic::new(
+                Code::NO_CLOSED_SOLUTION,
                 "no rule gives the robot's pose from its actuators",
                 description.name.span.clone(),
             ),
             Self::SingularLeg { leg } => {
                 let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
-                Diagnostic::new(format!("leg `{leg}` is singular in every configuration"), span)
+                Diagnostic::new(Code::ALWAYS_SINGULAR, format!("leg `{leg}` is singular in every configuration"), span)
                 .help("its joint rates are never determined by the platform's motion: check attachment and axes")
             }
             Self::SingularHome { leg } => {
@@ -68,10 +70,11 @@ impl Underivable {
                     None => ("the robot".to_owned(), platform()),
                 };
                 let span = span.unwrap_or_else(|| description.name.span.clone());
-                Diagnostic::new(format!("{what} is singular at the home configuration"), span)
+                Diagnostic::new(Code::SINGULAR_HOME, format!("{what} is singular at the home configuration"), span)
                     .help("choose a home pose where no leg is stretched or folded and the actuators hold the platform")
             }
             Self::SingularPartition => Diagnostic::new(
+                Code::ALWAYS_SINGULAR,
                 "the kept actuators of case 2 never determine the platform's motion",
                 description.name.span.clone(),
             )
@@ -81,7 +84,8 @@ impl Underivable {
                 let mut all = Diagnostics::default();
                 for sentence in sentences {
                     let message = format!("the robot `{}` {sentence}", name.value);
-                    let diagnostic = Diagnostic::new(message, name.span.clone());
+                    let diagnostic =
+                        Diagnostic::new(Code::NO_SUCH_FUNCTION, message, name.span.clone());
                     all.push(diagnostic.help("`overact inspect` lists the functions that it has"));
                 }
                 return all;

@@ -5,7 +5,7 @@
 use super::model::{BodyIndex, Leg, Spanned};
 use super::reader::Context;
 use super::shape::Shape;
-use crate::diagnostic::{Diagnostic, Span, did_you_mean};
+use crate::diagnostic::{Code, Diagnostic, Span, did_you_mean};
 
 /// Looks up the bodies that chains join, and reports those that are not there.
 pub(super) fn attach(
@@ -34,7 +34,9 @@ pub(super) fn attach(
         let message = format!("the skeleton `{}` is not placed first", skeleton.name.value);
         let help =
             "its joints are the robot's coordinates: put its [[place]] before those of the chains";
-        context.report(Diagnostic::new(message, skeleton.name.span.clone()).help(help));
+        context.report(
+            Diagnostic::new(Code::STRUCTURE, message, skeleton.name.span.clone()).help(help),
+        );
         return;
     }
     let mut told = Vec::new();
@@ -75,13 +77,13 @@ pub(super) fn attach(
                     let message =
                         format!("the chain `{name}` starts from and ends on the same body");
                     let help = "name another body in `base.body` or `end.body`: a chain joins two";
-                    report(Diagnostic::new(message, body.span.clone()).help(help));
+                    report(Diagnostic::new(Code::STRUCTURE, message, body.span.clone()).help(help));
                 }
                 Ok(None) => {
                     let message = format!("the chain `{name}` ends on the ground");
                     let help =
                         "write it from the other side: its base on the ground, its end on the body";
-                    report(Diagnostic::new(message, body.span.clone()).help(help));
+                    report(Diagnostic::new(Code::STRUCTURE, message, body.span.clone()).help(help));
                 }
                 Err(error) => report(error),
             },
@@ -127,7 +129,7 @@ impl Bodies<'_> {
                     stands in the skeleton or in a chain that is placed before";
         let others = self.before.iter().map(|leg| leg.name.value.as_str());
         let help = did_you_mean(chain, others).unwrap_or_else(|| help.to_owned());
-        Err(Diagnostic::new(message, name.span.clone()).help(help))
+        Err(Diagnostic::new(Code::UNKNOWN_NAME, message, name.span.clone()).help(help))
     }
 }
 
@@ -151,7 +153,7 @@ fn body_of(
         format!("bodies have the names of their joints: {all}")
     };
     let help = did_you_mean(own, all()).unwrap_or_else(list);
-    Err(Diagnostic::new(message, name.span.clone()).help(help))
+    Err(Diagnostic::new(Code::UNKNOWN_NAME, message, name.span.clone()).help(help))
 }
 
 /// The body that chains start from without a name.
@@ -169,7 +171,7 @@ fn no_body(name: &str, skeleton: &Leg, span: Span) -> Diagnostic {
         skeleton.name.value,
         names.join(", ")
     );
-    Diagnostic::new(message, span).help(help)
+    Diagnostic::new(Code::UNKNOWN_NAME, message, span).help(help)
 }
 
 /// Bodies are named of a skeleton only.
@@ -179,7 +181,8 @@ fn refuse_bodies(shapes: &[Shape<'_, '_>], context: &Context) {
         for body in shape.base_body.iter().chain(of_end) {
             let message = format!("there is no skeleton with a body `{}`", body.value);
             let help = "leave `body` out: legs start from the ground and end on the platform; a skeleton is a leg without `end` of a robot without platform";
-            context.report(Diagnostic::new(message, body.span.clone()).help(help));
+            context
+                .report(Diagnostic::new(Code::UNKNOWN_NAME, message, body.span.clone()).help(help));
         }
     }
 }

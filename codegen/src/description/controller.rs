@@ -5,6 +5,7 @@ use super::inventory::Inventory;
 use super::model::actuators;
 use super::per_actuator::per_actuator;
 use super::reader::Item;
+use crate::diagnostic::Code;
 
 /// Position and velocity loops, u = k_v (k_p (q_d - q) - q̇); lists have one value for each actuator.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +51,7 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Control
                     "`reference`: expected {count} columns, one for each actuator, found {}",
                     names.len()
                 );
-                item.context.report(item.error(message));
+                item.context.report(item.error(Code::WRONG_COUNT, message));
                 return None;
             }
             Some(names.into_iter().map(|name| name.value).collect())

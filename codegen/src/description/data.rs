@@ -6,7 +6,7 @@ use super::inventory::Inventory;
 use super::model::actuators;
 use super::reader::{Item, Table};
 use super::transmission;
-use crate::diagnostic::Span;
+use crate::diagnostic::{Code, Span};
 
 /// How a measured log maps on the robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,7 +112,10 @@ fn clock(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Clock> {
         return Some(Clock::Column(column.value));
     };
     if table.get("time").is_some() {
-        let error = sampling.error("`sampling` is for logs without a column of the time");
+        let error = sampling.error(
+            Code::CONTRADICTION,
+            "`sampling` is for logs without a column of the time",
+        );
         let help = "leave out one of `time` and `sampling`";
         table.context.report(error.help(help));
     }
@@ -126,7 +129,10 @@ fn resample(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Option<f64>>
         return Some(None);
     };
     if table.get("sampling").is_some() {
-        let error = item.error("`resample` is for logs with a column of the time");
+        let error = item.error(
+            Code::CONTRADICTION,
+            "`resample` is for logs with a column of the time",
+        );
         let help = "leave out `resample`: without such a column samples are uniform, and `decimation` keeps fewer";
         table.context.report(error.help(help));
     }
@@ -141,9 +147,11 @@ fn numbers(table: &Table<'_, '_>, scales: &[Factor]) -> Option<Vec<f64>> {
             let message = format!("`position_scale`: `{name}` is neither a number nor a constant");
             let span = table.get("position_scale").map(|item| item.span);
             let span = span.unwrap_or(table.span.clone());
-            table
-                .context
-                .report(crate::diagnostic::Diagnostic::new(message, span));
+            table.context.report(crate::diagnostic::Diagnostic::new(
+                Code::SAME_NAME,
+                message,
+                span,
+            ));
             None
         }
     };
@@ -179,7 +187,7 @@ pub(super) fn check_count(item: &Item<'_, '_>, found: usize, expected: usize) ->
         "`{}`: expected {expected} entries, one for each actuator, found {found}",
         item.key.value
     );
-    item.context.report(item.error(message));
+    item.context.report(item.error(Code::WRONG_COUNT, message));
     None
 }
 
@@ -197,7 +205,7 @@ fn factor(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Factor> {
     let value = item.evaluate(robot.scope)?.scalar.value();
     if value == 0.0 {
         item.context
-            .report(item.error("a factor of 0 loses the signal"));
+            .report(item.error(Code::OUT_OF_RANGE, "a factor of 0 loses the signal"));
         return None;
     }
     Some(Factor::Value(value))

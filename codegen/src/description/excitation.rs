@@ -6,7 +6,7 @@ use super::inventory::Inventory;
 use super::model::JointKind;
 use super::per_actuator::{one_or_each, per_actuator};
 use super::reader::Item;
-use crate::diagnostic::Span;
+use crate::diagnostic::{Code, Span};
 
 /// Most harmonics of a trajectory.
 const HARMONICS: u64 = 30;
@@ -53,7 +53,7 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Excitat
         let value = item.integer(1)?;
         if value > most {
             let message = format!("`{key}`: expected at most {most}, found {value}");
-            item.context.report(item.error(message));
+            item.context.report(item.error(Code::OUT_OF_RANGE, message));
         }
         usize::try_from(value).ok()
     };
@@ -65,7 +65,10 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Excitat
     let condition = table.get("condition").and_then(|item| {
         let value = item.positive(Dimension::NONE, scope)?;
         if value < 1.0 {
-            let error = item.error(format!("a condition number of {value} can't be"));
+            let error = item.error(
+                Code::OUT_OF_RANGE,
+                format!("a condition number of {value} can't be"),
+            );
             item.context
                 .report(error.help("it is at least 1; 10 is far from singular"));
         }
@@ -91,10 +94,10 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Excitat
 /// Reports limits that leave no motion.
 fn moves(item: &Item<'_, '_>, moves: bool) -> bool {
     if !moves {
-        let error = item.error(format!(
-            "`{}`: a limit of 0 leaves no motion",
-            item.key.value
-        ));
+        let error = item.error(
+            Code::OUT_OF_RANGE,
+            format!("`{}`: a limit of 0 leaves no motion", item.key.value),
+        );
         let help = "leave the key out where there is no limit";
         item.context.report(error.help(help));
     }

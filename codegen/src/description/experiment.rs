@@ -9,7 +9,7 @@ use super::payloads;
 use super::per_actuator::{effort, per_actuator};
 use super::reader::{Item, Table};
 use super::scope::Scope;
-use crate::diagnostic::{Diagnostic, Span, did_you_mean};
+use crate::diagnostic::{Code, Diagnostic, Span, did_you_mean};
 use overact_core::StandardParameter;
 
 /// A virtual experiment.
@@ -171,7 +171,7 @@ pub(super) fn parameters(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<True
             let message = format!("the robot has no parameter `{}`", name.value);
             let help = help.unwrap_or_else(|| pattern(robot).to_owned());
             item.context
-                .report(Diagnostic::new(message, name.span).help(help));
+                .report(Diagnostic::new(Code::UNKNOWN_NAME, message, name.span).help(help));
             continue;
         };
         let Some(value) = item.float(*dimension, robot.scope) else {
@@ -207,9 +207,11 @@ fn runs(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<Run> {
         let Some(run) = run else { continue };
         if runs.iter().any(|other| other.name.value == run.name.value) {
             let message = format!("there are two runs \"{}\"", run.name.value);
-            table
-                .context
-                .report(Diagnostic::new(message, run.name.span.clone()));
+            table.context.report(Diagnostic::new(
+                Code::SAME_NAME,
+                message,
+                run.name.span.clone(),
+            ));
         }
         runs.push(run);
     }
@@ -230,7 +232,9 @@ fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
                 let message =
                     format!("the name of the run has {length} characters, more than {NAME}");
                 let help = "its logs are named after it: take a short one";
-                table.context.report(i.error(message).help(help));
+                table
+                    .context
+                    .report(i.error(Code::BAD_NAME, message).help(help));
             }
             Some(name)
         });
@@ -294,7 +298,8 @@ fn term(item: &Item<'_, '_>, coordinates: &[(String, Dimension)], scope: &Scope)
         };
         let help = did_you_mean(&text.value, names()).unwrap_or_else(list);
         let message = format!("the robot has no coordinate `{}`", text.value);
-        item.context.report(coordinate.error(message).help(help));
+        item.context
+            .report(coordinate.error(Code::UNKNOWN_NAME, message).help(help));
         return None;
     };
     let (_, dimension) = coordinates.get(index)?;

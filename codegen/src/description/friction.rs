@@ -6,6 +6,7 @@ use super::model::JointKind;
 use super::reader::Item;
 use super::scope::Scope;
 use crate::cas::Number;
+use crate::diagnostic::Code;
 use overact_core::StandardParameter;
 
 /// Reads the key `stribeck` of a joint or motor: the velocity at which half of what standstill has more is left.
@@ -14,7 +15,7 @@ pub(super) fn stribeck(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> O
         JointKind::Revolute => (Dimension::ANGULAR_SPEED, "0.05 rad/s"),
         JointKind::Prismatic => (Dimension::SPEED, "2 mm/s"),
         JointKind::Fixed => {
-            let error = item.error("a fixed joint has no friction");
+            let error = item.error(Code::SPRING, "a fixed joint has no friction");
             item.context
                 .report_once(error.help("give it to a joint that moves"));
             return None;
@@ -24,7 +25,7 @@ pub(super) fn stribeck(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> O
     if velocity.value() > 0.0 {
         return Some(velocity);
     }
-    let error = item.error("a Stribeck velocity is positive");
+    let error = item.error(Code::SPRING, "a Stribeck velocity is positive");
     let help = format!(
         "give the velocity at which half of the friction that standstill has more is left, for instance \"{example}\""
     );
@@ -51,5 +52,6 @@ pub(super) fn check(item: &Item<'_, '_>, parameters: &[StandardParameter]) {
     );
     let help = "leave `fv`, `fs` and `off` out where friction differs by direction, for instance \
                 parameters = [\"inertia\", \"ia\", \"friction by direction\"]";
-    item.context.report(item.error(message).help(help));
+    item.context
+        .report(item.error(Code::SPRING, message).help(help));
 }

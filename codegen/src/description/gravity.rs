@@ -2,6 +2,7 @@
 
 use super::reader::Item;
 use crate::cas::Number;
+use crate::diagnostic::Code;
 
 /// Why gains of drives and the direction of gravity are not identified together.
 pub const GAINS_AND_GRAVITY: &str = "gains of drives and the direction of gravity are not identified together: what a tilt does to a torque, a gain does, too";
@@ -13,11 +14,16 @@ pub(super) fn direction(item: &Item<'_, '_>, gains: bool, gravity: &[Number; 3])
     }
     if gains {
         let help = "identify the gains first, put them into `torque_gain` of [data], then ask for the direction";
-        item.context
-            .report(item.error(GAINS_AND_GRAVITY).help(help));
+        item.context.report(
+            item.error(Code::CONTRADICTION, GAINS_AND_GRAVITY)
+                .help(help),
+        );
     }
     if gravity.iter().all(|one| one.is_zero()) {
-        let error = item.error("gravity is zero in this description, so that it has no direction");
+        let error = item.error(
+            Code::CONTRADICTION,
+            "gravity is zero in this description, so that it has no direction",
+        );
         let help = "say with `gravity` how large it is and about where it points, or leave out `gravity_direction`";
         item.context.report(error.help(help));
     }

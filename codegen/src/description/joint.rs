@@ -10,7 +10,7 @@ use super::shape::{JointShape, Shape};
 use super::spring;
 use super::value::Value;
 use crate::cas::{Angle, Number, Ratio};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic};
 
 /// Joint variables with their factors.
 type Combination = Vec<(usize, Ratio)>;
@@ -175,18 +175,26 @@ impl Reader<'_, '_, '_> {
     fn problem(&self, value: &Value, item: &Item<'_, '_>) -> Option<Diagnostic> {
         let has_own = value.terms.iter().any(|(joint, _)| *joint == self.index);
         if value.terms.is_empty() {
-            let error = item.error("the position of this joint is a constant");
+            let error = item.error(
+                Code::JOINT_POSITION,
+                "the position of this joint is a constant",
+            );
             return Some(error.help("add the joint variable `q`, or use type = \"fixed\""));
         }
         if has_own && value.terms != [(self.index, Ratio::ONE)] {
-            let error =
-                item.error("the position of a joint with its own variable is `q` plus a constant");
+            let error = item.error(
+                Code::JOINT_POSITION,
+                "the position of a joint with its own variable is `q` plus a constant",
+            );
             let help = "turn the axis to change the sign; use the variables of others only for \
                         a joint that has none of its own";
             return Some(error.help(help));
         }
         if !has_own && self.joint.actuated {
-            let error = item.error("a joint that follows other joints cannot be actuated");
+            let error = item.error(
+                Code::ACTUATED,
+                "a joint that follows other joints cannot be actuated",
+            );
             return Some(error.help("actuate the joint that it follows"));
         }
         None
@@ -210,8 +218,9 @@ fn resolve(joints: &mut [Joint], shape: &Shape<'_, '_>) {
                     .and_then(|j| j.steps.iter().flatten().next())
                 {
                     let help = "a joint of its own has `q` in place of the others' variables";
-                    item.context
-                        .report_once(Diagnostic::new(message, span).help(help));
+                    item.context.report_once(
+                        Diagnostic::new(Code::JOINT_POSITION, message, span).help(help),
+                    );
                 }
                 joint.variable = vec![(index, Ratio::ONE)];
             }

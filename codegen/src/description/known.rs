@@ -5,7 +5,7 @@ use super::experiment::parameters;
 use super::inventory::Inventory;
 use super::model::{JointKind, Leg};
 use super::reader::Item;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic};
 use overact_core::StandardParameter;
 
 /// Why gains of joints do not exist where motors turn several joints.
@@ -45,7 +45,7 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, f
     let mut known = Vec::new();
     for one in parameters(item, robot) {
         let report = |message: String, help: &str| {
-            let error = Diagnostic::new(message, one.name.span.clone());
+            let error = Diagnostic::new(Code::KNOWN, message, one.name.span.clone());
             item.context.report(error.help(help));
         };
         match one.symbol {
@@ -76,16 +76,21 @@ pub(super) fn gains(item: &Item<'_, '_>, known: &[(String, f64)], robot: &Invent
     }
     if robot.legs.iter().any(Leg::has_coupled_motors) {
         let help = "leave out `gains`; a gain of a motor scales its `torque_gain` in [data]";
-        item.context.report(item.error(COUPLED_MOTORS).help(help));
+        item.context
+            .report(item.error(Code::CONTRADICTION, COUPLED_MOTORS).help(help));
         return false;
     }
     if robot.legs.iter().any(Leg::has_known_torques) {
         let help = "leave out `gains`, or the key `known` of the joints";
-        item.context.report(item.error(KNOWN_TORQUES).help(help));
+        item.context
+            .report(item.error(Code::CONTRADICTION, KNOWN_TORQUES).help(help));
         return false;
     }
     if known.is_empty() {
-        let error = item.error("gains are identified relative to what is known, and nothing is");
+        let error = item.error(
+            Code::KNOWN,
+            "gains are identified relative to what is known, and nothing is",
+        );
         let help = "give the mass of a payload that was weighed: [identification.known] m_payload = \"5 kg\"";
         item.context.report(error.help(help));
     }

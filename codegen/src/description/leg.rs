@@ -6,7 +6,7 @@ use super::model::{End, Leg, Spanned};
 use super::reader::Table;
 use super::scope::{Scope, is_word};
 use super::shape::Shape;
-use crate::diagnostic::{Diagnostic, did_you_mean};
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 
 /// Reads all placements in order.
 pub(super) fn read(
@@ -21,9 +21,11 @@ pub(super) fn read(
         };
         if legs.iter().any(|other| other.name.value == leg.name.value) {
             let message = format!("there are two legs `{}`", leg.name.value);
-            table
-                .context
-                .report(Diagnostic::new(message, leg.name.span.clone()));
+            table.context.report(Diagnostic::new(
+                Code::SAME_NAME,
+                message,
+                leg.name.span.clone(),
+            ));
         }
         legs.push(leg);
     }
@@ -88,7 +90,7 @@ fn check_name(table: &Table<'_, '_>, name: &Spanned<String>) {
     let starts_well = name.value.starts_with(|c: char| c.is_ascii_alphabetic());
     if !starts_well || !is_word(&name.value) {
         let message = format!("`{}` cannot be the name of a leg", name.value);
-        let diagnostic = Diagnostic::new(message, name.span.clone());
+        let diagnostic = Diagnostic::new(Code::BAD_NAME, message, name.span.clone());
         table
             .context
             .report(diagnostic.help("use letters, digits and underscores, a letter first"));
@@ -111,7 +113,7 @@ fn find<'s, 'c, 't>(
         let message = format!("there is no table [leg.{}]", name.value);
         table
             .context
-            .report(Diagnostic::new(message, name.span.clone()).help(help));
+            .report(Diagnostic::new(Code::UNKNOWN_NAME, message, name.span.clone()).help(help));
     }
     found
 }

@@ -12,7 +12,7 @@ use super::reader::{Item, Table};
 use super::scope::{Scope, is_word};
 use super::value::Value;
 use crate::cas::{Angle, Number};
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Code, Diagnostic, Span};
 use overact_core::StandardParameter;
 
 /// The table of a motor, its expressions not evaluated.
@@ -42,9 +42,9 @@ pub(super) fn shapes<'c, 't>(
                 motor.name.value
             );
             let help = "a motor without a name is called by its number, `m1`";
-            table
-                .context
-                .report(Diagnostic::new(message, motor.name.span.clone()).help(help));
+            table.context.report(
+                Diagnostic::new(Code::SAME_NAME, message, motor.name.span.clone()).help(help),
+            );
         }
         motors.push(motor);
     }
@@ -57,7 +57,7 @@ fn shape<'c, 't>(table: &Table<'c, 't>, index: usize) -> MotorShape<'c, 't> {
     let name = given.unwrap_or_else(number);
     if !is_word(&name.value) || name.value == "base" {
         let message = format!("`{}` cannot be the name of a motor", name.value);
-        let diagnostic = Diagnostic::new(message, name.span.clone());
+        let diagnostic = Diagnostic::new(Code::BAD_NAME, message, name.span.clone());
         let help = "use letters, digits and underscores, but not \"base\"";
         table.context.report(diagnostic.help(help));
     }
@@ -138,7 +138,7 @@ fn own(coupled: bool) -> Vec<StandardParameter> {
 fn gear_ratio(item: &Item<'_, '_>, scope: &Scope) -> Option<Number> {
     let ratio = item.number(Dimension::NONE, scope)?.value;
     if ratio.is_zero() {
-        let error = item.error("a gear of ratio 0 turns nothing");
+        let error = item.error(Code::TRANSMISSION, "a gear of ratio 0 turns nothing");
         let help = "give the turns of the motor for one of what it turns, for instance 100";
         item.context.report(error.help(help));
         return None;
@@ -149,17 +149,26 @@ fn gear_ratio(item: &Item<'_, '_>, scope: &Scope) -> Option<Number> {
 /// Why a value cannot be what a motor turns.
 fn problem(value: &Value, item: &Item<'_, '_>) -> Option<Diagnostic> {
     if value.terms.is_empty() {
-        let error = item.error("a motor that turns no joint drives nothing");
+        let error = item.error(
+            Code::TRANSMISSION,
+            "a motor that turns no joint drives nothing",
+        );
         return Some(error.help("name the joint variables, for instance \"q5 + q6\""));
     }
     if !value.scalar.is_zero() {
-        let error = item.error("a motor turns joint variables without a constant");
+        let error = item.error(
+            Code::TRANSMISSION,
+            "a motor turns joint variables without a constant",
+        );
         let help = "what its encoder shows too much stands in `position_offset` of [data]";
         return Some(error.help(help));
     }
     if !value.dimension.fits(Dimension::ANGLE) && !value.dimension.fits(Dimension::LENGTH) {
         let found = value.dimension.name();
-        let error = item.error(format!("a motor turns an angle or a length, found {found}"));
+        let error = item.error(
+            Code::TRANSMISSION,
+            format!("a motor turns an angle or a length, found {found}"),
+        );
         return Some(error.help("the factors of joint variables are plain fractions"));
     }
     None

@@ -3,7 +3,7 @@
 use super::friction;
 use super::model::JointKind;
 use super::reader::Item;
-use crate::diagnostic::did_you_mean;
+use crate::diagnostic::{Code, did_you_mean};
 use overact_core::StandardParameter as P;
 
 /// Whose parameters a list names.
@@ -84,7 +84,8 @@ impl Item<'_, '_> {
                 ),
             };
             let message = format!("{body} has no parameter `{}`", wrong.name());
-            self.context.report(self.error(message).help(help));
+            self.context
+                .report(self.error(Code::PARAMETER_GROUPS, message).help(help));
         }
         Some(group)
     }
@@ -96,7 +97,7 @@ impl Item<'_, '_> {
             (P::Fst, "stribeck = \"0.05 rad/s\""),
         ];
         if let Some((_, key)) = with_key.iter().find(|(one, _)| one.name() == symbol) {
-            let error = self.error(format!("`{symbol}` is not listed"));
+            let error = self.error(Code::PARAMETER_GROUPS, format!("`{symbol}` is not listed"));
             let help = format!("the key {key} of the joint adds it");
             self.context.report(error.help(help));
             return;
@@ -112,7 +113,9 @@ impl Item<'_, '_> {
         let help = did_you_mean(symbol, known());
         let list = || format!("known: {}", known().collect::<Vec<_>>().join(", "));
         let message = format!("unknown parameter `{symbol}`");
-        self.context
-            .report(self.error(message).help(help.unwrap_or_else(list)));
+        self.context.report(
+            self.error(Code::PARAMETER_GROUPS, message)
+                .help(help.unwrap_or_else(list)),
+        );
     }
 }

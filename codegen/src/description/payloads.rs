@@ -4,7 +4,7 @@ use super::inventory::Inventory;
 use super::model::{Leg, Spanned};
 use super::reader::{Item, Table};
 use super::scope::is_word;
-use crate::diagnostic::{Diagnostic, did_you_mean};
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 
 /// Most payloads of a robot.
 const MOST: usize = 100;
@@ -18,11 +18,17 @@ pub(super) fn read(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Spanned<
         return Vec::new();
     };
     if !has_payload(robot) {
-        let error = item.error("payloads have names, but the robot has no payload");
+        let error = item.error(
+            Code::PAYLOAD,
+            "payloads have names, but the robot has no payload",
+        );
         item.context.report(error.help(help(robot)));
     }
     if given.is_empty() || given.len() > MOST {
-        let error = item.error(format!("`payloads` has {} names", given.len()));
+        let error = item.error(
+            Code::PAYLOAD,
+            format!("`payloads` has {} names", given.len()),
+        );
         let help =
             format!("give 1 to {MOST} names, or leave the key out where there is one payload");
         item.context.report(error.help(help));
@@ -30,7 +36,7 @@ pub(super) fn read(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Spanned<
     let mut names: Vec<Spanned<String>> = Vec::new();
     for name in given {
         let report = |message: String, help: &str| {
-            let error = Diagnostic::new(message, name.span.clone());
+            let error = Diagnostic::new(Code::PAYLOAD, message, name.span.clone());
             item.context.report(error.help(help));
         };
         if names.iter().any(|one| one.value == name.value) {
@@ -73,7 +79,7 @@ pub(super) fn of_run(item: &Item<'_, '_>, robot: &Inventory<'_>) -> (bool, Optio
         if known().any(|one| one == name) {
             return (true, Some(name.to_owned()));
         }
-        let error = item.error(format!("there is no payload `{name}`"));
+        let error = item.error(Code::PAYLOAD, format!("there is no payload `{name}`"));
         let help = match known().next() {
             None => String::from(
                 "name the payloads of the robot at the head of the file, payloads = [\"A\", \"B\"], or write payload = true",
@@ -86,10 +92,13 @@ pub(super) fn of_run(item: &Item<'_, '_>, robot: &Inventory<'_>) -> (bool, Optio
     }
     let loaded = item.boolean().unwrap_or(false);
     if loaded && !has_payload(robot) {
-        let error = item.error("the robot has no payload");
+        let error = item.error(Code::PAYLOAD, "the robot has no payload");
         item.context.report(error.help(help(robot)));
     } else if loaded && known().next().is_some() {
-        let error = item.error("the robot has several payloads: the run has to say which");
+        let error = item.error(
+            Code::PAYLOAD,
+            "the robot has several payloads: the run has to say which",
+        );
         item.context
             .report(error.help(format!("give its name, one of {}", list())));
     }

@@ -5,6 +5,7 @@ use super::model::JointKind;
 use super::parameter::dimension;
 use super::reader::Item;
 use super::scope::Scope;
+use crate::diagnostic::Code;
 use overact_core::StandardParameter;
 
 /// Torque or force of an actuator.
@@ -42,7 +43,7 @@ pub(super) fn one_or_each(
             dimensions.len(),
             items.len()
         );
-        item.context.report(item.error(message));
+        item.context.report(item.error(Code::WRONG_COUNT, message));
         return None;
     }
     let pairs = items.iter().zip(dimensions);

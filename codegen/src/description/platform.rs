@@ -6,6 +6,7 @@ use super::parameters::Owner;
 use super::reader::Item;
 use super::scope::Scope;
 use crate::cas::Number;
+use crate::diagnostic::Code;
 
 /// The words for motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,8 +90,10 @@ fn motion(word: Word, axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Mot
         Word::Translation | Word::Spherical | Word::Spatial => {
             if let Some(item) = axis {
                 let message = "`axis` has no meaning for this motion";
-                item.context
-                    .report(item.error(message).help("leave it out"));
+                item.context.report(
+                    item.error(Code::CONTRADICTION, message)
+                        .help("leave it out"),
+                );
             }
             match word {
                 Word::Translation => Motion::Translation,

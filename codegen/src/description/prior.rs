@@ -3,7 +3,7 @@
 use super::experiment::{TrueParameter, parameters};
 use super::inventory::Inventory;
 use super::reader::Item;
-use crate::diagnostic::{Diagnostic, did_you_mean};
+use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use overact_core::StandardParameter;
 
 /// What is believed of the parameters before data speak.
@@ -42,7 +42,7 @@ fn values(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> {
         };
         if one.value <= 0.0 {
             let message = format!("{words} is positive, but `{}` is not", one.name.value);
-            let error = Diagnostic::new(message, one.name.span.clone());
+            let error = Diagnostic::new(Code::KNOWN, message, one.name.span.clone());
             let help =
                 "leave out what is not known: the nearest value that the data allow is taken";
             item.context.report(error.help(help));
@@ -65,7 +65,7 @@ fn bounds(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, [f64; 2])>
             let help = help.unwrap_or_else(|| {
                 String::from("names are those of the parameters that `inspect` lists")
             });
-            let error = Diagnostic::new(message, name.span.clone()).help(help);
+            let error = Diagnostic::new(Code::KNOWN, message, name.span.clone()).help(help);
             item.context.report(error);
             continue;
         };
@@ -76,29 +76,31 @@ fn bounds(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, [f64; 2])>
             .collect();
         match numbers.as_slice() {
             _ if symbol.is_inertial() && *symbol != StandardParameter::M => {
-                let error = item.error(format!("`{}` can't be bounded", name.value));
+                let error = item.error(Code::KNOWN, format!("`{}` can't be bounded", name.value));
                 let help = "masses, friction, rotor inertias and offsets can be";
                 item.context.report(error.help(help));
             }
             [Some(_), Some(high)] if *high <= 0.0 && symbol.is_nonnegative() => {
-                let error = item.error(format!(
-                    "these bounds leave no positive value of `{}`",
-                    name.value
-                ));
+                let error = item.error(
+                    Code::KNOWN,
+                    format!("these bounds leave no positive value of `{}`", name.value),
+                );
                 item.context.report(error.help("it can't be negative"));
             }
             [Some(low), Some(high)] if low < high => all.push((name.value.clone(), [*low, *high])),
             [Some(_), Some(_)] => {
                 let error = item
-                    .error("the smaller bound comes first")
+                    .error(Code::KNOWN, "the smaller bound comes first")
                     .help("write [smallest, largest]");
                 item.context.report(error);
             }
             [_, _] => {}
             _ => {
                 let message = format!("{} numbers are no bounds", numbers.len());
-                item.context
-                    .report(item.error(message).help("write [smallest, largest]"));
+                item.context.report(
+                    item.error(Code::KNOWN, message)
+                        .help("write [smallest, largest]"),
+                );
             }
         }
     }

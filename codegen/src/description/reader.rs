@@ -4,7 +4,7 @@
 //! type or left over is reported with its place, and `None` is the answer.
 
 use super::model::Spanned;
-use crate::diagnostic::{Diagnostic, Diagnostics, Source, Span, did_you_mean};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span, did_you_mean};
 use std::cell::RefCell;
 use toml::de::{DeTable, DeValue};
 
@@ -110,7 +110,7 @@ impl<'c, 't> Table<'c, 't> {
         if item.is_none() {
             let message = format!("{} has no `{key}`", self.what);
             self.context
-                .report(Diagnostic::new(message, self.span.clone()).help(help));
+                .report(Diagnostic::new(Code::MISSING_KEY, message, self.span.clone()).help(help));
         }
         item
     }
@@ -150,8 +150,11 @@ impl<'c, 't> Table<'c, 't> {
             let name = &item.key.value;
             let help = did_you_mean(name, known.iter().map(String::as_str));
             let help = help.unwrap_or_else(|| format!("known keys: {}", known.join(", ")));
-            let diagnostic =
-                Diagnostic::new(format!("unknown key `{name}`"), item.key.span.clone());
+            let diagnostic = Diagnostic::new(
+                Code::UNKNOWN_KEY,
+                format!("unknown key `{name}`"),
+                item.key.span.clone(),
+            );
             self.context.report(
                 diagnostic
                     .label(format!("not a key of {}", self.what))
@@ -175,16 +178,18 @@ fn type_name(value: &DeValue<'_>) -> &'static str {
 }
 
 impl<'c, 't> Item<'c, 't> {
-    pub(super) fn error(&self, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(message, self.span.clone())
+    pub(super) fn error(&self, code: Code, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(code, message, self.span.clone())
     }
 
     /// Reports that another type is expected.
     pub(super) fn mismatch<T>(&self, expected: &str) -> Option<T> {
         let found = type_name(self.value);
         let message = format!("`{}`: expected {expected}, found {found}", self.key.value);
-        self.context
-            .report_once(self.error(message).label(format!("this is {found}")));
+        self.context.report_once(
+            self.error(Code::WRONG_TYPE, message)
+                .label(format!("this is {found}")),
+        );
         None
     }
 
@@ -214,7 +219,7 @@ impl<'c, 't> Item<'c, 't> {
                 "`{}`: expected an integer of at least {minimum}, found {found}",
                 self.key.value
             );
-            self.context.report(self.error(message));
+            self.context.report(self.error(Code::OUT_OF_RANGE, message));
         }
         value
     }
@@ -239,7 +244,8 @@ impl<'c, 't> Item<'c, 't> {
             let (key, found) = (&self.key.value, &text.value);
             let message = format!("`{key}`: expected {expected}, found \"{found}\"");
             let help = did_you_mean(&text.value, names());
-            self.context.report(self.error(message).maybe_help(help));
+            self.context
+                .report(self.error(Code::UNKNOWN_WORD, message).maybe_help(help));
         }
         found.map(|(_, value)| Spanned::new(*value, text.span))
     }
@@ -268,7 +274,8 @@ impl<'c, 't> Item<'c, 't> {
                 "`{}`: expected a list of 3 values, found {found}",
                 self.key.value
             );
-            self.context.report_once(self.error(message));
+            self.context
+                .report_once(self.error(Code::WRONG_COUNT, message));
         }
         triple
     }

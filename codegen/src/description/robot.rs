@@ -12,7 +12,7 @@ use super::{
     shape,
 };
 use crate::cas::{Number, Ratio};
-use crate::diagnostic::{Diagnostic, Diagnostics, Source};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source};
 use crate::effort::Effort;
 use toml::de::DeTable;
 
@@ -40,7 +40,10 @@ pub(super) fn read(source: &Source) -> Result<Description, Diagnostics> {
         None => {
             // Every reader that gives up reports why; a slip there must not read as success.
             if errors.is_empty() {
-                errors.push(Diagnostic::global("the description is incomplete"));
+                errors.push(Diagnostic::global(
+                    Code::INCOMPLETE,
+                    "the description is incomplete",
+                ));
             }
             Err(errors)
         }
@@ -54,8 +57,8 @@ pub(super) fn syntax(errors: &[toml::de::Error]) -> Diagnostics {
     let diagnostic = |error: &toml::de::Error| {
         let message = format!("this is no TOML: {}", error.message());
         match error.span() {
-            Some(span) => Diagnostic::new(message, span),
-            None => Diagnostic::global(message),
+            Some(span) => Diagnostic::new(Code::SYNTAX, message, span),
+            None => Diagnostic::global(Code::SYNTAX, message),
         }
     };
     first.map_or_else(Diagnostics::new, |error| diagnostic(error).into())
@@ -162,14 +165,17 @@ fn robot_name(item: &Item<'_, '_>) -> Option<Spanned<String>> {
     let letter = name.value.starts_with(|c: char| c.is_ascii_alphabetic());
     let keyword = |name: &str| KEYWORDS.contains(&name);
     if !letter || !super::scope::is_word(&name.value) {
-        let error = item.error(format!(
-            "\"{}\" cannot be the name of a Rust type",
-            name.value
-        ));
+        let error = item.error(
+            Code::BAD_NAME,
+            format!("\"{}\" cannot be the name of a Rust type", name.value),
+        );
         item.context
             .report(error.help("use letters and digits, a letter first, for instance \"DualV\""));
     } else if keyword(&name.value) || keyword(&type_name(&name.value)) {
-        let error = item.error(format!("\"{}\" is a keyword of Rust", name.value));
+        let error = item.error(
+            Code::BAD_NAME,
+            format!("\"{}\" is a keyword of Rust", name.value),
+        );
         item.context
             .report(error.help("choose another name, for instance \"MyRobot\""));
     }
@@ -186,9 +192,10 @@ fn shapes<'c, 't>(table: &Table<'c, 't>, scope: &Scope) -> Vec<Shape<'c, 't>> {
         .map(|legs| legs.items())
         .unwrap_or_default();
     if item.is_table() && legs.is_empty() {
-        table
-            .context
-            .report(item.error("the robot has no leg").help(help));
+        table.context.report(
+            item.error(Code::STRUCTURE, "the robot has no leg")
+                .help(help),
+        );
     }
     legs.iter()
         .filter_map(|item| shape::read(item, scope))
@@ -217,9 +224,9 @@ fn legs(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], scope: &Scope) -> Vec<L
         };
         if !tables.iter().any(placed) {
             let message = format!("the leg `{}` is never placed", shape.name.value);
-            table
-                .context
-                .report(Diagnostic::new(message, shape.name.span.clone()).help(help));
+            table.context.report(
+                Diagnostic::new(Code::STRUCTURE, message, shape.name.span.clone()).help(help),
+            );
         }
     }
     leg::read(&placements(table), shapes, scope)
@@ -236,12 +243,12 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
                 let help = format!(
                     "[leg.{name}.end] says where it ends, for instance at = [0, \"0.1 m\", 0]"
                 );
-                Diagnostic::new(message, shape.span.clone()).help(help)
+                Diagnostic::new(Code::STRUCTURE, message, shape.span.clone()).help(help)
             }
             Some(end) if !platform && !has_skeleton => {
                 let message = format!("the leg `{name}` ends on a platform, but there is none");
                 let help = "describe it in a table [platform], or a skeleton as a leg without `end`, whose bodies `end.body` names";
-                Diagnostic::new(message, end.span.clone()).help(help)
+                Diagnostic::new(Code::STRUCTURE, message, end.span.clone()).help(help)
             }
             _ => continue,
         };
@@ -253,7 +260,7 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
         let help = "branches of a tree are joints whose `antecedent` is not the joint before them";
         table
             .context
-            .report(Diagnostic::new(message, second.span.clone()).help(help));
+            .report(Diagnostic::new(Code::STRUCTURE, message, second.span.clone()).help(help));
     }
 }
 
@@ -270,7 +277,7 @@ fn check_springs(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
             _ => ", and subtract a known torque in `torques` of [data]",
         };
         let help = format!("leave `{key}` out{instead}");
-        let error = Diagnostic::new(message, joint.span.clone());
+        let error = Diagnostic::new(Code::ACTUATED, message, joint.span.clone());
         table.context.report_once(error.help(help));
     };
     if let Some(joint) = joints().find(|joint| joint.spring.is_some()) {
@@ -292,7 +299,7 @@ fn check_motors(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
         let message = "motors of their own are described of robots without platform only";
         let help =
             "actuate the joint itself: its `ia`, `fv`, `fs` and `off` are those of its motor";
-        let error = Diagnostic::new(message, motor.span.clone());
+        let error = Diagnostic::new(Code::ACTUATED, message, motor.span.clone());
         table.context.report_once(error.help(help));
     }
 }
@@ -304,8 +311,11 @@ fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[L
         let first = legs.iter().flat_map(|leg| &leg.joints).next();
         // After another error nobody knows which joints were meant to be actuated.
         if let (0, Some(joint), true) = (count, first, table.context.is_clean()) {
-            let diagnostic =
-                Diagnostic::new("no joint of the robot is actuated", joint.span.clone());
+            let diagnostic = Diagnostic::new(
+                Code::ACTUATED,
+                "no joint of the robot is actuated",
+                joint.span.clone(),
+            );
             table
                 .context
                 .report(diagnostic.help("mark a joint with actuated = true"));
@@ -352,7 +362,7 @@ fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
             .to_owned()
     };
     table.context.report(
-        Diagnostic::new(message, wanted.span.clone())
+        Diagnostic::new(Code::WRONG_COUNT, message, wanted.span.clone())
             .label(format!("the actuators are {}", names.join(", ")))
             .help(help),
     );
@@ -377,7 +387,7 @@ fn check_parameter_names(table: &Table<'_, '_>, robot: &Inventory<'_>) {
             });
             if clash && !repeated && !names.contains(&leg.name.value.as_str()) {
                 let message = format!("another leg's joint is also called `{name}`");
-                let diagnostic = Diagnostic::new(message, leg.name.span.clone());
+                let diagnostic = Diagnostic::new(Code::SAME_NAME, message, leg.name.span.clone());
                 table
                     .context
                     .report(diagnostic.help("choose names without underscores"));

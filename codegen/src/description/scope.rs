@@ -8,7 +8,7 @@ use super::reader::{Item, Table};
 use super::scalar::Scalar;
 use super::value::{Fault, Value};
 use crate::cas::{Angle, Number};
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Code, Diagnostic, Span};
 use toml::de::DeValue;
 
 /// Named constants and, inside a joint's expression, joint variables.
@@ -99,7 +99,7 @@ fn check_name(item: &Item<'_, '_>) {
     if let Some(problem) = name_problem(&item.key.value) {
         let message = format!("a constant cannot be named `{}`", item.key.value);
         item.context
-            .report(Diagnostic::new(message, item.key.span.clone()).label(problem));
+            .report(Diagnostic::new(Code::BAD_NAME, message, item.key.span.clone()).label(problem));
     }
 }
 
@@ -138,7 +138,8 @@ impl Item<'_, '_> {
             Ok(value) => Some(value),
             Err(Failure::Fault(fault, span)) => {
                 let span = self.inner_span(&span);
-                let diagnostic = Diagnostic::new(fault.message, span).maybe_help(fault.help);
+                let diagnostic =
+                    Diagnostic::new(Code::FORMULA, fault.message, span).maybe_help(fault.help);
                 self.context.report_once(diagnostic);
                 None
             }
@@ -174,7 +175,8 @@ impl Item<'_, '_> {
                 self.key.value
             );
             let help = "joint variables stand in theta of a revolute or r of a prismatic joint";
-            self.context.report_once(self.error(message).help(help));
+            self.context
+                .report_once(self.error(Code::JOINT_POSITION, message).help(help));
             return None;
         }
         self.check_dimension(&value, expected)?;
@@ -192,8 +194,10 @@ impl Item<'_, '_> {
             expected.describe(),
             value.describe()
         );
-        self.context
-            .report_once(self.error(message).label(format!("this is {found}")));
+        self.context.report_once(
+            self.error(Code::UNIT, message)
+                .label(format!("this is {found}")),
+        );
         None
     }
 
@@ -232,7 +236,8 @@ impl Item<'_, '_> {
             "`{}`: expected a value {bound}, found {found}",
             self.key.value
         );
-        self.context.report_once(self.error(message));
+        self.context
+            .report_once(self.error(Code::OUT_OF_RANGE, message));
         None
     }
 
@@ -246,7 +251,7 @@ impl Item<'_, '_> {
         let angle = value.scalar.to_angle();
         if angle.is_none() {
             self.context
-                .report_once(self.error("the angle is too large"));
+                .report_once(self.error(Code::OUT_OF_RANGE, "the angle is too large"));
         }
         Some(Spanned::new(angle?, self.span.clone()))
     }

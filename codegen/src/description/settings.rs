@@ -8,6 +8,7 @@ use super::known;
 use super::model::{Spanned, actuators};
 use super::reader::{Item, Table};
 use crate::cas::Number;
+use crate::diagnostic::Code;
 
 /// How the variance of the residual is normalised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -161,7 +162,7 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
             .is_some_and(|order| !matches!(order, 2 | 4))
         {
             let error = item
-                .error("`difference_order` must be 2 or 4")
+                .error(Code::OUT_OF_RANGE, "`difference_order` must be 2 or 4")
                 .help("4 has the smaller error; 2 is what published work takes");
             table.context.report(error);
         }
@@ -183,7 +184,7 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         settings.filter_equations = item.boolean().unwrap_or(settings.filter_equations);
         if settings.filter_equations && settings.filter_torques {
             let error = item
-                .error("with `filter_torques` the torques would pass the low-pass twice")
+                .error(Code::CONTRADICTION, "with `filter_torques` the torques would pass the low-pass twice")
                 .help("`filter_equations` filters torques and columns alike; leave out `filter_torques`");
             table.context.report(error);
         }
@@ -193,7 +194,7 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         let ratio = item.positive(Dimension::NONE, scope);
         if ratio.is_some_and(|ratio| ratio <= 1.0) {
             let error = item
-                .error("`r_sigma` must be greater than 1")
+                .error(Code::OUT_OF_RANGE, "`r_sigma` must be greater than 1")
                 .help("choose between 10 and 30");
             table.context.report(error);
         }
@@ -278,13 +279,15 @@ fn kept_actuators(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<usiz
         match names.find(&name.value) {
             Some(index) if kept.contains(&index) => {
                 let message = format!("the actuator `{}` is listed twice", name.value);
-                item.context.report(error_at(name, message));
+                item.context
+                    .report(error_at(Code::SAME_NAME, name, message));
             }
             Some(index) => kept.push(index),
             None => {
                 let help = names.help(&name.value);
                 let message = format!("there is no actuator `{}`", name.value);
-                item.context.report(error_at(name, message).help(help));
+                item.context
+                    .report(error_at(Code::UNKNOWN_NAME, name, message).help(help));
             }
         }
     }
@@ -294,11 +297,11 @@ fn kept_actuators(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<usiz
             "`kept_actuators`: expected {count} names, one for each degree of freedom, found {}",
             given.len()
         );
-        item.context.report(item.error(message));
+        item.context.report(item.error(Code::WRONG_COUNT, message));
     }
     (kept.len() == count).then_some(kept)
 }
 
-fn error_at(name: &Spanned<String>, message: String) -> crate::diagnostic::Diagnostic {
-    crate::diagnostic::Diagnostic::new(message, name.span.clone())
+fn error_at(code: Code, name: &Spanned<String>, message: String) -> crate::diagnostic::Diagnostic {
+    crate::diagnostic::Diagnostic::new(code, message, name.span.clone())
 }

@@ -5,7 +5,7 @@ use super::motor::{self, MotorShape};
 use super::parameters::Owner;
 use super::reader::{Item, Table};
 use super::scope::{Scope, is_word, name_problem};
-use crate::diagnostic::{Diagnostic, Span, did_you_mean};
+use crate::diagnostic::{Code, Diagnostic, Span, did_you_mean};
 use overact_core::StandardParameter;
 
 /// A leg's shape.
@@ -134,7 +134,7 @@ fn valid_variables(
             let message = format!("a variable cannot be named `{name}`");
             table
                 .context
-                .report(Diagnostic::new(message, variable.span).label(problem));
+                .report(Diagnostic::new(Code::BAD_NAME, message, variable.span).label(problem));
         } else {
             valid.push(variable);
         }
@@ -146,7 +146,7 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
     let tables = item.tables("a joint");
     if tables.is_empty() && item.value.as_array().is_some_and(|list| list.is_empty()) {
         item.context
-            .report(item.error("a leg needs at least one joint"));
+            .report(item.error(Code::LEG_EMPTY_OR_LARGE, "a leg needs at least one joint"));
     }
     // Names come first, so that an antecedent can be told from a wrong name.
     let names: Vec<_> = tables
@@ -159,7 +159,7 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
         if before.iter().any(|n| n.value == name.value) {
             let message = format!("there are two joints `{}` in this leg", name.value);
             item.context.report(
-                Diagnostic::new(message, name.span.clone())
+                Diagnostic::new(Code::SAME_NAME, message, name.span.clone())
                     .help("a joint without a name is called by its number"),
             );
         }
@@ -185,7 +185,7 @@ fn joint_name(table: &Table<'_, '_>, index: usize) -> Spanned<String> {
     // "base" is the antecedent of the first joint.
     if !is_word(&name.value) || name.value == "base" {
         let message = format!("`{}` cannot be the name of a joint", name.value);
-        let diagnostic = Diagnostic::new(message, name.span.clone());
+        let diagnostic = Diagnostic::new(Code::BAD_NAME, message, name.span.clone());
         table
             .context
             .report(diagnostic.help("use letters, digits and underscores, but not \"base\""));
@@ -217,7 +217,9 @@ fn antecedent(
         let message = format!("there is no joint `{}` in this leg", text.value);
         let list = || format!("known: {}", known().collect::<Vec<_>>().join(", "));
         let help = did_you_mean(&text.value, known()).unwrap_or_else(list);
-        table.context.report(item.error(message).help(help));
+        table
+            .context
+            .report(item.error(Code::UNKNOWN_NAME, message).help(help));
     }
     found.map(|i| Spanned::new(i, text.span))
 }
@@ -238,10 +240,15 @@ fn check_order(tables: &[Table<'_, '_>], antecedents: &[Option<Spanned<usize>>])
             steps += 1;
         }
         let diagnostic = if at.is_some() {
-            Diagnostic::new("the antecedents form a cycle", antecedent.span.clone())
-                .help("every chain of antecedents must lead to \"base\"")
+            Diagnostic::new(
+                Code::ANTECEDENTS,
+                "the antecedents form a cycle",
+                antecedent.span.clone(),
+            )
+            .help("every chain of antecedents must lead to \"base\"")
         } else {
             Diagnostic::new(
+                Code::ANTECEDENTS,
                 "the antecedent comes after the joint",
                 antecedent.span.clone(),
             )
@@ -270,7 +277,7 @@ fn joint<'c, 't>(
     if let (Some(item), true, JointKind::Fixed) = (&actuated_item, actuated, kind.value) {
         table
             .context
-            .report(item.error("a fixed joint cannot be actuated"));
+            .report(item.error(Code::ACTUATED, "a fixed joint cannot be actuated"));
     }
     let owner = Owner::Joint(kind.value);
     let parameters = table
@@ -311,7 +318,7 @@ fn end<'c, 't>(item: &Item<'c, 't>) -> Option<EndShape<'c, 't>> {
         let message = "an end of type \"point\" has no rotation";
         item.context.report(
             rotation
-                .error(message)
+                .error(Code::CONTRADICTION, message)
                 .help("leave it out, or use type = \"rigid\""),
         );
     }
@@ -334,7 +341,8 @@ fn along(item: Option<&Item<'_, '_>>, rigid: bool) -> [bool; 3] {
     if rigid {
         let message = "an end of type \"rigid\" is fixed in all directions";
         let help = "leave `along` out, or use type = \"point\"";
-        item.context.report(item.error(message).help(help));
+        item.context
+            .report(item.error(Code::CONTRADICTION, message).help(help));
         return [true; 3];
     }
     let mut along = [false; 3];
@@ -347,7 +355,8 @@ fn along(item: Option<&Item<'_, '_>>, rigid: bool) -> [bool; 3] {
     if along == [false; 3] {
         let help = "name at least one axis of the base frame, for instance along = [\"x\", \"y\"]";
         let message = "the leg's end does not meet the platform along any axis";
-        item.context.report(item.error(message).help(help));
+        item.context
+            .report(item.error(Code::CONTRADICTION, message).help(help));
     }
     along
 }

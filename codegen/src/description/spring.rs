@@ -13,6 +13,7 @@ use super::reader::Item;
 use super::scope::Scope;
 use super::value::{Fault, Value};
 use crate::cas::{Number, Ratio};
+use crate::diagnostic::Code;
 
 /// Reads the key `spring` of a joint whose scope knows `q` as the joint's variable.
 pub(super) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
@@ -41,12 +42,14 @@ fn with_coefficient(
 ) -> Option<Spring> {
     let found: Positional = item.evaluate_as(scope)?;
     if matches!(&found, Positional::Exact(value) if value.terms.is_empty()) {
-        item.context.report_once(item.error(constant).help(help));
+        item.context
+            .report_once(item.error(Code::SPRING, constant).help(help));
         return None;
     }
     let inverse = found.dimension().power(-1);
     let Some(dimension) = inverse.and_then(|inverse| effort.times(inverse)) else {
-        item.context.report_once(item.error(TOO_LARGE));
+        item.context
+            .report_once(item.error(Code::OUT_OF_RANGE, TOO_LARGE));
         return None;
     };
     Some(Spring {
@@ -70,7 +73,8 @@ pub(super) fn known(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Opti
             found.dimension().name()
         );
         let help = format!("give its factors their units, for instance \"2 {unit} * cos(q)\"");
-        item.context.report_once(item.error(message).help(help));
+        item.context
+            .report_once(item.error(Code::UNIT, message).help(help));
         return None;
     }
     Some(found.formula())
@@ -82,7 +86,7 @@ fn effort(item: &Item<'_, '_>, kind: JointKind, fixed: &str) -> Option<Dimension
         JointKind::Revolute => Some(Dimension::TORQUE),
         JointKind::Prismatic => Some(Dimension::FORCE),
         JointKind::Fixed => {
-            let error = item.error(fixed);
+            let error = item.error(Code::SPRING, fixed);
             item.context
                 .report_once(error.help("give it to a joint that moves"));
             None

@@ -4,6 +4,7 @@
 use super::inventory::Inventory;
 use super::model::actuators;
 use super::reader::Item;
+use crate::diagnostic::Code;
 use nalgebra::DMatrix;
 
 /// Smallest singular value of T, relative to its largest, of motors that determine the joints.
@@ -34,7 +35,8 @@ pub(super) fn matrix(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<V
             actuated.len(),
             rows.len()
         );
-        item.context.report(item.error(message).help(help));
+        item.context
+            .report(item.error(Code::TRANSMISSION, message).help(help));
         return None;
     }
     let count = rows.len();
@@ -43,7 +45,8 @@ pub(super) fn matrix(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<V
     if values.min() <= SINGULAR * values.max() {
         let message = "the motors do not determine the joints: some turn the same combinations";
         let help = "each motor turns something that the others do not";
-        item.context.report(item.error(message).help(help));
+        item.context
+            .report(item.error(Code::TRANSMISSION, message).help(help));
         return None;
     }
     Some(rows)

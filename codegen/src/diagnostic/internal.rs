@@ -1,7 +1,7 @@
 //! Errors of the generator itself: a broken invariant is told as such, and never as an error of the
 //! description.
 
-use super::{Diagnostic, Diagnostics};
+use super::{Code, Diagnostic, Diagnostics};
 use std::fmt;
 
 /// A broken invariant of overact, with what a report of it needs.
@@ -52,7 +52,8 @@ impl std::error::Error for InternalError {}
 
 impl From<InternalError> for Diagnostics {
     fn from(error: InternalError) -> Self {
-        let diagnostic = Diagnostic::global(error.to_string()).help(InternalError::HELP);
+        let diagnostic =
+            Diagnostic::global(Code::INTERNAL, error.to_string()).help(InternalError::HELP);
         Self {
             internal: Some(Box::new(error)),
             ..Self::from(diagnostic)

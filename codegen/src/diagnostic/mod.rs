@@ -9,6 +9,7 @@ mod render;
 mod suggestion;
 
 pub use internal::InternalError;
+pub use overact_core::{Code, Explanation};
 pub use render::{Located, visible};
 pub use suggestion::{did_you_mean, nearest};
 
@@ -80,6 +81,8 @@ impl Source {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Diagnostic {
+    /// What kind of error it is, under which it is explained.
+    pub code: Code,
     /// What is wrong, in one sentence.
     pub message: String,
     /// Where; `None` if it is no one place of the text.
@@ -122,8 +125,9 @@ fn short(message: String) -> String {
 impl Diagnostic {
     /// An error at a place.
     #[must_use]
-    pub fn new(message: impl Into<String>, span: Span) -> Self {
+    pub fn new(code: Code, message: impl Into<String>, span: Span) -> Self {
         Self {
+            code,
             message: short(message.into()),
             span: Some(span),
             label: String::new(),
@@ -134,8 +138,9 @@ impl Diagnostic {
 
     /// An error of the text as a whole.
     #[must_use]
-    pub fn global(message: impl Into<String>) -> Self {
+    pub fn global(code: Code, message: impl Into<String>) -> Self {
         Self {
+            code,
             message: short(message.into()),
             span: None,
             label: String::new(),
@@ -288,7 +293,9 @@ mod tests {
 
     #[test]
     fn values_beyond_reading_are_cut_in_the_middle() {
-        let said = |value: &str| Diagnostic::global(format!("there is no `{value}` here"));
+        let said = |value: &str| {
+            Diagnostic::global(Code::UNKNOWN_KEY, format!("there is no `{value}` here"))
+        };
         let value = "é".repeat(100_000);
         let both = said(&value).help(value).label("short");
         for text in [&both.message, both.help.as_ref().expect("a help")] {
@@ -303,9 +310,9 @@ mod tests {
     fn errors_are_sorted_and_kept_once() {
         let mut all = Diagnostics::new();
         assert!(all.clone().into_result(()).is_ok());
-        all.push(Diagnostic::new("second", 5..6));
-        all.push(Diagnostic::new("first", 1..2));
-        all.push(Diagnostic::new("second", 5..6));
+        all.push(Diagnostic::new(Code::SYNTAX, "second", 5..6));
+        all.push(Diagnostic::new(Code::SYNTAX, "first", 1..2));
+        all.push(Diagnostic::new(Code::SYNTAX, "second", 5..6));
         let messages: Vec<_> = all.iter().map(|d| d.message.as_str()).collect();
         assert_eq!(messages, ["first", "second"]);
         assert!(all.into_result(()).is_err());

@@ -8,6 +8,8 @@ use serde::Serialize;
 /// An error with its place, ready for JSON.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Located {
+    /// The code under which the error is explained, `OA102` for instance.
+    pub code: String,
     /// What is wrong.
     pub message: String,
     /// The path as the user gave it.
@@ -39,6 +41,7 @@ impl Diagnostics {
         let locate = |d: &Diagnostic| {
             let position = d.span.as_ref().map(|span| source.position(span));
             Located {
+                code: d.code.to_string(),
                 message: d.message.clone(),
                 file: source.name.clone(),
                 line: position.map(|p| p.line),
@@ -101,7 +104,10 @@ fn render_one(
     let message = visible(&diagnostic.message);
     let label = visible(&diagnostic.label);
     let help = diagnostic.help.as_deref().map(visible);
-    let title = Level::ERROR.primary_title(message.as_str());
+    let code = diagnostic.code.to_string();
+    let title = Level::ERROR
+        .primary_title(message.as_str())
+        .id(code.as_str());
     let mut group = match &diagnostic.span {
         Some(span) => {
             let label = Some(label.as_str()).filter(|label| !label.is_empty());
@@ -126,10 +132,11 @@ fn render_one(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnostic::Code;
 
     fn example() -> (Source, Diagnostics) {
         let source = Source::new("robots/my.toml", "name = \"A\"\ngammma = 3\n");
-        let diagnostic = Diagnostic::new("unknown key `gammma`", 11..17)
+        let diagnostic = Diagnostic::new(Code::UNKNOWN_KEY, "unknown key `gammma`", 11..17)
             .label("not a key of a joint")
             .help("did you mean `gamma`?");
         (source, diagnostic.into())
@@ -139,7 +146,7 @@ mod tests {
     fn plain_text_shows_the_place() {
         let (source, errors) = example();
         let expected = "\
-error: unknown key `gammma`
+error[OA102]: unknown key `gammma`
  --> robots/my.toml:2:1
   |
 2 | gammma = 3
@@ -153,10 +160,11 @@ error: unknown key `gammma`
     #[test]
     fn what_a_file_says_cannot_turn_the_direction_of_an_error() {
         let source = Source::new("a.toml", "name = \"A\"");
-        let errors: Diagnostics = Diagnostic::new("no actuator `\u{202e}a`", 0..4)
-            .label("not \u{1b}[31mred")
-            .help("the actuators are \u{2066}b, c\u{200b}")
-            .into();
+        let errors: Diagnostics =
+            Diagnostic::new(Code::UNKNOWN_KEY, "no actuator `\u{202e}a`", 0..4)
+                .label("not \u{1b}[31mred")
+                .help("the actuators are \u{2066}b, c\u{200b}")
+                .into();
         let said = errors.render_plain(&source);
         assert!(
             !said.chars().any(|c| c != '\n' && is_invisible(c)),
@@ -173,11 +181,15 @@ error: unknown key `gammma`
         let source = Source::new("a.toml", "x\n".repeat(20));
         let mut errors = Diagnostics::new();
         for line in 0..14 {
-            errors.push(Diagnostic::new("wrong", 2 * line..2 * line + 1));
+            errors.push(Diagnostic::new(
+                Code::UNKNOWN_KEY,
+                "wrong",
+                2 * line..2 * line + 1,
+            ));
         }
-        errors.push(Diagnostic::new("other", 30..31));
+        errors.push(Diagnostic::new(Code::UNKNOWN_KEY, "other", 30..31));
         let text = errors.render_plain(&source);
-        assert_eq!(text.matches("error: ").count(), 2, "{text}");
+        assert_eq!(text.matches("error[OA102]: ").count(), 2, "{text}");
         let note = "= note: the same in lines 2, 3, 4, 5, 6, 7, 8, 9 and at 5 more places";
         assert!(text.contains(note), "{text}");
         assert_eq!(errors.located(&source).len(), 15);
@@ -196,10 +208,10 @@ error: unknown key `gammma`
     fn places_outside_the_text_do_no_harm() {
         let source = Source::new("a.toml", "ä");
         for span in [0..1, 1..1, 1..9, 7..9, Span { start: 2, end: 1 }] {
-            let errors = Diagnostics::from(Diagnostic::new("wrong", span));
+            let errors = Diagnostics::from(Diagnostic::new(Code::UNKNOWN_KEY, "wrong", span));
             assert!(errors.render_plain(&source).contains("wrong"));
         }
-        let global = Diagnostics::from(Diagnostic::global("nothing there"));
+        let global = Diagnostics::from(Diagnostic::global(Code::INCOMPLETE, "nothing there"));
         assert!(global.render_plain(&source).contains("a.toml"));
     }
 

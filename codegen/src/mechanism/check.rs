@@ -8,7 +8,7 @@ use super::states::random_states;
 use super::structure::defects;
 use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
 use crate::description::Description;
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 
 /// Checks a description and finds its home configuration.
 ///
@@ -144,7 +144,7 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
             description.legs[i.leg].joints[i.joint].span.clone()
         });
         errors.push(
-            Diagnostic::new("a robot without a platform needs a motor at every joint", span)
+            Diagnostic::new(Code::TREE_WITHOUT_MOTOR, "a robot without a platform needs a motor at every joint", span)
                 .label(format!("{n} of {r} joints are actuated"))
                 .help("write `actuated = true` at this joint, or describe the platform that closes the loop"),
         );
@@ -202,7 +202,14 @@ fn check_sizes(description: &Description, errors: &mut Diagnostics) {
     if joints > JOINTS {
         let message = format!("the robot has {joints} joints, more than {JOINTS}");
         let help = "describe it in parts, each as a robot of its own";
-        errors.push(Diagnostic::new(message, description.name.span.clone()).help(help));
+        errors.push(
+            Diagnostic::new(
+                Code::LEG_EMPTY_OR_LARGE,
+                message,
+                description.name.span.clone(),
+            )
+            .help(help),
+        );
     }
     for leg in &description.legs {
         let own = leg.joints.iter().enumerate();
@@ -215,10 +222,14 @@ fn check_sizes(description: &Description, errors: &mut Diagnostics) {
                 28 * own * own
             );
             let help = "describe it in parts, each as a robot of its own";
-            errors.push(Diagnostic::new(message, leg.name.span.clone()).help(help));
+            errors.push(
+                Diagnostic::new(Code::LEG_EMPTY_OR_LARGE, message, leg.name.span.clone())
+                    .help(help),
+            );
         }
         if leg.joints.is_empty() {
             errors.push(Diagnostic::new(
+                Code::LEG_EMPTY_OR_LARGE,
                 format!("leg `{}` has no joint", leg.name.value),
                 leg.span.clone(),
             ));

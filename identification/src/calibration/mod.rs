@@ -40,6 +40,7 @@ pub use geometry::{
 };
 pub use result::{CalibratedParameter, Calibration, CalibrationScope, HeldParameter, SensorNoise};
 
+use overact::Code;
 use overact::Model;
 
 use crate::{
@@ -77,9 +78,12 @@ pub fn calibrate(
         samples: &samples,
     };
     let unreached = |error: overact::Error| -> Error {
-        Problem::new(format!("the calibration finds no robot: {error}"))
-            .help("check the described lengths and the units of the positions")
-            .into()
+        Problem::new(
+            Code::CALIBRATION,
+            format!("the calibration finds no robot: {error}"),
+        )
+        .help("check the described lengths and the units of the positions")
+        .into()
     };
     let mut start = problem.start().map_err(unreached)?;
     let described = problem.eliminated(&mut start).map_err(unreached)?;
@@ -115,8 +119,13 @@ fn check(model: &dyn Model, runs: &[Log]) -> Result<(), Error> {
     let info = model.info();
     let mut problems = Vec::new();
     if runs.is_empty() {
-        problems
-            .push(Problem::new("there is no run to calibrate from").help("give at least one log"));
+        problems.push(
+            Problem::new(
+                Code::NOTHING_DETERMINED,
+                "there is no run to calibrate from",
+            )
+            .help("give at least one log"),
+        );
     }
     for log in runs
         .iter()
@@ -128,7 +137,7 @@ fn check(model: &dyn Model, runs: &[Log]) -> Result<(), Error> {
             info.name,
             info.sizes.actuators
         );
-        let problem = Problem::new(message).file(log.name());
+        let problem = Problem::new(Code::LOG_ACTUATORS, message).file(log.name());
         problems.push(problem.help("map one position and one torque column to each actuator"));
     }
     Error::check(problems)

@@ -7,6 +7,7 @@
 //! The noise of a sensor is told from the fourth differences of successive samples: a motion that is
 //! smooth from sample to sample leaves nothing in them, white noise of deviation σ has σ √70.
 
+use overact::Code;
 use overact::{Model, math::wrap_angle};
 
 use crate::{
@@ -150,7 +151,7 @@ impl<'a> Way<'a> {
         let found = self.model.pose_from_actuators(row, &mut self.pose);
         found.map_err(|error| {
             let time = number as f64 / self.log.sampling_frequency();
-            Problem::new(format!(
+            Problem::new(Code::OUTSIDE_WORKSPACE, format!(
                 "sample {number} (t = {time:.4} s) is outside the workspace: {error}"
             ))
             .file(self.log.name())

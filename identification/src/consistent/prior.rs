@@ -1,5 +1,6 @@
 //! The prior values that a description gives, completed, and what is wrong with them.
 
+use overact::Code;
 use std::collections::BTreeMap;
 
 use overact::StandardParameter;
@@ -38,7 +39,7 @@ impl Prior {
             "no body has the prior parameters of `m{suffix}`: whatever the others are, its pseudo-inertia is not positive definite"
         );
         let help = "give moments about the origin of the body's frame, products of inertia with the sign -∫xy dm, a positive mass";
-        let problem = Problem::new(message).help(help);
+        let problem = Problem::new(Code::PRIOR, message).help(help);
         let names = StandardParameter::INERTIA.map(|symbol| format!("{}{suffix}", symbol.name()));
         let given = names
             .into_iter()
@@ -70,7 +71,7 @@ fn impossible_bounds(
     } else {
         return None;
     };
-    Some(Problem::new(message).help(help))
+    Some(Problem::new(Code::PRIOR, message).help(help))
 }
 
 impl Values {

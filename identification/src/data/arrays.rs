@@ -1,5 +1,6 @@
 //! Arrays of a file as columns of samples: vectors, and the columns of matrices.
 
+use overact::Code;
 use std::sync::Arc;
 
 use super::problems::Existing;
@@ -125,7 +126,7 @@ impl Arrays {
                     values.len(),
                     first.len()
                 );
-                let problem = Problem::new(message).file(self.file.as_str());
+                let problem = Problem::new(Code::LOG_SHAPE, message).file(self.file.as_str());
                 problems.push(problem.column(*name));
             }
         }
@@ -161,7 +162,11 @@ impl Rows<'_> {
             };
             if !found.is_finite() {
                 let message = format!("`{name}`: sample {sample} is not a finite number");
-                problems.push(Problem::new(message).file(self.file).column(*name));
+                problems.push(
+                    Problem::new(Code::NOT_A_NUMBER, message)
+                        .file(self.file)
+                        .column(*name),
+                );
             }
             *value = *found;
         }

@@ -1,6 +1,7 @@
 //! The clock of a run: whether its times are uniform, and how often it was sampled.
 
 use crate::error::{Error, Problem};
+use overact::Code;
 
 /// A step of time may differ from the usual one by this fraction.
 const STEP_TOLERANCE: f64 = 1e-3;
@@ -63,7 +64,7 @@ impl Clock {
             1 => "the run has a single sample",
             _ => return Ok(()),
         };
-        Err(Problem::new(message).file(file).into())
+        Err(Problem::new(Code::LOG_TOO_SHORT, message).file(file).into())
     }
 
     /// Tells the usual step from the beginning and checks the beginning by it.
@@ -93,7 +94,7 @@ impl Clock {
         if uniform || self.bad.is_some() {
             return;
         }
-        let problem = Problem::new(format!(
+        let problem = Problem::new(Code::LOG_TIME, format!(
             "the time is not uniform: between samples {index} and {} it steps by {} s, expected {} s",
             index + 1,
             shown(step),

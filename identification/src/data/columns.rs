@@ -9,6 +9,7 @@ use super::{
     table::Table,
 };
 use crate::error::{Error, Problem};
+use overact::Code;
 
 /// Where a column is: number of the file, place in it.
 type Place = (usize, usize);
@@ -76,7 +77,9 @@ impl<'a> Columns<'a> {
                     "`{}` is neither a column nor an expression of columns: {why}",
                     shown(text)
                 );
-                let problem = Problem::new(message).file(self.run).column(text);
+                let problem = Problem::new(Code::LOG_COLUMNS, message)
+                    .file(self.run)
+                    .column(text);
                 let help = "put names with blanks or signs between single quotation marks: `'motor 1' / 50`";
                 self.note(problem.help(help));
                 nothing
@@ -177,7 +180,9 @@ impl<'a> Columns<'a> {
         };
         let [one, other] = names.map(|full| legible(&full));
         let message = format!("several of the {what} have a column `{}`", shown(name));
-        let problem = Problem::new(message).file(self.run).column(name);
+        let problem = Problem::new(Code::SAME_COLUMN, message)
+            .file(self.run)
+            .column(name);
         Err(problem.help(format!("call it `{one}` or `{other}`{way}")))
     }
 
@@ -247,7 +252,7 @@ impl<'a> Columns<'a> {
             all
         });
         let Some(existing) = all else {
-            return Problem::new("the run has no file").file(self.run);
+            return Problem::new(Code::UNREADABLE_LOG, "the run has no file").file(self.run);
         };
         let problem = missing_columns(self.run, &missing, &existing);
         let mut matrices = self.tables.iter().flat_map(|table| {

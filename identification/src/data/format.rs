@@ -1,5 +1,6 @@
 //! What kind of file a log is: told from its first bytes, never from its name.
 
+use overact::Code;
 use std::{fs::File, io::Read, path::Path};
 
 use super::problems::unreadable;
@@ -114,7 +115,7 @@ pub(super) fn recognise(file: &str, path: &Path) -> Result<Format, Error> {
 fn of(beginning: &[u8]) -> Result<Format, Problem> {
     let mut refused = REFUSED.iter();
     if let Some((_, what, help)) = refused.find(|(magic, ..)| beginning.starts_with(magic)) {
-        return Err(Problem::new(*what).help(*help));
+        return Err(Problem::new(Code::LOG_FORMAT, *what).help(*help));
     }
     #[cfg(feature = "hdf5")]
     if beginning.starts_with(b"MATLAB 7.3") || beginning.starts_with(HDF5) {
@@ -129,7 +130,7 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
         optional.find(|(magic, ..)| beginning.starts_with(magic))
     {
         let message = format!("{what}, which this build of overact does not read");
-        return Err(Problem::new(message).help(format!(
+        return Err(Problem::new(Code::LOG_FORMAT, message).help(format!(
             "build it with the feature `{feature}`: `cargo run --release --features {feature} -- …`; or {help}"
         )));
     }
@@ -152,7 +153,7 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
         return Ok(Format::Text);
     }
     let message = "the file is neither text nor of a format that is known";
-    Err(Problem::new(message).help(
+    Err(Problem::new(Code::LOG_FORMAT, message).help(
         "logs are text (CSV), Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
     ))
 }

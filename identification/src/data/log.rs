@@ -1,6 +1,7 @@
 //! One run: uniformly sampled positions and torques of all actuators, in memory or in a file that is
 //! read block by block whenever it is gone through.
 
+use overact::Code;
 use std::sync::Arc;
 
 use super::{
@@ -63,7 +64,7 @@ impl Log {
         payload: bool,
     ) -> Result<Self, Error> {
         let name = name.into();
-        let problem = |message: String| Problem::new(message).file(name.as_str());
+        let problem = |message: String| Problem::new(Code::LOG_SHAPE, message).file(name.as_str());
         let mut problems = Vec::new();
         if !(sampling_frequency.is_finite() && sampling_frequency > 0.0) {
             problems.push(problem(format!(
@@ -247,6 +248,13 @@ impl Log {
         self
     }
 
+    /// The same run under another name, for one whose file has a name that nobody gave it.
+    #[must_use]
+    pub fn with_name(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
     /// The same run under the opposite label of its payload.
     #[must_use]
     pub fn with_payload(mut self, payload: bool) -> Self {
@@ -410,7 +418,10 @@ impl Reader<'_> {
                 let mut block = Samples::default();
                 for _ in 0..count {
                     if !rows.next(&mut block)? {
-                        let problem = Problem::new("the file has become shorter while it was read");
+                        let problem = Problem::new(
+                            Code::UNREADABLE_LOG,
+                            "the file has become shorter while it was read",
+                        );
                         return Err(problem.file(self.name).into());
                     }
                 }

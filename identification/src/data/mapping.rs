@@ -1,5 +1,6 @@
 //! Which columns of a file hold the time, the positions and the torques, and their units.
 
+use overact::Code;
 use overact::Info;
 use serde::{Deserialize, Serialize};
 
@@ -96,10 +97,13 @@ impl Mapping {
         for (name, found) in lists {
             if found != actuators {
                 problems.push(
-                    Problem::new(format!(
-                        "the mapping names {actuators} positions, but `{name}` has {found} {}",
-                        if found == 1 { "entry" } else { "entries" }
-                    ))
+                    Problem::new(
+                        Code::DATA_TABLE,
+                        format!(
+                            "the mapping names {actuators} positions, but `{name}` has {found} {}",
+                            if found == 1 { "entry" } else { "entries" }
+                        ),
+                    )
                     .column(name)
                     .help("give one entry per actuator"),
                 );
@@ -115,24 +119,26 @@ impl Mapping {
                     "the mapping names {actuators} positions, but `{name}` has {found} {}",
                     if found == 1 { "entry" } else { "entries" }
                 );
-                let problem = Problem::new(message).column(name);
+                let problem = Problem::new(Code::DATA_TABLE, message).column(name);
                 problems.push(problem.help("give one entry per actuator, or none"));
             }
         }
         let offsets = &self.position_offset;
         for offset in offsets.iter().filter(|offset| !offset.is_finite()) {
             let message = format!("an offset of `position_offset` is {offset}");
-            problems.push(Problem::new(message).column("position_offset"));
+            problems.push(Problem::new(Code::DATA_TABLE, message).column("position_offset"));
         }
         if let Time::Frequency(frequency) = self.time
             && !(frequency.is_finite() && frequency > 0.0)
         {
             let message = format!("the sampling frequency is {frequency} Hz");
-            problems.push(Problem::new(message).column("sampling"));
+            problems.push(Problem::new(Code::DATA_TABLE, message).column("sampling"));
         }
         problems.extend(self.bad_rate());
         if actuators == 0 {
-            problems.push(Problem::new("the mapping names no position").column("positions"));
+            problems.push(
+                Problem::new(Code::DATA_TABLE, "the mapping names no position").column("positions"),
+            );
         }
         problems.extend(self.bad_factors());
         problems.extend(Transmission::new(&self.transmission, actuators).err());
@@ -142,7 +148,7 @@ impl Mapping {
     /// A rate that is none, or for which there is no time.
     fn bad_rate(&self) -> Option<Problem> {
         let rate = self.resample?;
-        let problem = |message: String| Problem::new(message).column("resample");
+        let problem = |message: String| Problem::new(Code::DATA_TABLE, message).column("resample");
         if !(rate.is_finite() && rate > 0.0) {
             return Some(problem(format!("the run is to be resampled at {rate} Hz")));
         }
@@ -164,7 +170,7 @@ impl Mapping {
         let scales = scales.map(|scale| ("position_scale", *scale));
         let bad = |(_, value): &(&str, f64)| !value.is_finite() || *value == 0.0;
         let problem = |(name, value): (&str, f64)| {
-            Problem::new(format!("a factor of `{name}` is {value}"))
+            Problem::new(Code::DATA_TABLE, format!("a factor of `{name}` is {value}"))
                 .column(name)
                 .help("give the number by which the column is to be multiplied")
         };

@@ -1,5 +1,6 @@
 //! MATLAB's `.mat` files up to version 7: numeric vectors, matrices, fields of structures, and scalars for gains.
 
+use overact::Code;
 use std::path::Path;
 
 use matfile::{Array, MatFile, NumericData};
@@ -14,9 +15,12 @@ use crate::error::{Error, Problem};
 pub(super) fn open(file: String, path: &Path) -> Result<Arrays, Error> {
     let bytes = std::fs::read(path).map_err(|error| unreadable(&file, &error))?;
     let mat = MatFile::parse(bytes.as_slice()).map_err(|error| {
-        Problem::new(format!("the file is not a MATLAB v5 file: {error}"))
-            .file(file.as_str())
-            .help("save it in MATLAB with `save(..., '-v7')`, or export CSV")
+        Problem::new(
+            Code::LOG_FORMAT,
+            format!("the file is not a MATLAB v5 file: {error}"),
+        )
+        .file(file.as_str())
+        .help("save it in MATLAB with `save(..., '-v7')`, or export CSV")
     })?;
     let mut arrays = Arrays::new(file);
     for array in mat.arrays() {

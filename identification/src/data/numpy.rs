@@ -10,6 +10,7 @@ use super::{
     problems::{shown, unreadable},
 };
 use crate::error::{Error, Problem};
+use overact::Code;
 use std::path::Path;
 
 /// What a `.npy` file starts with.
@@ -22,8 +23,9 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 pub(super) fn open_array(file: String, path: &Path) -> Result<Arrays, Error> {
     let bytes = std::fs::read(path).map_err(|error| unreadable(&file, &error))?;
     let mut arrays = Arrays::new(file.clone());
-    push(&mut arrays, "array", &bytes)
-        .map_err(|why| Problem::new(format!("the file is NumPy's, but {why}")).file(file))?;
+    push(&mut arrays, "array", &bytes).map_err(|why| {
+        Problem::new(Code::LOG_FORMAT, format!("the file is NumPy's, but {why}")).file(file)
+    })?;
     Ok(arrays)
 }
 
@@ -35,12 +37,18 @@ pub(super) fn open_array(file: String, path: &Path) -> Result<Arrays, Error> {
 pub(super) fn open_archive(file: String, path: &Path) -> Result<Arrays, Error> {
     let bytes = std::fs::read(path).map_err(|error| unreadable(&file, &error))?;
     let broken = |why: String| -> Error {
-        let problem = Problem::new(format!("the zip archive can't be read: {why}"));
+        let problem = Problem::new(
+            Code::LOG_FORMAT,
+            format!("the zip archive can't be read: {why}"),
+        );
         problem.file(file.as_str()).into()
     };
     let members = archive::members(&bytes).map_err(broken)?;
     if !members.iter().any(|member| member.name.ends_with(".npy")) {
-        let problem = Problem::new("the file is a zip archive, but not one of NumPy's (`.npz`)");
+        let problem = Problem::new(
+            Code::LOG_FORMAT,
+            "the file is a zip archive, but not one of NumPy's (`.npz`)",
+        );
         let help = "unpack it; export a spreadsheet as CSV";
         return Err(problem.file(file.as_str()).help(help).into());
     }
@@ -57,7 +65,7 @@ pub(super) fn open_archive(file: String, path: &Path) -> Result<Arrays, Error> {
     }
     if arrays.columns() == 0 {
         let message = format!("no array of the file can be read: {}", left_out.join("; "));
-        return Err(Problem::new(message).file(file).into());
+        return Err(Problem::new(Code::LOG_FORMAT, message).file(file).into());
     }
     Ok(arrays)
 }

@@ -1,6 +1,7 @@
 //! Opens the files of a run: finds their columns, compares their clocks, and says what is done where these differ
 //! or the run is resampled.
 
+use overact::Code;
 use std::path::Path;
 
 use super::{
@@ -114,7 +115,7 @@ impl Files {
                 round(rate),
                 round(own)
             );
-            let problem = Problem::new(message)
+            let problem = Problem::new(Code::LOG_TIME, message)
                 .file(self.name.as_str())
                 .column("resample");
             problems
@@ -130,7 +131,7 @@ impl Files {
                         "{} has no times, while those of the other files differ",
                         shown(&table.label())
                     );
-                    let problem = Problem::new(message).file(table.file());
+                    let problem = Problem::new(Code::LOG_FILES, message).file(table.file());
                     problems.push(
                         problem.help("give every file a column of the time, of the same name"),
                     );

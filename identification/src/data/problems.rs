@@ -1,5 +1,6 @@
 //! What is said of files that can't be used.
 
+use overact::Code;
 use std::path::Path;
 
 use crate::error::{Problem, suggestion};
@@ -44,7 +45,11 @@ pub(super) fn display_name(path: &Path) -> String {
 
 /// A file that can't be opened or read.
 pub(super) fn unreadable(file: &str, error: &std::io::Error) -> Problem {
-    let problem = Problem::new(format!("the file can't be read: {error}")).file(file);
+    let problem = Problem::new(
+        Code::UNREADABLE_LOG,
+        format!("the file can't be read: {error}"),
+    )
+    .file(file);
     if error.kind() == std::io::ErrorKind::NotFound {
         problem.help("check the path; it is taken from the folder in which the program was started")
     } else {
@@ -82,7 +87,9 @@ pub(super) fn only<'a>(
         0 => Ok(first),
         more => {
             let message = format!("the file has {} columns `{}`", more + 1, shown(name));
-            let problem = Problem::new(message).file(file).column(name);
+            let problem = Problem::new(Code::SAME_COLUMN, message)
+                .file(file)
+                .column(name);
             Err(problem.help(
                 "give each column a name of its own, or call it by its number, `$1` the first one",
             ))
@@ -107,18 +114,21 @@ pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<
         columns,
         what,
     } = existing;
-    let mut problem = Problem::new(format!(
-        "there {} no {what}{} {}; the file has {}",
-        if missing.len() == 1 { "is" } else { "are" },
-        if missing.len() == 1 { "" } else { "s" },
-        quoted(missing.iter().copied()),
-        match (names.is_empty(), columns) {
-            (false, _) => quoted(names.iter().copied()),
-            (true, 0) => String::from("none"),
-            (true, 1) => String::from("one column, without a name"),
-            (true, count) => format!("{count} columns, without names"),
-        }
-    ))
+    let mut problem = Problem::new(
+        Code::LOG_COLUMNS,
+        format!(
+            "there {} no {what}{} {}; the file has {}",
+            if missing.len() == 1 { "is" } else { "are" },
+            if missing.len() == 1 { "" } else { "s" },
+            quoted(missing.iter().copied()),
+            match (names.is_empty(), columns) {
+                (false, _) => quoted(names.iter().copied()),
+                (true, 0) => String::from("none"),
+                (true, 1) => String::from("one column, without a name"),
+                (true, count) => format!("{count} columns, without names"),
+            }
+        ),
+    )
     .file(file);
     if let Some(first) = missing.first() {
         problem = problem.column(*first);

@@ -8,6 +8,7 @@ use super::{
     table,
 };
 use crate::error::{Error, Problem};
+use overact::Code;
 
 /// The rest of a file.
 #[derive(Debug)]
@@ -178,7 +179,7 @@ impl<'a> Joined<'a> {
             self.count,
             file(on)
         );
-        Problem::new(message).file(file(ended)).help(
+        Problem::new(Code::LOG_FILES, message).file(file(ended)).help(
             "files are joined sample by sample: cut them to the same samples, or check that they are of one run",
         )
     }
@@ -318,7 +319,9 @@ impl<'a> Rows<'a> {
             "sample {}: `{text}` is not a finite number",
             self.samples - 1
         );
-        let problem = Problem::new(message).file(self.files.name()).column(text);
+        let problem = Problem::new(Code::NOT_A_NUMBER, message)
+            .file(self.files.name())
+            .column(text);
         Err(match self.line() {
             Some(line) => problem.line(line),
             None => problem,
@@ -343,7 +346,7 @@ impl<'a> Rows<'a> {
             "sample {}: the time is {first} s in one file and {other} s in another one",
             self.samples - 1
         );
-        let problem = Problem::new(message).file(self.files.name());
+        let problem = Problem::new(Code::LOG_FILES, message).file(self.files.name());
         Some(problem.help(
             "files are joined sample by sample: cut them to the same samples, or take one of the times, `file1.NAME`",
         ))

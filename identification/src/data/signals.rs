@@ -9,6 +9,7 @@ use super::{
     table::Table,
 };
 use crate::error::{Error, Problem};
+use overact::Code;
 
 /// A column or an expression of columns, and the factor to SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -163,10 +164,13 @@ fn gains(run: &str, tables: &[Table], mapping: &Mapping) -> Result<Vec<f64>, Err
                 gains.push(*value);
                 continue;
             }
-            Some(values) => Problem::new(format!(
-                "the torque gain `{name}` is not one finite number but {} numbers",
-                values.len()
-            ))
+            Some(values) => Problem::new(
+                Code::DATA_TABLE,
+                format!(
+                    "the torque gain `{name}` is not one finite number but {} numbers",
+                    values.len()
+                ),
+            )
             .file(run)
             .column(name.as_str()),
             None => missing_gain(run, tables, name),
@@ -185,10 +189,13 @@ fn missing_gain(run: &str, tables: &[Table], name: &str) -> Problem {
             existing.what = "scalar variable";
             missing_columns(run, &[name], &existing)
         }
-        None => Problem::new(format!(
-            "the torque gain is the variable `{name}`, but {} has no variables",
-            tables.first().map_or("the run", Table::what)
-        ))
+        None => Problem::new(
+            Code::DATA_TABLE,
+            format!(
+                "the torque gain is the variable `{name}`, but {} has no variables",
+                tables.first().map_or("the run", Table::what)
+            ),
+        )
         .file(run)
         .column(name)
         .help("give the gain as a number"),

@@ -1,6 +1,7 @@
 //! Positions, velocities and torques of motors as those of joints, where a log has the motors'.
 
 use nalgebra::{DMatrix, DVector};
+use overact::Code;
 
 use super::samples::Samples;
 use crate::error::Problem;
@@ -23,7 +24,8 @@ impl Transmission {
         if rows.is_empty() {
             return Ok(None);
         }
-        let problem = |message: String| Problem::new(message).column("transmission");
+        let problem =
+            |message: String| Problem::new(Code::DATA_TABLE, message).column("transmission");
         if rows.len() != actuators || rows.iter().any(|row| row.len() != actuators) {
             let message = format!("the transmission is not a matrix of {actuators} x {actuators}");
             return Err(problem(message));

@@ -9,6 +9,7 @@
 //!
 //! A deleted column d is W_d = Σ_k c_dk W_k, so the base parameter k is χ_k + Σ_d c_dk χ_d.
 
+use overact::Code;
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
@@ -45,9 +46,11 @@ impl PayloadUse {
     /// No run, or runs with a payload that the model does not have.
     pub(crate) fn of(info: &Info<'_>, runs: &[Log]) -> Result<Self, Error> {
         if runs.is_empty() {
-            return Err(Problem::new("there is no run to identify from")
-                .help("give at least one log")
-                .into());
+            return Err(
+                Problem::new(Code::NOTHING_DETERMINED, "there is no run to identify from")
+                    .help("give at least one log with --data, or runs in [[experiment.run]]")
+                    .into(),
+            );
         }
         let loaded = || runs.iter().filter(|log| log.payload());
         let unnamed = loaded().find(|log| log.payload_name().is_none());
@@ -57,16 +60,22 @@ impl PayloadUse {
                 "the run carries a payload without a name, another one the payload `{named}`: they can't be told from each other"
             );
             let help = "say of each run which payload it carries";
-            return Err(Problem::new(message).file(unnamed.name()).help(help).into());
+            return Err(Problem::new(Code::LOG_PAYLOAD, message)
+                .file(unnamed.name())
+                .help(help)
+                .into());
         }
         if !has_payload(info) {
             let problem = |log: &Log| {
-                Problem::new(format!(
-                    "the run carries a payload, but the description of `{}` has none",
-                    info.name
-                ))
+                Problem::new(
+                    Code::LOG_PAYLOAD,
+                    format!(
+                        "the run carries a payload, but the description of `{}` has none",
+                        info.name
+                    ),
+                )
                 .file(log.name())
-                .help("add a payload to the description, or declare the run unloaded")
+                .help("describe the payload in [platform.payload], or declare the run unloaded")
             };
             Error::check(loaded().map(problem).collect())?;
         }
@@ -161,11 +170,14 @@ pub fn base_parameters(
         relative(&mut base, columns);
     }
     if base.columns.is_empty() {
-        return Err(Problem::new(format!(
-            "no parameter of `{}` has an effect on its model",
-            model.info().name
-        ))
-        .help("list the parameters of the bodies in the description")
+        return Err(Problem::new(
+            Code::NO_EFFECT,
+            format!(
+                "no parameter of `{}` has an effect on its model",
+                model.info().name
+            ),
+        )
+        .help("list `parameters` of bodies and joints in the description")
         .into());
     }
     Ok(base)
@@ -335,7 +347,7 @@ fn random_regressor(
     let states = [&pose[..], &twist, &acceleration];
     let lines = columns
         .evaluate(model, &states, (samples, 0.0), true, (&all, 0))
-        .map_err(|error| Error::from(Problem::new(error.to_string())))?;
+        .map_err(|error| Error::from(Problem::new(Code::NO_EFFECT, error.to_string())))?;
     let mut regressor = DMatrix::zeros(samples * r, width);
     for sample in 0..samples {
         let rows = || {

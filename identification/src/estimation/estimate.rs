@@ -8,6 +8,7 @@
 //! Residuals, relative errors and the condition number are those of the unweighted system.
 
 use nalgebra::DMatrix;
+use overact::Code;
 use serde::Serialize;
 
 use crate::{
@@ -164,10 +165,13 @@ pub(crate) fn fit(
     let unknowns = selected.len();
     let equations: usize = system.lines.iter().map(Factor::equations).sum();
     if unknowns == 0 || equations <= unknowns {
-        return Err(Problem::new(format!(
-            "{equations} equations do not determine {unknowns} parameters"
-        ))
-        .help("record longer runs, decimate less or estimate fewer parameters")
+        return Err(Problem::new(
+            Code::NOTHING_DETERMINED,
+            format!("{equations} equations do not determine {unknowns} parameters"),
+        )
+        .help(
+            "record longer runs, lower `decimation` of [identification] or list fewer `parameters`",
+        )
         .into());
     }
     let weights = if settings.weighted {
@@ -236,11 +240,12 @@ fn solve(lines: &[Factor], weights: &[f64], selected: &[usize]) -> Result<Soluti
                 residual_norm: reduced.residual_norm,
             })
         }
-        _ => Err(
-            Problem::new("the parameters are not independent on these data")
-                .help("excite the robot more, or estimate fewer parameters")
-                .into(),
-        ),
+        _ => Err(Problem::new(
+            Code::NOTHING_DETERMINED,
+            "the parameters are not independent on these data",
+        )
+        .help("excite the robot more (`overact excite`), or list fewer `parameters`")
+        .into()),
     }
 }
 

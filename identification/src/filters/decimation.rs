@@ -20,6 +20,7 @@
 //! Where all samples are kept, another low-pass can take the place of the decimation's, so that both sides
 //! of the equations are filtered alike.
 
+use overact::Code;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DMatrixView};
@@ -117,9 +118,11 @@ impl Decimator {
     /// A factor of 0.
     pub fn new(factor: usize) -> Result<Self, Error> {
         if factor == 0 {
-            return Err(Problem::new("a decimation by 0 is not possible")
-                .help("choose 1 to keep every sample")
-                .into());
+            return Err(
+                Problem::new(Code::SETTINGS, "a decimation by 0 is not possible")
+                    .help("choose 1 to keep every sample")
+                    .into(),
+            );
         }
         let filter = if factor == 1 {
             None

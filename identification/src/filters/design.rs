@@ -6,6 +6,7 @@
 //! with prewarping, t = tan(π f_c / f_m), maps a pole p to z = (1 + p t)/(1 - p t) and all zeros
 //! to -1. A pair of poles makes the section (1 + z^-1)² / (1 - 2 Re(z) z^-1 + |z|² z^-2).
 
+use overact::Code;
 use std::f64::consts::PI;
 
 use nalgebra::Complex;
@@ -97,9 +98,10 @@ pub fn butterworth(order: usize, cutoff: f64) -> Result<LowPass, Error> {
 pub fn chebyshev1(order: usize, ripple_db: f64, cutoff: f64) -> Result<LowPass, Error> {
     check(order, cutoff)?;
     if !(ripple_db.is_finite() && ripple_db > 0.0) {
-        return Err(Problem::new(format!(
-            "the ripple of a Chebyshev filter is {ripple_db} dB; it must be positive"
-        ))
+        return Err(Problem::new(
+            Code::SETTINGS,
+            format!("the ripple of a Chebyshev filter is {ripple_db} dB; it must be positive"),
+        )
         .into());
     }
     let epsilon = (10.0_f64.powf(ripple_db / 10.0) - 1.0).sqrt();
@@ -118,16 +120,23 @@ fn check(order: usize, cutoff: f64) -> Result<(), Error> {
     let mut problems = Vec::new();
     if order == 0 || order > LARGEST_ORDER {
         problems.push(
-            Problem::new(format!("a filter of order {order} is not possible")).help(format!(
+            Problem::new(
+                Code::SETTINGS,
+                format!("a filter of order {order} is not possible"),
+            )
+            .help(format!(
                 "choose an order from 1 to {LARGEST_ORDER}; 4 is usual"
             )),
         );
     }
     if !(cutoff > 0.0 && cutoff < 1.0) {
         problems.push(
-            Problem::new(format!(
-                "a cutoff frequency of {cutoff} times the Nyquist frequency is not possible"
-            ))
+            Problem::new(
+                Code::SETTINGS,
+                format!(
+                    "a cutoff frequency of {cutoff} times the Nyquist frequency is not possible"
+                ),
+            )
             .help("choose a cutoff between 0 and half the sampling frequency"),
         );
     }

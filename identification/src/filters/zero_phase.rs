@@ -14,6 +14,7 @@ use super::{
     design::LowPass,
 };
 use crate::error::{Error, Problem};
+use overact::Code;
 
 /// Part of a transient that is left where a block ends: below the rounding of the signals.
 pub(super) const TRANSIENT: f64 = 1e-15;
@@ -157,11 +158,11 @@ pub(super) fn check_length(filter: &LowPass, found: usize) -> Result<(), Error> 
     if found > filter.padding() {
         return Ok(());
     }
-    Err(Problem::new(format!(
+    Err(Problem::new(Code::LOG_TOO_SHORT, format!(
         "a filter of order {} run forwards and backwards needs at least {} samples; there are {found}",
         filter.order(),
         filter.padding() + 1
     ))
-    .help("record a longer run, or skip fewer samples")
+    .help("record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]")
     .into())
 }

@@ -5,6 +5,7 @@
 //! into an unknown base parameter. The mass of a payload is such a parameter when some runs carry the
 //! payload and others do not; that of a single body of a chain is mostly regrouped into other bodies.
 
+use overact::Code;
 use overact::Model;
 
 use crate::{
@@ -42,7 +43,7 @@ impl Split {
         let info = model.info();
         if settings.known.is_empty() {
             let message = "gains are not determined: no parameter is known, so that gains and parameters have a factor in common";
-            return Err(Problem::new(message).help(WEIGHED).into());
+            return Err(Problem::new(Code::GAINS, message).help(WEIGHED).into());
         }
         let payload = PayloadUse::of(&info, runs)?;
         let columns = ColumnSet::new(
@@ -90,13 +91,13 @@ fn found(
             known.push((column, *value));
         } else if info.payload_parameters.iter().any(|one| one.name == name) {
             problems.push(
-                Problem::new(format!(
+                Problem::new(Code::GAINS, format!(
                     "gains are not determined: `{name}` is known, but no run carries the payload"
                 ))
                 .help("record runs with the payload, too, and say which they are (--payload-data)"),
             );
         } else {
-            let problem = Problem::new(format!("the robot has no parameter `{name}`"));
+            let problem = Problem::new(Code::GAINS, format!("the robot has no parameter `{name}`"));
             let names = all.iter().map(|one| one.name.as_str());
             problems.push(match suggestion(name, names) {
                 Some(other) => problem.help(format!("did you mean `{other}`?")),
@@ -121,7 +122,8 @@ fn scaleless(
     };
     let own = name(&column);
     let others = others.unwrap_or_default();
-    let problem = |why: String| Problem::new(format!("gains are not determined: {why}"));
+    let problem =
+        |why: String| Problem::new(Code::GAINS, format!("gains are not determined: {why}"));
     if value == 0.0 {
         return problem(format!("{own} is known to be zero, which fixes no scale")).help(WEIGHED);
     }

@@ -29,6 +29,7 @@ mod solve;
 pub use result::{DriveGain, Gains, JointParameter};
 pub(crate) use shares::drive_shares;
 
+use overact::Code;
 use overact::Model;
 
 use crate::{
@@ -72,7 +73,7 @@ pub fn drive_gains(
     if count <= unknowns {
         let message = format!("{count} equations do not determine {unknowns} gains and parameters");
         let help = "record longer runs or decimate less";
-        return Err(Problem::new(message).help(help).into());
+        return Err(Problem::new(Code::GAINS, message).help(help).into());
     }
     let selection = Selection::new(&equations, info.actuators)?;
     let solution = solve(&equations, &selection)?;

@@ -8,6 +8,7 @@ use crate::{
         factor::{DATA_RANK_TOLERANCE, Factor},
     },
 };
+use overact::Code;
 
 /// Columns of the drives whose part outside of all others is below this part of their norm can't be told
 /// from them.
@@ -75,7 +76,7 @@ pub(super) fn undetermined(actuators: &[String], why: &str) -> Error {
         },
         actuators.join(", ")
     );
-    Problem::new(message)
+    Problem::new(Code::GAINS, message)
         .help("let all drives move and accelerate what is known, with the payload and without it, or give more that is known, such as the first moments of the payload")
         .into()
 }

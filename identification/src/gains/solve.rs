@@ -20,6 +20,7 @@
 //! follow from (R_22ᵀ R_22 - Λ) g = R_22ᵀ c_2 by repetition.
 
 use nalgebra::{DMatrix, DVector};
+use overact::Code;
 
 use super::{
     noise::Noise,
@@ -98,9 +99,12 @@ pub(super) fn solve(equations: &Equations, selection: &Selection) -> Result<Solu
 }
 
 fn not_converged() -> Error {
-    Problem::new("gains are not determined: noise outweighs what the data tell of them")
-        .help("record longer runs with larger accelerations, and carry a heavier payload")
-        .into()
+    Problem::new(
+        Code::GAINS,
+        "gains are not determined: noise outweighs what the data tell of them",
+    )
+    .help("record longer runs with larger accelerations, and carry a heavier payload")
+    .into()
 }
 
 /// Solves the equations for a given noise of the drives, from a solution for another one on.

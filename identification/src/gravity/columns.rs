@@ -1,6 +1,7 @@
 //! The independent columns among those of the robot as it is described and those of fields along the axes,
 //! and how the column of each parameter is made of them in any gravity.
 
+use overact::Code;
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, Vector3};
@@ -220,7 +221,7 @@ fn random_regressor(
         };
         let lines = sets[set]
             .evaluate(model, &states, (samples, 0.0), true, (&picked, 0))
-            .map_err(|error| Error::from(Problem::new(error.to_string())))?;
+            .map_err(|error| Error::from(Problem::new(Code::NO_EFFECT, error.to_string())))?;
         for (line, rows) in lines.iter().enumerate() {
             for (index, value) in rows.iter().enumerate() {
                 let (sample, column) = (index / picked.len(), index % picked.len());

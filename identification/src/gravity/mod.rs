@@ -33,6 +33,7 @@ mod solve;
 pub use result::GravityDirection;
 
 use nalgebra::Vector3;
+use overact::Code;
 use overact::Model;
 
 use crate::{
@@ -77,12 +78,14 @@ pub fn gravity_direction(
     let Some(frame) = Frame::new(described) else {
         let message = "the direction of gravity is not determined: there is no gravity";
         let help = "give the acceleration of gravity in the description, about where it points";
-        return Err(Problem::new(message).help(help).into());
+        return Err(Problem::new(Code::GRAVITY_DIRECTION, message)
+            .help(help)
+            .into());
     };
     let extended = Extended::new(model, fields, runs, settings)?;
     let turns = free_turns(&extended, &frame, settings.seed);
     if turns.is_empty() {
-        return Err(Problem::new(
+        return Err(Problem::new(Code::GRAVITY_DIRECTION,
             "the direction of gravity is not determined: wherever it points, parameters of the robot explain the same torques",
         )
         .help("leave out `gravity_direction`; offsets and moments take in what a tilt does")
@@ -98,7 +101,12 @@ pub fn gravity_direction(
     let systems = observer.systems(runs, progress)?;
     let first = systems.first().map(Result::as_ref);
     let system = first.and_then(Result::ok);
-    let system = system.ok_or_else(|| Error::from(Problem::new("there are no equations")))?;
+    let system = system.ok_or_else(|| {
+        Error::from(Problem::new(
+            Code::GRAVITY_DIRECTION,
+            "there are no equations",
+        ))
+    })?;
     let solution = solve(&extended, system, &frame, settings)?;
     let angles = covariance(system, &solution);
     let angles = angles.filter(|own| own.diagonal().iter().all(|square| square.is_finite()));
@@ -113,7 +121,9 @@ pub fn gravity_direction(
         });
         let message = format!("the direction of gravity is not determined by these runs{far}");
         let help = "record runs with larger motions of joints that bear weight";
-        return Err(Problem::new(message).help(help).into());
+        return Err(Problem::new(Code::GRAVITY_DIRECTION, message)
+            .help(help)
+            .into());
     };
     let turned = Turned::new(&extended, &systems, &solution);
     Ok(GravityDirection::new(

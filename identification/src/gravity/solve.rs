@@ -1,6 +1,7 @@
 //! The direction of gravity of the smallest weighted residual.
 
 use nalgebra::{DMatrix, DVector};
+use overact::Code;
 
 use super::{columns::Extended, frame::Frame, observation::combined};
 use crate::{
@@ -94,7 +95,9 @@ pub(super) fn solve(
         let message = "the direction of gravity is not determined: steps towards it do not end";
         let help =
             "check the geometry, signs and units of the log first, without `gravity_direction`";
-        return Err(Problem::new(message).help(help).into());
+        return Err(Problem::new(Code::GRAVITY_DIRECTION, message)
+            .help(help)
+            .into());
     }
     let (weights, deviation) = weighted(extended, system, (&frame, &base), settings)?;
     let reduced = Factor::reduced_together(&system.lines, &weights, &all);

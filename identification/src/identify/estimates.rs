@@ -1,5 +1,6 @@
 //! Base, recommended and essential estimates of one projection, with what is to be said about them.
 
+use overact::Code;
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
@@ -62,7 +63,12 @@ pub fn estimate_projection(
     settings: &Settings,
     true_values: Option<&BTreeMap<String, f64>>,
 ) -> Result<Outcome, Error> {
-    let unknown = || Error::from(Problem::new("the projection was not prepared"));
+    let unknown = || {
+        Error::from(Problem::new(
+            Code::NOTHING_DETERMINED,
+            "the projection was not prepared",
+        ))
+    };
     let system = prepared.systems.get(projection).ok_or_else(unknown)?;
     let system = system.as_ref().map_err(Clone::clone)?;
     let mut warnings = Vec::new();
@@ -391,11 +397,12 @@ fn on_data(
         ));
     }
     if found.kept.is_empty() {
-        return Err(
-            Problem::new("the data determine no parameter: the robot stands still")
-                .help("record runs in which the robot moves")
-                .into(),
-        );
+        return Err(Problem::new(
+            Code::NOTHING_DETERMINED,
+            "the data determine no parameter: the robot stands still",
+        )
+        .help("record runs in which the robot moves")
+        .into());
     }
     let names = found
         .kept

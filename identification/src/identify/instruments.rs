@@ -9,6 +9,7 @@ use crate::{
     },
     settings::{Instruments, Settings},
 };
+use overact::Code;
 
 /// What there is of instruments.
 #[derive(Debug, Clone, Default)]
@@ -43,7 +44,7 @@ impl Companions {
         let mut found = Self::default();
         for log in runs {
             let own = log.instruments().ok_or_else(|| {
-                Problem::new("there is no simulated motion beside the run")
+                Problem::new(Code::INSTRUMENTS, "there is no simulated motion beside the run")
                     .file(log.name())
                     .help("describe the robot's controller, or set `instruments` to \"periods\" or \"none\"")
             })?;

@@ -1,5 +1,6 @@
 //! What is plotted of an identification, from what the pass over the runs has kept.
 
+use overact::Code;
 use overact::{Function, Model};
 
 use super::{
@@ -142,7 +143,7 @@ fn prediction(
     let mut jacobians = vec![0.0; time.len() * n * r];
     model
         .evaluate(Function::InverseJacobian, &[&poses], &mut jacobians)
-        .map_err(|error| crate::error::Problem::new(error.to_string()))?;
+        .map_err(|error| crate::error::Problem::new(Code::NO_EFFECT, error.to_string()))?;
     let mut torques: Vec<Series> = info
         .actuators
         .iter()

@@ -14,6 +14,7 @@ mod known;
 mod motion;
 mod stream;
 
+use overact::Code;
 use overact::{Function, Model, math::wrap_angle};
 
 use crate::{
@@ -200,12 +201,15 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
     let mut problems = Vec::new();
     if log.actuators() != info.sizes.actuators {
         problems.push(
-            Problem::new(format!(
-                "the run has {}, the robot `{}` has {}",
-                counted(log.actuators(), "actuator"),
-                info.name,
-                info.sizes.actuators
-            ))
+            Problem::new(
+                Code::LOG_ACTUATORS,
+                format!(
+                    "the run has {}, the robot `{}` has {}",
+                    counted(log.actuators(), "actuator"),
+                    info.name,
+                    info.sizes.actuators
+                ),
+            )
             .file(log.name())
             .help("map one position and one torque column to each actuator"),
         );
@@ -213,12 +217,12 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
     let needed = settings.samples_needed();
     if log.samples() < needed {
         problems.push(
-            Problem::new(format!(
+            Problem::new(Code::LOG_TOO_SHORT, format!(
                 "the run has {} samples; the filters, the decimation and the skipped samples need at least {needed}",
                 log.samples()
             ))
             .file(log.name())
-            .help("record a longer run, or skip fewer samples"),
+            .help("record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]"),
         );
     }
     let nyquist = log.sampling_frequency() / 2.0;
@@ -226,15 +230,15 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
     let below = settings.filter_cutoff_hz < nyquist;
     if !below {
         problems.push(
-            Problem::new(format!(
+            Problem::new(Code::SETTINGS, format!(
                 "the cutoff frequency of {} Hz is not below half the sampling frequency, {nyquist} Hz",
                 settings.filter_cutoff_hz
             ))
             .file(log.name())
             .help(if (10.0 * nyquist..1e3 * nyquist).contains(&settings.filter_cutoff_hz) {
-                "is the time in milliseconds? It has to be in seconds: divide the column by 1000. Else choose a cutoff of about ten times the bandwidth of the motion"
+                "is the time in milliseconds? It has to be in seconds: divide the column by 1000. Else set `filter_cutoff` of [identification] to about ten times the bandwidth of the motion"
             } else {
-                "choose about ten times the bandwidth of the motion"
+                "give `filter_cutoff` of [identification] about ten times the bandwidth of the motion"
             }),
         );
     }

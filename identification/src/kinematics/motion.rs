@@ -1,6 +1,7 @@
 //! The motion of the platform over some samples.
 
 use crate::{data::Load, error::Problem};
+use overact::Code;
 
 /// The motion of the platform in some successive samples of a run and the torques that belong to
 /// them.
@@ -72,10 +73,13 @@ impl Motion {
 
 /// A sample of a log at which the model has no value.
 pub(super) fn outside(run: &str, sample: usize, frequency: f64, error: overact::Error) -> Problem {
-    Problem::new(format!(
-        "sample {sample} (t = {:.4} s) is outside the workspace: {error}",
-        sample as f64 / frequency
-    ))
+    Problem::new(
+        Code::OUTSIDE_WORKSPACE,
+        format!(
+            "sample {sample} (t = {:.4} s) is outside the workspace: {error}",
+            sample as f64 / frequency
+        ),
+    )
     .file(run)
     .help("check the units, signs and offsets of the positions, the geometry and the home pose")
 }

@@ -8,6 +8,7 @@
 //! load of a pose is the same for two motions: their ratio is that of the rates.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use overact::Code;
 use overact::{Columns, Function, Model, StandardParameter};
 
 use super::states::{States, random_states};
@@ -130,7 +131,7 @@ impl FrictionPower {
             let mut output = vec![0.0; states.samples * rows * columns];
             model
                 .evaluate(function, &inputs[..function.inputs().len()], &mut output)
-                .map_err(|error| Problem::new(error.to_string()))?;
+                .map_err(|error| Problem::new(Code::NO_EFFECT, error.to_string()))?;
             Ok(output)
         };
         let regressor = |twist: &[f64]| ask(Function::IdmRedPlatform(Columns::Standard), twist);
@@ -287,7 +288,11 @@ pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<
             );
             let help =
                 "choose symmetric friction, sampled reversals and no dead band for this robot";
-            problems.push(Problem::new(message).column(parameter.name).help(help));
+            problems.push(
+                Problem::new(Code::SETTINGS, message)
+                    .column(parameter.name)
+                    .help(help),
+            );
         }
     }
     Error::check(problems)?;

@@ -1,5 +1,6 @@
 //! The motion of the instruments, gone through in step with that of a run.
 
+use overact::Code;
 use overact::Model;
 
 use super::{chunk::Chunk, observation::Observer};
@@ -29,10 +30,13 @@ impl<'a> Companion<'a> {
         settings: &Settings,
     ) -> Result<Self, Error> {
         if log.samples() != samples {
-            return Err(Problem::new(format!(
-                "the instruments have {} samples, the run has {samples}",
-                log.samples()
-            ))
+            return Err(Problem::new(
+                Code::INSTRUMENTS,
+                format!(
+                    "the instruments have {} samples, the run has {samples}",
+                    log.samples()
+                ),
+            )
             .file(log.name())
             .into());
         }
@@ -59,8 +63,12 @@ impl<'a> Companion<'a> {
         let next = self.motions.next()?;
         let own = next
             .filter(|own| (own.first_sample, own.samples) == (motion.first_sample, motion.samples));
-        let own =
-            own.ok_or_else(|| Problem::new("the instruments are not in step with the run"))?;
+        let own = own.ok_or_else(|| {
+            Problem::new(
+                Code::INSTRUMENTS,
+                "the instruments are not in step with the run",
+            )
+        })?;
         let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
         let chunks = observer.chunks(&own, &mut failed)?;
         match failed.into_iter().flatten().next() {

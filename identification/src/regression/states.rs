@@ -3,6 +3,7 @@
 //! Poses lie around the home pose. A pose that the robot can't reach is replaced by one of half the
 //! spread, again and again, so that any robot, large or small, yields states.
 
+use overact::Code;
 use overact::{Columns, Function, Model};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -70,10 +71,13 @@ pub(crate) fn random_states(model: &dyn Model, count: usize, seed: u64) -> Resul
         }
         let Some(pose) = found else {
             let why = reason.map_or_else(String::new, |error| format!(": {error}"));
-            return Err(Problem::new(format!(
-                "the model of `{}` has no value even next to its home pose{why}",
-                info.name
-            ))
+            return Err(Problem::new(
+                Code::NO_EFFECT,
+                format!(
+                    "the model of `{}` has no value even next to its home pose{why}",
+                    info.name
+                ),
+            )
             .help("check the geometry and the home pose of the description")
             .into());
         };

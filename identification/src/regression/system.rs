@@ -11,6 +11,7 @@
 //! told.
 
 use nalgebra::DMatrix;
+use overact::Code;
 use overact::Info;
 use serde::Serialize;
 
@@ -147,11 +148,14 @@ pub(crate) struct Observed {
 
 /// The problem of kept actuators that are singular at a sample.
 pub(crate) fn singular(motion: &Motion, sample: usize) -> Problem {
-    Problem::new(format!(
-        "sample {} (t = {:.4} s): the kept actuators do not determine the platform's motion",
-        motion.first_sample + sample,
-        motion.time(sample)
-    ))
+    Problem::new(
+        Code::KEPT_ACTUATORS,
+        format!(
+            "sample {} (t = {:.4} s): the kept actuators do not determine the platform's motion",
+            motion.first_sample + sample,
+            motion.time(sample)
+        ),
+    )
     .file(motion.run.as_str())
     .help("keep other actuators, or identify with the inputs projected on the platform")
 }

@@ -11,6 +11,7 @@ use crate::{
     robot::Robot,
 };
 use overact::Model;
+use overact_codegen::diagnostic::Code;
 use overact_identification::{CalibratedParameter, Calibration, Time};
 use std::collections::BTreeMap;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value, value};
@@ -33,7 +34,9 @@ pub(super) fn calibrated(
     let source = robot.source();
     let problem = |what: &str| -> Error {
         let message = format!("the calibrated description can't be written: {what}");
-        Problem::new(message).file(source.name.as_str()).into()
+        Problem::new(Code::NO_RESULT_TEXT, message)
+            .file(source.name.as_str())
+            .into()
     };
     let parsed = source.text.parse::<DocumentMut>();
     let mut document = parsed.map_err(|error| problem(error.message()))?;

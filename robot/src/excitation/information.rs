@@ -8,6 +8,7 @@ use super::course::{Bench, Course};
 use super::frame::Frame;
 use crate::error::{Error, Problem};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+use overact_codegen::diagnostic::Code;
 use overact_identification::{
     BaseParameters, ColumnSet, ModelKind, PayloadUse, Projection, Settings, base_parameters,
 };
@@ -79,7 +80,7 @@ impl Question {
             let message = "the robot has fewer actuators than coordinates";
             let help =
                 "exciting runs are searched for robots whose actuators drive all coordinates";
-            return Err(Problem::new(message).help(help).into());
+            return Err(Problem::new(Code::EXCITATION, message).help(help).into());
         }
         let projections = match sizes.actuators == sizes.dof {
             true => vec![Projection::Joints],

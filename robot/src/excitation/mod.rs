@@ -32,6 +32,7 @@ use frame::Frame;
 use information::Question;
 use nalgebra::DMatrix;
 use overact::{Function, Info, Model};
+use overact_codegen::diagnostic::Code;
 use overact_simulation::Trajectory;
 use rand_pcg::Pcg64;
 use search::{Candidate, Search, added};
@@ -291,7 +292,7 @@ impl<'a> Task<'a> {
         let help = "give wider limits in the table [excitation], a smaller `position` or a slower `fundamental`";
         let table = robot.description().excitation.as_ref();
         let line = table.map(|table| robot.source().position(&table.span).line);
-        Problem::new(message)
+        Problem::new(Code::EXCITATION, message)
             .file(robot.file())
             .line(line)
             .help(help)
@@ -372,7 +373,9 @@ fn bench<'a>(robot: &'a Robot, truth: Option<&BTreeMap<String, f64>>) -> Result<
     let mut jacobian = vec![0.0; sizes.actuators * sizes.dof];
     model
         .evaluate(Function::InverseJacobian, &[info.home_pose], &mut jacobian)
-        .map_err(|error| Problem::new(format!("the home pose: {error}")).file(robot.file()))?;
+        .map_err(|error| {
+            Problem::new(Code::EXCITATION, format!("the home pose: {error}")).file(robot.file())
+        })?;
     let norm = |column: usize| {
         let entries = jacobian.iter().skip(column).step_by(sizes.dof);
         entries.map(|entry| entry * entry).sum::<f64>().sqrt()

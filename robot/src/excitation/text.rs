@@ -3,6 +3,7 @@
 use super::frame::Frame;
 use crate::error::{Error, Problem};
 use crate::robot::Robot;
+use overact_codegen::diagnostic::Code;
 use overact_simulation::{Term, Trajectory};
 use std::fmt::Write;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
@@ -68,7 +69,11 @@ pub(super) fn description(robot: &Robot, tables: &str) -> Result<String, Error> 
     let source = robot.source();
     let problem = |message: String| {
         let help = "write each run of the description as a table [[experiment.run]]";
-        Error::from(Problem::new(message).file(source.name.as_str()).help(help))
+        Error::from(
+            Problem::new(Code::EXCITATION, message)
+                .file(source.name.as_str())
+                .help(help),
+        )
     };
     let read = |text: &str| {
         let document = text.parse::<DocumentMut>();

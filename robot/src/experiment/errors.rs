@@ -1,6 +1,7 @@
 //! What the simulation refuses, in the words of the description: at the line of the key, and by the
 //! names that keys have there.
 
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     description::{self, Description},
     diagnostic::{Diagnostic, Diagnostics, Source},
@@ -41,7 +42,7 @@ pub(crate) fn diagnostics(
             .for_each(|run| all.push(of_run(source, description, run))),
         other => {
             let span = description::place(source, "experiment");
-            all.push(Diagnostic::global(other.to_string()).at(span));
+            all.push(Diagnostic::global(Code::EXPERIMENT, other.to_string()).at(span));
         }
     }
     all
@@ -52,7 +53,11 @@ fn of_problem(source: &Source, problem: &Problem) -> Diagnostic {
     let path = path(&problem.field);
     let name = path.rsplit('.').next().unwrap_or(&path);
     let place = description::place(source, &format!("experiment.{path}"));
-    Diagnostic::global(format!("`{name}` {}", in_keys(&problem.message))).at(place)
+    Diagnostic::global(
+        Code::EXPERIMENT,
+        format!("`{name}` {}", in_keys(&problem.message)),
+    )
+    .at(place)
 }
 
 /// A run that could not be finished, at its name.
@@ -62,7 +67,7 @@ fn of_run(source: &Source, description: &Description, error: &RunError) -> Diagn
     let message = in_keys(&error.to_string());
     let of_run = run.map(|run| run.name.span.clone());
     let place = of_run.or_else(|| description::place(source, "experiment"));
-    Diagnostic::global(message).at(place)
+    Diagnostic::global(Code::EXPERIMENT, message).at(place)
 }
 
 /// The path of a value among the description's keys: `runs[1].trajectory.terms[0].phase_rad` is

@@ -6,6 +6,7 @@ use crate::{
     states::States,
 };
 use overact::Columns;
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     CompiledFunction, RobotModel,
     derivation::{MotionInput, function_name, inventory},
@@ -39,7 +40,7 @@ pub(super) fn function<'m>(
     let offered: Vec<&CompiledFunction> = named.into_iter().filter(is_meant).collect();
     if offered.is_empty() {
         let message = format!("`{name}` is not offered with {} columns", columns.name());
-        return Err(Problem::new(message).into());
+        return Err(Problem::new(Code::FUNCTION_VARIANT, message).into());
     }
     let from = |from: MotionInput| offered.iter().find(|f| f.from == from).copied();
     // The state of a tree are its joints, whatever they are called.
@@ -51,7 +52,7 @@ pub(super) fn function<'m>(
         let offers: Vec<&str> = offered.iter().map(|f| f.from.name()).collect();
         let missing = || {
             let message = format!("`{name}` is not offered from {}", source.from().name());
-            Problem::new(message)
+            Problem::new(Code::FUNCTION_VARIANT, message)
                 .help(format!("it is offered from {}", offers.join(", ")))
                 .into()
         };
@@ -75,7 +76,7 @@ pub(super) fn function<'m>(
     order
         .into_iter()
         .find_map(from)
-        .ok_or_else(|| Problem::new("no such function").into())
+        .ok_or_else(|| Problem::new(Code::FUNCTION_VARIANT, "no such function").into())
 }
 
 fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m CompiledFunction, Failure> {
@@ -99,5 +100,7 @@ fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m CompiledFun
         "the robot `{}` has no function `{name}`",
         model.mechanism.name
     );
-    Err(Problem::new(message).help(help).into())
+    Err(Problem::new(Code::FUNCTION_VARIANT, message)
+        .help(help)
+        .into())
 }

@@ -2,6 +2,7 @@
 
 use super::{Arguments, Language};
 use crate::failure::{Failure, Problem};
+use overact_codegen::diagnostic::Code;
 use overact_codegen::{c, emission};
 use overact_robot::CompiledFile;
 use serde_json::{Value, json};
@@ -164,7 +165,9 @@ pub(super) fn distinct(modules: &[Module]) -> Result<(), Failure> {
     let mut robots: BTreeMap<&str, &Module> = BTreeMap::new();
     let mut files: BTreeMap<&Path, &Module> = BTreeMap::new();
     for module in modules {
-        let problem = |message: String| Problem::new(message).file(module.description.as_str());
+        let problem = |message: String| {
+            Problem::new(Code::MODULES_COLLIDE, message).file(module.description.as_str())
+        };
         let twin = robots.insert(&module.robot, module);
         if let Some(other) = twin {
             let message = format!(
@@ -220,7 +223,7 @@ pub(super) fn compare(modules: &[Module]) -> Result<(), Failure> {
             };
             let help = format!("renew it with `overact generate {arguments} -o {output}`");
             let path = file.display().to_string();
-            problems.push(Problem::new(message).file(path).help(help));
+            problems.push(Problem::new(Code::NOT_FRESH, message).file(path).help(help));
         }
     }
     if problems.is_empty() {

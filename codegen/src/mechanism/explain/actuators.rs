@@ -2,7 +2,7 @@
 
 use super::motions::{Motions, listed};
 use crate::description::Description;
-use crate::diagnostic::{Diagnostic, DiagnosticKind};
+use crate::diagnostic::{Code, Diagnostic, DiagnosticKind};
 use crate::mechanism::mobility::Mobility;
 use crate::mechanism::singular_values::SingularValues;
 use crate::mechanism::states::random_states;
@@ -33,7 +33,7 @@ pub(in crate::mechanism) fn too_few_actuators(
         ),
         _ => "mark more joints with actuated = true".to_owned(),
     };
-    Diagnostic::new(message, span)
+    Diagnostic::new(Code::MOVES_FREELY, message, span)
         .label(legs_without_actuator(mechanism))
         .help(help)
 }
@@ -55,7 +55,7 @@ pub(in crate::mechanism) fn not_held(description: &Description, mobility: &Mobil
     let span = description.platform.as_ref().map(|p| p.motion.span.clone());
     let span = span.unwrap_or(description.name.span.clone());
     let words = Motions::of_directions(&mobility.parts()).words("along", "about");
-    Diagnostic::new("the legs do not hold the platform to this motion", span)
+    Diagnostic::new(Code::NOT_HELD, "the legs do not hold the platform to this motion", span)
         .label(format!(
             "they leave it {} motions, {words}, and the actuators drive all of them",
             mobility.count()
@@ -98,7 +98,9 @@ pub(in crate::mechanism) fn underactuated(
             help.to_owned(),
         )
     };
-    Diagnostic::new(message, span).label(label).help(help)
+    Diagnostic::new(Code::MOVES_FREELY, message, span)
+        .label(label)
+        .help(help)
 }
 
 /// How the platform can move while no actuator does.

@@ -11,7 +11,7 @@ use super::reach::{Reach, look, wrapped};
 use super::structure::Defect;
 use super::{Home, JointKind, Leg, Mechanism};
 use crate::description::{self, Description};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic};
 use motions::{Motions, listed};
 use nalgebra::DMatrix;
 
@@ -61,7 +61,7 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
         _ => more,
     };
     match defect {
-        Defect::Branch(joints) => Diagnostic::new(
+        Defect::Branch(joints) => Diagnostic::new(Code::USELESS_JOINT,
             format!(
                 "{} of {shape} {} on a branch that does not lead to the {kind}'s end",
                 names(joints),
@@ -71,7 +71,7 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
         )
         .label("nothing determines its position")
         .help("let it follow other joints, such as theta = \"-q2\", or put the joint that carries the leg's end last"),
-        Defect::Idle(joints) => Diagnostic::new(
+        Defect::Idle(joints) => Diagnostic::new(Code::USELESS_JOINT,
             format!(
                 "{} of {shape} never {} the {kind}'s end",
                 names(joints),
@@ -88,14 +88,14 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
             } else {
                 ("turn about the same axis", "the link between them has no length: give the second a `d`, or turn its axis by `alpha`")
             };
-            Diagnostic::new(
+            Diagnostic::new(Code::USELESS_JOINT,
                 format!("joints {} and {} of {shape} always {what}", name(*first), name(*second)),
                 at(*second),
             )
             .label("together they move nothing, so their positions are never determined")
             .help(way)
         }
-        Defect::Stiff { motions, needed } => Diagnostic::new(
+        Defect::Stiff { motions, needed } => Diagnostic::new(Code::LEG_TOO_STIFF,
             format!("{shape} has too few joints to follow {carriers} motion"),
             leg.joints[leg.joints.len() - 1].span.clone(),
         )
@@ -104,7 +104,7 @@ pub(super) fn defect(leg: &description::Leg, defect: &Defect) -> Diagnostic {
             None => "add a passive joint, choose a platform motion with fewer coordinates, or an end that leaves more free (`type`, `along`)",
             Some(_) => "add a passive joint, or choose an end that leaves more free (`type`, `along`)",
         }),
-        Defect::Loose { joints, motions } => Diagnostic::new(
+        Defect::Loose { joints, motions } => Diagnostic::new(Code::USELESS_JOINT,
             format!("{shape} can move while {carrier} stands still"),
             leg.joints[leg.joints.len() - 1].span.clone(),
         )
@@ -125,7 +125,7 @@ pub(super) fn home_error(
         HomeError::Singular { leg, condition } => {
             let leg = &description.legs[*leg];
             let kind = Words::of(leg).kind;
-            Diagnostic::new(
+            Diagnostic::new(Code::SINGULAR_HOME,
                 format!("{kind} `{}` is singular at the home configuration", leg.name.value),
                 leg.span.clone(),
             )
@@ -153,7 +153,8 @@ fn open(
         carriers,
     } = Words::of(place);
     let name = format!("{kind} `{}`", place.name.value);
-    let error = |message: String| Diagnostic::new(message, place.span.clone());
+    let error =
+        |message: String| Diagnostic::new(Code::DOES_NOT_CLOSE, message, place.span.clone());
     let Some(target) = mechanism.target(index, &rough.pose, &rough.joints) else {
         return error(format!("{name} has no end"));
     };
@@ -213,6 +214,7 @@ pub(super) fn blocked(
             .map(|(name, _)| format!("`{name}`"))
             .collect();
         return Diagnostic::new(
+            Code::LEG_TOO_STIFF,
             format!(
                 "chain `{}` cannot follow the skeleton's motion",
                 place.name.value
@@ -224,7 +226,7 @@ pub(super) fn blocked(
             "add a passive joint to the chain, or an end that leaves more free (`type`, `along`)",
         );
     }
-    Diagnostic::new(
+    Diagnostic::new(Code::LEG_TOO_STIFF,
         format!("leg `{}` cannot follow the platform's motion", place.name.value),
         place.span.clone(),
     )

@@ -8,6 +8,7 @@ mod number;
 mod rows;
 mod series;
 
+use overact::Code;
 use std::path::Path;
 
 use hdf5_reader::{FileStorage, Hdf5File, OpenOptions};
@@ -132,7 +133,9 @@ impl Stored for Hdf5 {
                 "the file has several datasets that are called `{}` with points between names",
                 shown(&path)
             );
-            return Err(Problem::new(message).file(self.file.as_str()).column(name));
+            return Err(Problem::new(Code::SAME_COLUMN, message)
+                .file(self.file.as_str())
+                .column(name));
         }
         Ok(first.part(part).map(|part| first.first + part))
     }
@@ -143,7 +146,7 @@ impl Stored for Hdf5 {
             return Ok(());
         };
         let message = format!("`{}` {what}", shown(&series.name));
-        let problem = Problem::new(message)
+        let problem = Problem::new(Code::LOG_FORMAT, message)
             .file(self.file.as_str())
             .column(series.name.as_str());
         Err(problem.help("store vectors of numbers, or a matrix with a column for each actuator"))
@@ -194,7 +197,7 @@ impl Stored for Hdf5 {
                     shown(first.name)
                 );
                 problems.push(
-                    Problem::new(message)
+                    Problem::new(Code::LOG_SHAPE, message)
                         .file(self.file.as_str())
                         .column(own.name),
                 );

@@ -1,6 +1,7 @@
 //! The rows of some columns, a block of a dataset at a time.
 
 use hdf5_reader::{Dataset, SliceInfo, SliceInfoElem, error::Result};
+use overact::Code;
 
 use super::{
     number::Number,
@@ -197,7 +198,11 @@ impl StoredRows for Rows<'_> {
                     shown(wanted.name),
                     self.samples
                 );
-                problems.push(Problem::new(message).file(self.file).column(wanted.name));
+                problems.push(
+                    Problem::new(Code::NOT_A_NUMBER, message)
+                        .file(self.file)
+                        .column(wanted.name),
+                );
             }
         }
         self.samples += 1;

@@ -1,6 +1,7 @@
 //! Datasets as vectors of samples: which side of a matrix is the time, and how its columns are called.
 
 use hdf5_reader::Dataset;
+use overact::Code;
 
 use super::number::is_number;
 use crate::{data::problems::legible, error::Problem};
@@ -98,7 +99,7 @@ impl Series {
 /// What is said of a file that can't be opened.
 pub(super) fn broken(file: &str, why: &str) -> Problem {
     let message = format!("the HDF5 file can't be read: {}", legible(why));
-    Problem::new(message)
+    Problem::new(Code::LOG_FORMAT, message)
         .file(file)
         .help("if it was copied or its writer was stopped, copy or write it again; else export CSV")
 }

@@ -13,6 +13,7 @@ mod section;
 mod topic;
 mod topics;
 
+use overact::Code;
 use std::{fs::File, path::Path, sync::Arc};
 
 use self::{
@@ -150,5 +151,7 @@ fn without_joints(file: &str, topics: &Topics) -> Problem {
         listed.join(", ")
     );
     let help = "record the topic on which the drives tell their positions and efforts, as ROS 2 does it; else export CSV";
-    Problem::new(message).file(file).help(help)
+    Problem::new(Code::LOG_COLUMNS, message)
+        .file(file)
+        .help(help)
 }

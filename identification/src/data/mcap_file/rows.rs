@@ -1,5 +1,6 @@
 //! The messages of a topic as rows of numbers, one message at a time.
 
+use overact::Code;
 use std::{fs::File, sync::Arc};
 
 use super::{
@@ -77,7 +78,7 @@ impl<'a> Rows<'a> {
                 self.samples,
                 shown(&topic.topic)
             );
-            Problem::new(message).file(topic.file.as_str())
+            Problem::new(Code::LOG_FORMAT, message).file(topic.file.as_str())
         };
         let state = JointState::read(&self.content).map_err(|why| problem(legible(&why)))?;
         if state.names != topic.joints {

@@ -1,5 +1,6 @@
 //! A topic as a table: its columns by the joints of its first message.
 
+use overact::Code;
 use std::path::{Path, PathBuf};
 
 use super::{joint_state::JointState, topics::Found};
@@ -61,7 +62,7 @@ impl Topic {
                 shown(&found.topic),
                 legible(&why)
             );
-            Problem::new(message).file(file)
+            Problem::new(Code::LOG_FORMAT, message).file(file)
         })?;
         let joints: Vec<String> = match &state.names[..] {
             // Joints without names are called by their numbers.
@@ -110,7 +111,7 @@ pub(super) fn broken(file: &str, why: &str) -> Problem {
         "the file starts as MCAP does, but can't be read: {}",
         legible(why)
     );
-    Problem::new(message).file(file).help(
+    Problem::new(Code::LOG_FORMAT, message).file(file).help(
         "if its writer was stopped, `mcap recover FILE -o NEW.mcap` saves what there is; if it was copied, copy it again",
     )
 }

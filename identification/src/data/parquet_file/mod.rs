@@ -10,6 +10,7 @@ mod packed;
 mod pages;
 mod rows;
 
+use overact::Code;
 use std::{
     fs::File,
     path::{Path, PathBuf},
@@ -121,7 +122,7 @@ impl Stored for Parquet {
         let Err(what) = kind else {
             return Ok(());
         };
-        let problem = Problem::new(format!("column `{}` {what}", shown(name)));
+        let problem = Problem::new(Code::LOG_FORMAT, format!("column `{}` {what}", shown(name)));
         let problem = problem.file(self.file.as_str()).column(name.as_str());
         let help = "write a column of numbers (float64) for each signal and each actuator";
         Err(problem.help(help))
@@ -192,7 +193,7 @@ fn broken(file: &str, why: &str) -> Problem {
         "the file starts as Parquet does, but can't be read: {}",
         legible(why)
     );
-    Problem::new(message)
+    Problem::new(Code::LOG_FORMAT, message)
         .file(file)
         .help("if it was copied or its writer was stopped, copy or write it again; else export CSV")
 }

@@ -1,6 +1,7 @@
 //! The rows of a Parquet file: some columns at a time, a few thousand rows of each, so that memory does not grow
 //! with the file or with its row groups.
 
+use overact::Code;
 use std::{fmt, fs::File, sync::Arc};
 
 use parquet::{
@@ -123,11 +124,15 @@ impl<'a> Rows<'a> {
         let help = "if the file was copied or its writer was stopped, copy or write it again; else export CSV";
         let Some(column) = column else {
             let message = format!("the Parquet file can't be read {from}");
-            return Problem::new(message).file(self.file).help(help);
+            return Problem::new(Code::LOG_FORMAT, message)
+                .file(self.file)
+                .help(help);
         };
         let name = self.columns[column].wanted.name;
         let message = format!("column `{}` can't be read {from}", shown(name));
-        let problem = Problem::new(message).file(self.file).column(name);
+        let problem = Problem::new(Code::LOG_FORMAT, message)
+            .file(self.file)
+            .column(name);
         problem.help(if why.ends_with(NOT_READ) {
             "write it with the compression snappy, zstd, gzip or lz4, or none"
         } else {
@@ -172,7 +177,11 @@ impl StoredRows for Rows<'_> {
             };
             let name = column.wanted.name;
             let message = format!("`{}`: sample {} {what}", shown(name), self.samples);
-            problems.push(Problem::new(message).file(self.file).column(name));
+            problems.push(
+                Problem::new(Code::NOT_A_NUMBER, message)
+                    .file(self.file)
+                    .column(name),
+            );
         }
         self.next += 1;
         self.samples += 1;

@@ -18,6 +18,7 @@ mod find;
 
 use super::Log;
 use crate::error::{Error, Problem};
+use overact::Code;
 
 /// Periods that are taken together so that they have a whole number of samples, at most.
 const MOST_TOGETHER: usize = 10;
@@ -62,14 +63,17 @@ pub(crate) fn periods(log: &Log, period: Option<f64>) -> Result<Periods, Error> 
     let samples = match period {
         Some(period) => together(log, period)?,
         None => find::period(log)?.ok_or_else(|| {
-            Problem::new("no period is found after which the motion repeats itself")
-                .file(log.name())
-                .help("record at least two periods, or give `period` if the motion is periodic")
+            Problem::new(
+                Code::PERIODS,
+                "no period is found after which the motion repeats itself",
+            )
+            .file(log.name())
+            .help("record at least two periods, or give `period` if the motion is periodic")
         })?,
     };
     let periods = gathered(log, samples)?;
     if periods.difference > LARGEST_DIFFERENCE {
-        return Err(Problem::new(format!(
+        return Err(Problem::new(Code::PERIODS, format!(
             "the motion does not repeat itself after {:.6} s: the periods differ by {:.1} % of the motion",
             samples as f64 / log.sampling_frequency(),
             100.0 * periods.difference.sqrt()
@@ -84,7 +88,9 @@ pub(crate) fn periods(log: &Log, period: Option<f64>) -> Result<Periods, Error> 
 /// The samples of the fewest periods (s) that have a whole number of them.
 fn together(log: &Log, period: f64) -> Result<usize, Error> {
     let problem = |text: String, help: &str| {
-        let problem = Problem::new(text).file(log.name()).help(help);
+        let problem = Problem::new(Code::PERIODS, text)
+            .file(log.name())
+            .help(help);
         Err(Error::from(problem))
     };
     let one = period * log.sampling_frequency();

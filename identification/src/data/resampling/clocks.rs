@@ -2,6 +2,7 @@
 
 use super::super::{problems::shown, table::Rows};
 use crate::error::Problem;
+use overact::Code;
 
 /// Steps of a clock from which the usual one is told.
 const FIRST_STEPS: usize = 256;
@@ -72,7 +73,7 @@ pub(in crate::data) fn apart(
             shown(first)
         )
     };
-    Problem::new(message).file(file).help(
+    Problem::new(Code::LOG_FILES, message).file(file).help(
         "files are joined by time: check that they are of one run and that their clocks count from the same start",
     )
 }

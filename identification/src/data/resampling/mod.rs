@@ -8,6 +8,7 @@ mod clocks;
 mod low_pass;
 mod polynomial;
 
+use overact::Code;
 use std::collections::VecDeque;
 
 pub(super) use self::clocks::{apart, differ, times, usual_step};
@@ -248,7 +249,7 @@ impl Resampled {
         if !(time > before && time - last <= LONGEST_STEP * self.step) {
             self.has_ended = true;
             let message = format!("the time steps from {before} s to {time} s");
-            let problem = Problem::new(message).file(self.file.as_str());
+            let problem = Problem::new(Code::LOG_TIME, message).file(self.file.as_str());
             let help =
                 "numbers are interpolated between times that grow without gaps: cut the run there";
             return Err(problem.help(help).into());

@@ -7,6 +7,7 @@
 //! comment of as many words before lines that are all numbers.
 
 use csv::{ReaderBuilder, StringRecord, Trim};
+use overact::Code;
 
 use super::squeeze::Squeeze;
 use crate::{
@@ -193,7 +194,9 @@ fn decimal_comma(
                 shown(comma),
                 shown(point)
             );
-            let problem = Problem::new(message).file(file).line(line as usize);
+            let problem = Problem::new(Code::NOT_A_NUMBER, message)
+                .file(file)
+                .line(line as usize);
             let help = if separator == b',' {
                 "write all decimals behind points, and without quotation marks"
             } else {
@@ -236,7 +239,9 @@ fn check_widths(
         return Ok(());
     }
     let message = format!("the line has {cells} columns, but the header names {names}");
-    let problem = Problem::new(message).file(file).line(*line as usize);
+    let problem = Problem::new(Code::LOG_SHAPE, message)
+        .file(file)
+        .line(*line as usize);
     let help = match separator {
         b',' => {
             "if decimals stand behind commas, separate the columns by semicolons or tabs; else name every column"

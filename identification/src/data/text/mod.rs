@@ -7,6 +7,7 @@
 mod dialect;
 mod squeeze;
 
+use overact::Code;
 use std::{
     fs::File,
     io::{Read, Seek, SeekFrom},
@@ -127,7 +128,7 @@ impl Text {
     fn broken(&self, error: &csv::Error) -> Problem {
         let line = error.position().map(|position| position.line() as usize);
         let message = format!("the text can't be read: {error}");
-        let problem = Problem::new(message).file(self.file.as_str());
+        let problem = Problem::new(Code::LOG_FORMAT, message).file(self.file.as_str());
         match line {
             Some(line) => problem.line(line),
             None => problem,
@@ -215,7 +216,7 @@ impl Rows<'_> {
                 Err(message) => {
                     *value = f64::NAN;
                     problems.push(
-                        Problem::new(format!("column `{name}`: {message}"))
+                        Problem::new(Code::NOT_A_NUMBER, format!("column `{name}`: {message}"))
                             .file(self.text.file.as_str())
                             .line(self.line)
                             .column(name),

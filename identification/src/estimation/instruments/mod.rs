@@ -31,6 +31,7 @@ pub(crate) mod regressor;
 pub(crate) mod strength;
 
 use nalgebra::{DMatrix, DVector};
+use overact::Code;
 
 use super::{
     estimate::{Estimation, line_errors, overall, percent},
@@ -71,7 +72,7 @@ impl Instrumental {
         let places: Vec<usize> = instruments.chain(selected.iter().copied()).collect();
         let reduced = Factor::reduced_together(&system.instruments, &start.weights, &places);
         if system.instruments.is_empty() || reduced.triangle.nrows() < 2 * p {
-            return Err(Problem::new("the system has no instruments").into());
+            return Err(Problem::new(Code::INSTRUMENTS, "the system has no instruments").into());
         }
         let block = |row: usize, column: usize| -> DMatrix<f64> {
             reduced.triangle.view((row, column), (p, p)).clone_owned()
@@ -79,8 +80,11 @@ impl Instrumental {
         let (triangle, crossed) = (block(0, 0), block(0, p));
         let wanted = reduced.rhs.rows(0, p).clone_owned();
         let (values, inverse) = solve(&crossed, &wanted).ok_or_else(|| {
-            Problem::new("the instruments do not determine the parameters")
-                .help("record several periods of a motion that excites all of them")
+            Problem::new(
+                Code::INSTRUMENTS,
+                "the instruments do not determine the parameters",
+            )
+            .help("record several periods of a motion that excites all of them")
         })?;
         let estimation = with_values(system, selected, start, (values, &inverse));
         let mut found = Self {

@@ -1,0 +1,92 @@
+//! `overact explain`: cause and cure of an error, by its code.
+
+use crate::{
+    failure::Failure,
+    output::{json, print, table},
+};
+use overact_codegen::diagnostic::{Code, Explanation};
+use serde_json::{Value, json as document};
+
+/// Arguments of the command.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Codes as errors show them, such as OA102; without any, all codes are listed
+    #[arg(value_name = "CODE")]
+    codes: Vec<String>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Codes that no error has.
+pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let explanation = |text: &String| match Code::named(text) {
+        Some(code) => Ok(code.explanation()),
+        None => Err(format!("`{text}` is no code of an error")),
+    };
+    let mut wanted = Vec::new();
+    let mut unknown = Vec::new();
+    for text in &arguments.codes {
+        match explanation(text) {
+            Ok(one) => wanted.push(one),
+            Err(message) => unknown.push(message),
+        }
+    }
+    if !unknown.is_empty() {
+        let help = "`overact explain` without a code lists all of them";
+        return Err(Failure::Usage(format!("{}; {help}", unknown.join(", "))));
+    }
+    if arguments.codes.is_empty() {
+        wanted = Code::all().collect();
+    }
+    if as_json {
+        let all: Vec<Value> = wanted.iter().map(|one| as_document(one)).collect();
+        return print(&json(&document!({ "codes": all }))?);
+    }
+    if arguments.codes.is_empty() {
+        let row = |one: &&Explanation| vec![one.code.to_string(), one.title.to_owned()];
+        let rows: Vec<Vec<String>> = wanted.iter().map(row).collect();
+        return print(&table(&rows, &[true, true]));
+    }
+    let texts: Vec<String> = wanted.iter().map(|one| as_text(one)).collect();
+    print(&texts.join("\n"))
+}
+
+fn as_document(one: &Explanation) -> Value {
+    document!({
+        "code": one.code.to_string(),
+        "title": one.title,
+        "cause": one.cause,
+        "cure": one.cure,
+    })
+}
+
+fn as_text(one: &Explanation) -> String {
+    let paragraph = |heading: &str, text: &str| {
+        let indented: Vec<String> = wrapped(text).iter().map(|l| format!("  {l}\n")).collect();
+        format!("{heading}\n{}", indented.concat())
+    };
+    format!(
+        "{}: {}\n\n{}\n{}",
+        one.code,
+        one.title,
+        paragraph("Cause", one.cause),
+        paragraph("Cure", one.cure)
+    )
+}
+
+/// A text in lines for a terminal.
+fn wrapped(text: &str) -> Vec<String> {
+    const WIDTH: usize = 90;
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= WIDTH => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}

@@ -1,0 +1,162 @@
+//! Codes of errors, and what each one means: its cause and its cure.
+//!
+//! Whatever refuses an input says why with one of these codes, so that programs tell errors from one another
+//! without reading sentences, and a person finds more about one with `overact explain CODE`. A code can't be made
+//! anywhere else than in the tables of this folder, so that there is none without an explanation. A number that
+//! has been given stays: a code that is not used any more is not given to something else.
+//!
+//! The hundreds say what is wrong: 1 a description, 2 its mechanism, 3 logs, 4 an identification, 5 a state, an
+//! experiment or an excitation, 6 the command line and its files, 9 overact itself.
+
+mod command;
+mod description;
+mod identification;
+mod logs;
+mod mechanism;
+mod states;
+
+use core::fmt;
+
+/// The code of an error, `OA102` for instance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Code(u16);
+
+/// What a code means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Explanation {
+    /// The code.
+    pub code: Code,
+    /// What is wrong, in a few words.
+    pub title: &'static str,
+    /// How it comes about.
+    pub cause: &'static str,
+    /// What to do about it.
+    pub cure: &'static str,
+}
+
+/// A table of codes with what they mean.
+macro_rules! codes {
+    ($($name:ident $number:literal $title:literal cause $cause:literal cure $cure:literal)*) => {
+        impl $crate::code::Code {
+            $(
+                #[doc = concat!("`OA", stringify!($number), "`: ", $title, ".")]
+                pub const $name: Self = Self($number);
+            )*
+        }
+
+        /// The codes of this file, in the order of their numbers.
+        pub(super) const TABLE: &[$crate::code::Explanation] = &[$(
+            $crate::code::Explanation {
+                code: $crate::code::Code::$name,
+                title: $title,
+                cause: $cause,
+                cure: $cure,
+            },
+        )*];
+    };
+}
+use codes;
+
+/// What the hundreds are about, with their codes.
+const AREAS: [(&str, &[Explanation]); 7] = [
+    ("Descriptions", description::TABLE),
+    ("Mechanisms", mechanism::TABLE),
+    ("Logs", logs::TABLE),
+    ("Identification", identification::TABLE),
+    ("States, experiments, excitation", states::TABLE),
+    ("Command line and files", command::TABLE),
+    ("overact itself", command::INTERNAL_TABLE),
+];
+
+impl Code {
+    /// All codes by what they are about.
+    #[must_use]
+    pub const fn areas() -> &'static [(&'static str, &'static [Explanation])] {
+        &AREAS
+    }
+
+    /// All codes in the order of their numbers.
+    pub fn all() -> impl Iterator<Item = &'static Explanation> {
+        AREAS.iter().flat_map(|(_, table)| table.iter())
+    }
+
+    /// The code that is written so; `OA102`, `oa102` and `102` are one.
+    #[must_use]
+    pub fn named(text: &str) -> Option<Self> {
+        let text = text.trim();
+        let prefixed = text.get(..2).is_some_and(|p| p.eq_ignore_ascii_case("oa"));
+        let digits = if prefixed { text.get(2..)? } else { text };
+        let is_number = digits.len() == 3 && digits.bytes().all(|byte| byte.is_ascii_digit());
+        let number = is_number.then(|| digits.parse().ok()).flatten()?;
+        let own = Self::all().find(|one| one.code.0 == number)?;
+        Some(own.code)
+    }
+
+    /// What it means.
+    #[must_use]
+    pub fn explanation(self) -> &'static Explanation {
+        Self::all()
+            .find(|one| one.code == self)
+            .unwrap_or(&command::INTERNAL_TABLE[0])
+    }
+}
+
+impl fmt::Display for Code {
+    /// `OA102`
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "OA{:03}", self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::Code;
+    use std::{format, string::ToString, vec::Vec};
+
+    #[test]
+    fn every_code_is_explained_once_in_the_order_of_its_area() {
+        let numbers: Vec<u16> = Code::all().map(|one| one.code.0).collect();
+        assert!(
+            numbers.windows(2).all(|pair| pair[0] < pair[1]),
+            "{numbers:?}"
+        );
+        for (area, table) in Code::areas() {
+            let hundreds: Vec<u16> = table.iter().map(|one| one.code.0 / 100).collect();
+            assert!(hundreds.windows(2).all(|pair| pair[0] == pair[1]), "{area}");
+        }
+        for one in Code::all() {
+            assert_eq!(one.code.explanation(), one);
+            for text in [one.cause, one.cure] {
+                assert!(
+                    text.ends_with('.') && text.len() > 15,
+                    "{}: {text}",
+                    one.code
+                );
+            }
+            assert!(
+                !one.title.is_empty() && !one.title.ends_with('.'),
+                "{}",
+                one.code
+            );
+        }
+    }
+
+    #[test]
+    fn codes_are_found_by_what_they_are_called() {
+        for one in Code::all() {
+            let name = one.code.to_string();
+            assert_eq!(Code::named(&name), Some(one.code));
+            assert_eq!(
+                Code::named(&format!(" {} ", name.to_lowercase())),
+                Some(one.code)
+            );
+            assert_eq!(Code::named(&name[2..]), Some(one.code));
+        }
+        for other in [
+            "", "OA", "OA000", "OA1", "OA0101", "E102", "OA+02", "ö102", "OA10ä",
+        ] {
+            assert_eq!(Code::named(other), None, "{other}");
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! Links between the texts of the repository: each leads to a file, and to a heading of it where it names one.
+
+use crate::Failure;
+use crate::files::{read, repository};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+/// Folders whose texts are checked, and those of the root.
+const FOLDERS: [&str; 7] = [
+    "",
+    "benchmarks",
+    "docs",
+    "examples/cpp_controller",
+    "generated",
+    "python",
+    "robots",
+];
+
+/// A link of a text.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Link {
+    pub(crate) line: usize,
+    pub(crate) target: String,
+}
+
+/// Fails with every link that leads nowhere.
+pub(crate) fn check() -> Result<(), Failure> {
+    let texts = texts()?;
+    let problems = broken(&texts);
+    if problems.is_empty() {
+        println!("{} texts: all links lead somewhere", texts.len());
+        return Ok(());
+    }
+    Err(problems.join("\n").into())
+}
+
+/// All texts by their paths from the root.
+pub(crate) fn texts() -> Result<BTreeMap<String, String>, Failure> {
+    let mut all = BTreeMap::new();
+    for folder in FOLDERS {
+        let Ok(entries) = fs::read_dir(repository(folder)) else {
+            continue;
+        };
+        for entry in entries {
+            let path = Path::new(folder).join(entry?.file_name());
+            if path.extension().is_some_and(|e| e == "md") {
+                let name = path.display().to_string();
+                let text = read(&name)?;
+                all.insert(name, text);
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// Every link that leads nowhere, with its file and line.
+fn broken(texts: &BTreeMap<String, String>) -> Vec<String> {
+    let mut problems = Vec::new();
+    for (file, text) in texts {
+        for link in links(text) {
+            if let Some(why) = fault(file, &link.target, texts) {
+                problems.push(format!("{file}:{}: `{}`: {why}", link.line, link.target));
+            }
+        }
+    }
+    problems
+}
+
+/// Why a link leads nowhere.
+fn fault(file: &str, target: &str, texts: &BTreeMap<String, String>) -> Option<String> {
+    if is_foreign(target) {
+        return None;
+    }
+    let (path, anchor) = target.split_once('#').unwrap_or((target, ""));
+    let resolved = match path {
+        "" => file.to_owned(),
+        _ => resolved(file, path)?,
+    };
+    if !texts.contains_key(&resolved) && !repository(&resolved).exists() {
+        return Some("there is no such file".to_owned());
+    }
+    if anchor.is_empty() {
+        return None;
+    }
+    let Some(text) = texts.get(&resolved) else {
+        return Some(format!("`{resolved}` is no text with headings"));
+    };
+    let known = anchors(text);
+    (!known.iter().any(|one| one == anchor)).then(|| format!("`{resolved}` has no such heading"))
+}
+
+/// Whether a link leads out of the repository.
+pub(crate) fn is_foreign(target: &str) -> bool {
+    ["http://", "https://", "mailto:", "data:"]
+        .iter()
+        .any(|scheme| target.starts_with(scheme))
+}
+
+/// A relative path from the root; one that leaves the repository stays as it is, and exists nowhere.
+pub(crate) fn resolved(file: &str, path: &str) -> Option<String> {
+    let mut parts = PathBuf::from(file);
+    parts.pop();
+    for part in Path::new(path).components() {
+        match part {
+            Component::ParentDir if !parts.pop() => return Some(format!("outside/{path}")),
+            Component::Normal(name) => parts.push(name),
+            _ => {}
+        }
+    }
+    Some(parts.display().to_string())
+}
+
+/// The lines of a text that are no code, with their numbers.
+pub(crate) fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut is_code = false;
+    text.lines().enumerate().filter_map(move |(at, line)| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        (!is_code && !is_fence).then_some((at + 1, line))
+    })
+}
+
+/// All links of a text: `](target)`, `src="target"` and `href="target"`.
+pub(crate) fn links(text: &str) -> Vec<Link> {
+    let mut found = Vec::new();
+    for (line, content) in prose(text) {
+        let mut content = without_code(content);
+        content = content.replace("src=\"", "](").replace("href=\"", "](");
+        for part in content.split("](").skip(1) {
+            let end = part.find([')', '"', ' ']).unwrap_or(part.len());
+            let target = part[..end].to_owned();
+            found.push(Link { line, target });
+        }
+    }
+    found
+}
+
+/// A line without what stands between backquotes.
+fn without_code(line: &str) -> String {
+    let parts = line.split('`').enumerate();
+    parts
+        .filter(|(at, _)| at % 2 == 0)
+        .map(|(_, part)| part)
+        .collect()
+}
+
+/// What links call the headings of a text: small letters, digits and hyphens, repeated ones with a number.
+pub(crate) fn anchors(text: &str) -> Vec<String> {
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    let headings = prose(text).filter(|(_, line)| line.starts_with('#'));
+    let anchor = |(_, line): (usize, &str)| {
+        let title = line.trim_start_matches('#').trim();
+        let kept = title
+            .chars()
+            .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+        let slug: String = kept.collect::<String>().to_lowercase().replace(' ', "-");
+        let count = seen.entry(slug.clone()).or_default();
+        *count += 1;
+        match *count {
+            1 => slug,
+            more => format!("{slug}-{}", more - 1),
+        }
+    };
+    headings.map(anchor).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Link, anchors, broken, links, resolved, texts};
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn every_link_of_the_repository_leads_somewhere() {
+        let texts = texts().expect("the texts");
+        assert!(texts.len() > 20, "{:?}", texts.keys());
+        assert_eq!(broken(&texts), Vec::<String>::new());
+        let summary = &texts["docs/SUMMARY.md"];
+        let named: Vec<String> = links(summary).into_iter().map(|link| link.target).collect();
+        let pages = texts.keys().filter_map(|file| file.strip_prefix("docs/"));
+        for page in pages.filter(|page| *page != "SUMMARY.md") {
+            assert!(
+                named.iter().any(|one| one == page),
+                "docs/SUMMARY.md leaves {page} out"
+            );
+        }
+    }
+
+    #[test]
+    fn links_are_found_outside_of_code() {
+        let text = "a [b](c.md#d) and `[e](f)`\n```\n[g](h)\n```\n<img src=\"i.svg\" alt=\"\">\n";
+        let link = |line, target: &str| Link {
+            line,
+            target: target.to_owned(),
+        };
+        assert_eq!(links(text), [link(1, "c.md#d"), link(5, "i.svg")]);
+        assert_eq!(
+            anchors("# A `b`: c_d\n## X\n## X\n"),
+            ["a-b-c_d", "x", "x-1"]
+        );
+    }
+
+    #[test]
+    fn what_leads_nowhere_is_named() {
+        let texts = |text: &str| BTreeMap::from([("docs/a.md".to_owned(), text.to_owned())]);
+        assert_eq!(
+            broken(&texts("# A\n[x](#a) [y](../README.md) [z](https://b.c)")),
+            [""; 0]
+        );
+        for (link, why) in [
+            ("#b", "no such heading"),
+            ("none.md", "no such file"),
+            ("../../above.md", "no such file"),
+            ("../Cargo.toml#b", "no text"),
+        ] {
+            let found = broken(&texts(&format!("# A\n[x]({link})")));
+            assert!(found.len() == 1 && found[0].contains(why), "{found:?}");
+            assert!(found[0].starts_with("docs/a.md:2: "), "{found:?}");
+        }
+        assert_eq!(
+            resolved("docs/a.md", "../robots/b.md").as_deref(),
+            Some("robots/b.md")
+        );
+    }
+}
