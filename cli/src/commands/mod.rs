@@ -5,6 +5,7 @@ mod evaluate;
 mod excite;
 mod generate;
 mod identify;
+mod import;
 mod inspect;
 mod new;
 mod partitions;
@@ -49,6 +50,8 @@ pub(crate) enum Command {
     Identify(identify::Arguments),
     /// Compare all choices of kept actuators of case 2
     Partitions(partitions::Arguments),
+    /// Make a description of a robot's MJCF or URDF, with loops
+    Import(import::Arguments),
 }
 
 impl Command {
@@ -67,6 +70,7 @@ impl Command {
             Self::Simulate(arguments) => simulate::run(arguments, json),
             Self::Identify(arguments) => identify::run(arguments, json),
             Self::Partitions(arguments) => partitions::run(arguments, json),
+            Self::Import(arguments) => import::run(arguments),
         }
     }
 
@@ -82,6 +86,7 @@ impl Command {
             Self::Simulate(_) => "simulate",
             Self::Identify(_) => "identify",
             Self::Partitions(_) => "partitions",
+            Self::Import(_) => "import",
         }
     }
 
@@ -97,6 +102,7 @@ impl Command {
             Self::Simulate(arguments) => slice::from_ref(&arguments.file),
             Self::Identify(arguments) => slice::from_ref(&arguments.file),
             Self::Partitions(arguments) => slice::from_ref(&arguments.file),
+            Self::Import(arguments) => slice::from_ref(&arguments.file),
         };
         let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
         names.join(", ")

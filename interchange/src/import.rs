@@ -1,0 +1,128 @@
+//! The import from a file to a description.
+
+use crate::{
+    assembly::{layout, network::Network, simple},
+    files::{Errors, Files},
+    mjcf,
+    model::Model,
+    options::Options,
+    plan::Plan,
+    urdf, writing, xml,
+};
+use std::path::{Path, PathBuf};
+
+/// A description that was made of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Imported {
+    /// The TOML.
+    pub text: String,
+    /// All files that were read.
+    pub inputs: Vec<PathBuf>,
+}
+
+/// Makes a description of a robot's file.
+///
+/// # Errors
+/// All that is wrong with the file, each at its line, or what of it can't be said.
+pub fn import(path: &Path, options: &Options) -> Result<Imported, Errors> {
+    let files = Files::default();
+    let text = described(&files, path, options);
+    match text.filter(|_| files.is_clean()) {
+        Some(text) => Ok(Imported {
+            text,
+            inputs: files.paths(),
+        }),
+        None => Err(files.into_errors()),
+    }
+}
+
+fn described(files: &Files, path: &Path, options: &Options) -> Option<String> {
+    let file = files.read(path, None)?;
+    let mut model = read(files, file, options)?;
+    choose(files, &mut model, options)?;
+    simple::drop_closures_on_one_body(&mut model);
+    if !model.closures.is_empty() {
+        simple::join_balls(&mut model);
+    }
+    let network = Network::new(files, &model)?;
+    let layout = layout::find(files, &network, options)?;
+    let plan = Plan::new(files, &network, &layout)?;
+    let source = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned());
+    Some(writing::toml(
+        &network,
+        &plan,
+        &source.unwrap_or_default(),
+        options,
+    ))
+}
+
+fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
+    let root = xml::parse(files, file, &["visual", "collision", "asset", "geom"])?;
+    match root.name.as_str() {
+        "mujoco" => mjcf::read(files, file, options),
+        "robot" => urdf::read(files, file, options),
+        other => {
+            let message = format!("a file of <{other}> is neither MJCF nor URDF");
+            files.report(
+                &root.place,
+                message,
+                "MJCF begins with <mujoco>, URDF with <robot>",
+            );
+            None
+        }
+    }
+}
+
+/// Which joints are driven and where they stand, as the user says it.
+fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
+    let find = |model: &Model, name: &str| {
+        let found = model.joint_named(name);
+        if found.is_none() {
+            let names = model.joints.iter().map(|joint| joint.name.as_str());
+            let near = overact_codegen::diagnostic::did_you_mean(name, names);
+            let help = near.unwrap_or_else(|| "name joints of the file that move".to_owned());
+            files.refuse(format!("there is no joint `{name}`"), help);
+        }
+        found
+    };
+    if let Some(names) = &options.actuated {
+        model
+            .joints
+            .iter_mut()
+            .for_each(|joint| joint.actuated = false);
+        for name in names {
+            let at = find(model, name)?;
+            model.joints[at].actuated = true;
+        }
+    } else if !model.says_motors {
+        if !model.closures.is_empty() {
+            let help = "say which: `--actuated JOINT,JOINT`";
+            files.refuse(
+                "the file does not say which joints of its loops are driven",
+                help,
+            );
+            return None;
+        }
+        model
+            .joints
+            .iter_mut()
+            .for_each(|joint| joint.actuated = joint.follow.is_none());
+        model
+            .notes
+            .push("The file names no motors: every joint has one here.".to_owned());
+    }
+    for (name, position) in &options.home {
+        let at = find(model, name)?;
+        model.joints[at].home = *position;
+    }
+    if model.joints.is_empty() {
+        files.refuse(
+            "the robot has no joint that moves",
+            "fixed joints alone make no robot",
+        );
+        return None;
+    }
+    Some(())
+}
