@@ -1,7 +1,7 @@
 //! The import from a file to a description.
 
 use crate::{
-    assembly::{layout, network::Network, simple},
+    assembly::{idle, layout, network::Network, simple},
     files::{Errors, Files},
     mjcf,
     model::Model,
@@ -44,7 +44,12 @@ fn described(files: &Files, path: &Path, options: &Options) -> Option<String> {
     if !model.closures.is_empty() {
         simple::join_balls(&mut model);
     }
+    if !model.closures.is_empty() {
+        model = idle::without_idle_pins(&Network::new(files, &model)?).unwrap_or(model);
+    }
+    plain_balls(&mut model);
     let network = Network::new(files, &model)?;
+    check_motors(files, &network)?;
     let layout = layout::find(files, &network, options)?;
     let plan = Plan::new(files, &network, &layout)?;
     let source = path
@@ -113,6 +118,20 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
             .notes
             .push("The file names no motors: every joint has one here.".to_owned());
     }
+    if model.closures.is_empty() {
+        let passive = |joint: &&mut crate::model::Joint| !joint.actuated && joint.follow.is_none();
+        let mut names = Vec::new();
+        for joint in model.joints.iter_mut().filter(passive) {
+            joint.actuated = true;
+            names.push(format!("`{}`", joint.name));
+        }
+        if !names.is_empty() {
+            model.notes.push(format!(
+                "No motor drives {}: without loops every joint has a torque here, and theirs is zero in a log.",
+                names.join(", ")
+            ));
+        }
+    }
     for (name, position) in &options.home {
         let at = find(model, name)?;
         model.joints[at].home = *position;
@@ -125,4 +144,52 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
         return None;
     }
     Some(())
+}
+
+/// There have to be as many motors as degrees of freedom.
+fn check_motors(files: &Files, network: &Network<'_>) -> Option<()> {
+    let model = network.model;
+    if model.closures.is_empty() {
+        return Some(());
+    }
+    let motors = model.joints.iter().filter(|joint| joint.actuated).count();
+    if motors >= network.mobility {
+        return Some(());
+    }
+    let message = format!(
+        "the robot has {} degrees of freedom, and {motors} motors",
+        network.mobility
+    );
+    let help = "name all driven joints, `--actuated JOINT,JOINT`, or hold still in the file what does not move";
+    files.refuse(message, help);
+    None
+}
+
+/// Balls have no torques of their own in a description: what a file says of them is left out, and told.
+fn plain_balls(model: &mut Model) {
+    let balls = model
+        .joints
+        .iter_mut()
+        .filter(|joint| joint.kind == crate::model::Kind::Ball);
+    for ball in balls {
+        let own = [
+            ("damping", ball.damping),
+            ("friction", ball.friction),
+            ("armature", ball.armature),
+            (
+                "stiffness",
+                ball.spring.map_or(0.0, |(stiffness, _)| stiffness),
+            ),
+        ];
+        let given = own.iter().filter(|(_, value)| *value != 0.0);
+        let given: Vec<String> = given.map(|(key, value)| format!("{key} {value}")).collect();
+        if !given.is_empty() {
+            let list = given.join(", ");
+            model.notes.push(format!(
+                "LEFT OUT of the ball `{}`: {list}; balls have no torques here.",
+                ball.name
+            ));
+            (ball.damping, ball.friction, ball.armature, ball.spring) = (0.0, 0.0, 0.0, None);
+        }
+    }
 }

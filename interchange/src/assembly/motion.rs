@@ -42,7 +42,8 @@ impl<'m> Motion<'m> {
         let mut coordinates = Vec::new();
         for (joint, own) in model.joints.iter().enumerate() {
             let count = match own.kind {
-                _ if own.follow.is_some() => 0,
+                // Joints that became part of a ball carry nothing.
+                _ if own.follow.is_some() || model.carried_by(joint) == 0 => 0,
                 Kind::Ball => 3,
                 Kind::Revolute | Kind::Prismatic => 1,
             };
@@ -237,13 +238,18 @@ fn largest(gaps: &[f64]) -> (usize, f64) {
 /// Singular values below this part of the largest are none.
 pub(crate) const RANK: f64 = 1e-7;
 
-/// The shortest solution of linear equations.
+/// A short step that makes gaps smaller: where a direction hardly moves them, it is left alone until they are small.
 fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let svd = matrix.clone().try_svd(true, true, 1e-15, 10_000)?;
-    let threshold = svd.singular_values.amax() * RANK;
-    svd.solve(right, threshold)
-        .ok()
-        .filter(|x| x.iter().all(|v| v.is_finite()))
+    let (u, v) = (svd.u?, svd.v_t?);
+    let largest = svd.singular_values.amax();
+    let damping = largest * right.amax().clamp(1e-13, 1e-2);
+    let mut step = DVector::zeros(matrix.ncols());
+    for (at, value) in svd.singular_values.iter().enumerate() {
+        let along = u.column(at).dot(right) * value / (value * value + damping * damping);
+        step += v.row(at).transpose() * along;
+    }
+    step.iter().all(|v| v.is_finite()).then_some(step)
 }
 
 /// A basis of what a matrix maps to zero.
@@ -314,7 +320,7 @@ fn ends(kind: &ClosureKind, state: &State) -> ([Point3<f64>; 2], Turn) {
         ClosureKind::Point { bodies, at } => ([0, 1].map(|i| state.poses[bodies[i]] * at[i]), None),
         ClosureKind::Weld { bodies, at } => {
             let frames = both(bodies, at);
-            let gap = (frames[1].rotation * frames[0].rotation.inverse()).scaled_axis();
+            let gap = scaled_axis(&(frames[1].rotation * frames[0].rotation.inverse()));
             let axes = (0..3).map(|axis| Vector3::ith(axis, 1.0)).collect();
             (origins(&frames), Some((gap, axes)))
         }
@@ -327,5 +333,22 @@ fn ends(kind: &ClosureKind, state: &State) -> ([Point3<f64>; 2], Turn) {
                 Some((za.cross(&zb), vec![x, za.cross(&x)])),
             )
         }
+    }
+}
+
+/// The axis of a rotation times its angle, to the last digit for small ones, too.
+fn scaled_axis(rotation: &Rotation3<f64>) -> Vector3<f64> {
+    let m = rotation.matrix();
+    let sine = Vector3::new(
+        m[(2, 1)] - m[(1, 2)],
+        m[(0, 2)] - m[(2, 0)],
+        m[(1, 0)] - m[(0, 1)],
+    ) * 0.5;
+    let size = sine.norm();
+    let angle = size.atan2((m.trace() - 1.0) * 0.5);
+    if size > 1e-9 {
+        sine * (angle / size)
+    } else {
+        sine
     }
 }

@@ -95,19 +95,27 @@ mod tests {
     use super::{angle, quaternion, roll_pitch_yaw};
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
+    /// The number that a file writes with so many digits.
+    fn written(value: f64, digits: usize) -> f64 {
+        format!("{value:.digits$}").parse().expect("a number")
+    }
+
     #[test]
     fn eight_digits_of_a_right_angle_are_one() {
-        assert_eq!(angle(1.570_796_3), FRAC_PI_2);
-        assert!((angle(0.523_598_8) - FRAC_PI_6).abs() < 1e-15);
-        assert_eq!(angle(1.5708), 1.5708);
+        assert_eq!(angle(written(FRAC_PI_2, 7)), FRAC_PI_2);
+        assert!((angle(written(FRAC_PI_6, 7)) - FRAC_PI_6).abs() < 1e-15);
+        let coarse = written(FRAC_PI_2, 4);
+        assert_eq!(angle(coarse), coarse);
         assert_eq!(angle(0.3), 0.3);
     }
 
     #[test]
     fn rotations_by_right_angles_are_permutations() {
-        let turned = roll_pitch_yaw([1.570_796_326_8, 0.0, -1.570_796_326_8]);
+        let right = written(FRAC_PI_2, 10);
+        let turned = roll_pitch_yaw([right, 0.0, -right]);
         assert!(turned.matrix().iter().all(|v| v.fract() == 0.0));
-        let turned = quaternion([0.707107, 0.0, 0.707107, 0.0]).expect("a quaternion");
+        let half = written(std::f64::consts::FRAC_1_SQRT_2, 6);
+        let turned = quaternion([half, 0.0, half, 0.0]).expect("a quaternion");
         assert!(turned.matrix().iter().all(|v| v.fract() == 0.0), "{turned}");
         assert!(quaternion([0.0; 4]).is_none());
     }
