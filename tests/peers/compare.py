@@ -56,7 +56,7 @@ def sample(overact, toml, folder, count=5):
     home = np.array(sheet["home_pose"])
     states = []
     for _ in range(count):
-        pose = home + random.uniform(-0.12, 0.12, r)
+        pose = home + random.uniform(-0.08, 0.08, r)
         state = {"pose": pose, "twist": random.uniform(-1, 1, r), "acceleration": random.uniform(-3, 3, r)}
         states.append({key: list(value) for key, value in state.items()})
     has_loops = sheet["joints"] > r
@@ -94,10 +94,14 @@ def compare(overact, file, folder):
     worst_position, worst_torque = 0.0, 0.0
     for q, rates, accelerations, motions, torques in states:
         bodies = description.motion(q, rates, accelerations)
+        engine.moved(q, rates, accelerations)
         position, velocity, acceleration = engine.state(bodies)
         worst_position = max(worst_position, engine.centres(position, description, bodies, values))
         free = engine.inverse_dynamics(position, velocity, acceleration)
-        reduced = [engine.state(description.motion(q, column, 0 * column))[1] for column in motions.T]
+        reduced = []
+        for column in motions.T:
+            engine.moved(q, column, 0 * column)
+            reduced.append(engine.state(description.motion(q, column, 0 * column))[1])
         driven = engine.on_motors(torques, sheet)
         difference = np.array(reduced) @ (free - driven)
         scale = np.abs(np.array(reduced) @ free).max()

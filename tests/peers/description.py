@@ -63,6 +63,17 @@ class Description:
             if joint and said:
                 self.between[joint.groups()] = said.groups()
 
+        # Joints without a coordinate of their own: where they stand at home.
+        joined = re.sub(r"\n# ?", " ", text)
+        self.home = {}
+        for name, value in re.findall(r"Home: `([^`]*)` = (\[[^\]]*\]|\S+)", joined):
+            self.home[name] = np.array([float(v) for v in value.strip("[]").split(",")])
+        # The head says which bodies are fixed together; the first names them.
+        head = text.split("\nname =")[0].replace("\n# ", " ")
+        self.together = {}
+        for own, others in re.findall(r"one body here: `([^`]*)` and ((?:`[^`]*`(?:, )?)*)", head):
+            self.together[own] = re.findall(r"`([^`]*)`", others)
+
     def joints(self):
         """The joints with a variable of their own, in their order."""
         for leg in self.legs:
@@ -141,5 +152,7 @@ class Description:
                 groups[name if leg == self.legs[0] else f"{leg}.{name}"] = here
                 is_last_axis = at + 1 == len(moving) or (leg, moving[at + 1]["name"]) in self.between
                 if is_last_axis and here not in known and not (ends and at + 1 == len(moving)):
-                    found[here] = known[here] = (leg, name)
+                    known[here] = (leg, name)
+                    for body in [here, *self.together.get(here, [])]:
+                        found[body] = (leg, name)
         return found

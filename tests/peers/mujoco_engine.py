@@ -86,6 +86,10 @@ class Engine:
         moved = bodies[self.carried[name]]
         return moved.frame[:3, :3] @ self.offset[name], moved.rate, moved.acceleration
 
+    def moved(self, q, rates, accelerations):
+        """Positions of the joints themselves, which slides are read from."""
+        self.scalar = {name: (q[i], rates[i], accelerations[i]) for i, (_, name) in enumerate(self.description.joints())}
+
     def state(self, bodies):
         model = self.model
         q, v, a = model.qpos0.copy(), np.zeros(model.nv), np.zeros(model.nv)
@@ -110,7 +114,7 @@ class Engine:
                 q[qa] += 2 * np.arctan2(quaternion[1:] @ axis, quaternion[0])
                 v[va], a[va] = local @ axis, change @ axis
             else:
-                raise RuntimeError("slides are not compared")
+                q[qa], v[va], a[va] = self.scalar[model.joint(joint).name]
         return q, v, a
 
     def centres(self, position, description, bodies, values):
@@ -120,19 +124,20 @@ class Engine:
         mujoco.mj_forward(model, data)
         gap, _ = self.closure()
         worst = np.abs(gap).max() if len(gap) else 0.0
-        for name, (leg, joint) in self.carried.items():
-            mass, moment = 0.0, np.zeros(3)
-            for body in range(model.nbody):
-                if self.group(body) == self.body(name):
-                    mass += model.body_mass[body]
-                    moment += model.body_mass[body] * data.xipos[body]
-            single = len(description.legs) == 1
+        single = len(description.legs) == 1
+        sums = {}
+        for body in range(1, model.nbody):
+            group = self.model.body(self.group(body)).name
+            if group in self.carried:
+                mass, moment = sums.get(self.carried[group], (0.0, np.zeros(3)))
+                sums[self.carried[group]] = mass + model.body_mass[body], moment + model.body_mass[body] * data.xipos[body]
+        for (leg, joint), (mass, moment) in sums.items():
             value = lambda symbol: values.get(f"{symbol}_{joint}" + ("" if single else f"_{leg}"), 0.0)
             if mass == 0 and value("m") == 0:
                 continue
             own = bodies[leg, joint].frame
             ours = own[:3, 3] + own[:3, :3] @ np.array([value("mx"), value("my"), value("mz")]) / value("m")
-            worst = max(worst, np.abs(ours - moment / mass).max(), abs(mass - value("m")))
+            worst = max(worst, np.abs(ours - moment / mass).max(), abs(mass / value("m") - 1))
         return worst
 
     def group(self, body):

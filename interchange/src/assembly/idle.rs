@@ -38,10 +38,12 @@ pub(crate) fn without_idle_pins(network: &Network<'_>) -> Option<Model> {
         let other = ends[usize::from(ends[0] == group)];
         model.notes.push(format!(
             "`{}` turns freely between two pins on one axis; by convention it does not turn against `{}`, and `{}` \
-             is no joint.",
+             is no joint. Home: `{}` = {:?}",
             network.group_name(group),
             network.group_name(other),
-            model.joints[joint].name
+            model.joints[joint].name,
+            model.joints[joint].name,
+            network.states[0].positions[joint]
         ));
     }
     is_changed.then_some(model)

@@ -34,6 +34,7 @@ pub(crate) fn join_balls(model: &mut Model) {
         for empty in [first, second] {
             model.bodies[empty].joint = None;
             model.bodies[empty].inertia = None;
+            model.bodies[empty].name.clear();
         }
     }
 }

@@ -6,11 +6,14 @@ use std::f64::consts::PI;
 /// What arithmetic may have changed in a number, in units of the larger of it and one.
 const ROUNDING: f64 = 4e-15;
 
+/// Lengths and angles below this are rounding, m and rad.
+const NOTHING: f64 = 1e-13;
+
 /// The shortest decimal that a number may have been before rounding.
 #[must_use]
 pub(crate) fn decimal(value: f64) -> String {
     let slack = ROUNDING * value.abs().clamp(0.05, 1e6);
-    if value.abs() <= slack {
+    if is_zero(value) {
         return "0".to_owned();
     }
     relative(value, slack)
@@ -65,7 +68,7 @@ pub(crate) fn angle(value: f64) -> String {
 /// Whether a number is nothing but rounding.
 #[must_use]
 pub(crate) fn is_zero(value: f64) -> bool {
-    value.abs() <= ROUNDING * 0.05
+    value.abs() <= NOTHING
 }
 
 #[cfg(test)]

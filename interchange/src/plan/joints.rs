@@ -176,6 +176,9 @@ impl<'d, 'm> Draft<'d, 'm> {
         };
         if axis == 0 {
             joint.comment.push(self.described(edge));
+            if edge.kind == Kind::Ball {
+                joint.comment.extend(at_home(self.network, edge));
+            }
         }
         self.torques(edge, &mut joint, has_loops);
         joint
@@ -336,6 +339,7 @@ pub(super) fn chain_comment(network: &Network<'_>, ear: &Ear) -> Vec<String> {
             Kind::Ball => format!("It ends in the ball `{name}`."),
             _ => format!("It ends on the pin `{name}`, whose angle follows and is not told."),
         });
+        lines.extend(at_home(network, edge));
     }
     let rods = ear
         .groups
@@ -348,4 +352,23 @@ pub(super) fn chain_comment(network: &Network<'_>, ear: &Ear) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// Where a joint of the file stands at home that the description has no coordinate of.
+pub(super) fn at_home(network: &Network<'_>, edge: &Edge) -> Option<String> {
+    let Origin::Joint(joint) = edge.origin else {
+        return None;
+    };
+    let (own, home) = (&network.model.joints[joint], &network.states[0]);
+    let shown = match own.kind {
+        Kind::Ball => {
+            let turn = home.turns[joint].scaled_axis();
+            if turn.norm() < 1e-14 {
+                return None;
+            }
+            format!("[{:?}, {:?}, {:?}]", turn.x, turn.y, turn.z)
+        }
+        Kind::Revolute | Kind::Prismatic => format!("{:?}", home.positions[joint]),
+    };
+    Some(format!("Home: `{}` = {shown}", own.name))
 }

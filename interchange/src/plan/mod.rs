@@ -204,7 +204,9 @@ fn notes(network: &Network<'_>, layout: &Layout) -> Vec<String> {
     for (at, group) in network.groups.iter().enumerate() {
         let others: Vec<String> = group.bodies[1..]
             .iter()
-            .map(|&body| format!("`{}`", network.model.bodies[body].name))
+            .map(|&body| network.model.bodies[body].name.as_str())
+            .filter(|name| !name.is_empty())
+            .map(|name| format!("`{name}`"))
             .collect();
         if !others.is_empty() {
             let own = network.group_name(at);
