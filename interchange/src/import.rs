@@ -48,6 +48,7 @@ fn described(files: &Files, path: &Path, options: &Options) -> Option<String> {
         model = idle::without_idle_pins(&Network::new(files, &model)?).unwrap_or(model);
     }
     plain_balls(&mut model);
+    no_springs_in_loops(&mut model);
     let network = Network::new(files, &model)?;
     check_motors(files, &network)?;
     let layout = layout::find(files, &network, options)?;
@@ -190,6 +191,22 @@ fn plain_balls(model: &mut Model) {
                 ball.name
             ));
             (ball.damping, ball.friction, ball.armature, ball.spring) = (0.0, 0.0, 0.0, None);
+        }
+    }
+}
+
+/// Springs are those of robots without loops: what a file says of others is left out, and told.
+fn no_springs_in_loops(model: &mut Model) {
+    if model.closures.is_empty() {
+        return;
+    }
+    for joint in &mut model.joints {
+        if let Some((stiffness, rest)) = joint.spring.take() {
+            model.notes.push(format!(
+                "LEFT OUT of `{}`: its spring of stiffness {stiffness} that rests at {rest}; robots with loops have none \
+                 here.",
+                joint.name
+            ));
         }
     }
 }

@@ -44,7 +44,7 @@ def without_dry_friction(toml, folder):
     return {name: (0.0 if name.startswith("fs_") else value) for name, value in values.items()}
 
 
-def sample(overact, toml, folder, count=5):
+def sample(overact, toml, folder, size, count=5):
     """States of a description: everything that the comparison needs of overact."""
     sheet = json.loads(run(overact, "inspect", toml, "--json", "--effort", "none"))
     values = without_dry_friction(toml, folder)
@@ -56,7 +56,7 @@ def sample(overact, toml, folder, count=5):
     home = np.array(sheet["home_pose"])
     states = []
     for _ in range(count):
-        pose = home + random.uniform(-0.08, 0.08, r)
+        pose = home + random.uniform(-size, size, r)
         state = {"pose": pose, "twist": random.uniform(-1, 1, r), "acceleration": random.uniform(-3, 3, r)}
         states.append({key: list(value) for key, value in state.items()})
     has_loops = sheet["joints"] > r
@@ -85,7 +85,14 @@ def compare(overact, file, folder):
     toml = folder / "robot.toml"
     run(overact, "import", file, "-o", toml)
     description = Description(toml)
-    sheet, values, states = sample(overact, toml, folder)
+    # Robots with little room to move are compared nearer to home.
+    for size in (0.08, 0.02, 0.005):
+        try:
+            sheet, values, states = sample(overact, toml, folder, size)
+            break
+        except RuntimeError as error:
+            if "out of reach" not in str(error) or size < 0.01:
+                raise
     if Path(file).suffix == ".urdf":
         from pinocchio_engine import Engine
     else:

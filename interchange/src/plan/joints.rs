@@ -237,7 +237,16 @@ impl<'d, 'm> Draft<'d, 'm> {
             let leader = self.origins.iter().position(|(edge, _)| {
                 self.network.edges[*edge].origin == Origin::Joint(follow.joint)
             });
-            let leader = leader.map_or("?", |at| self.names[at].as_str());
+            if leader.is_none() {
+                let other = &self.network.model.joints[follow.joint].name;
+                let message = format!(
+                    "`{}` follows `{other}`, which stands in another leg here",
+                    own.name
+                );
+                let help = "a joint can follow one of its own leg: choose other coordinates, `--coordinates`";
+                self.files.report(&own.place, message, help);
+            }
+            let leader = leader.map_or("", |at| self.names[at].as_str());
             let factor = crate::geometry::digits::decimal(follow.factor);
             joint.follows = Some(format!("{factor} * q_{leader}"));
         }

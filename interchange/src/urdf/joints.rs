@@ -223,6 +223,11 @@ pub(super) fn follow(files: &Files, root: &Element, model: &mut Model) {
             );
             continue;
         };
+        if model.joints[joint].follow.is_some() {
+            let help = "let each joint follow one that follows none";
+            files.report(&mimic.place, "joints follow each other in a row", help);
+            continue;
+        }
         let factor = mimic.number(files, "multiplier", 1.0);
         let offset = mimic.number(files, "offset", 0.0);
         model.joints[own].follow = Some(Follow {
