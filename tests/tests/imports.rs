@@ -14,7 +14,7 @@ struct House {
     order: &'static [&'static str],
 }
 
-const HOUSES: [House; 6] = [
+const HOUSES: [House; 7] = [
     House {
         folder: "codegen",
         order: &[
@@ -129,6 +129,13 @@ const HOUSES: [House; 6] = [
             "partitions",
             "motors",
             "identifier",
+        ],
+    },
+    House {
+        folder: "interchange",
+        order: &[
+            "options", "files", "xml", "geometry", "model", "assembly", "frames", "plan", "urdf",
+            "mjcf", "writing", "import",
         ],
     },
     House {

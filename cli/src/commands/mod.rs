@@ -6,6 +6,7 @@ mod excite;
 mod explain;
 mod generate;
 mod identify;
+mod import;
 mod inspect;
 mod new;
 mod partitions;
@@ -60,6 +61,8 @@ pub(crate) enum Command {
     Completions(shell::Completions),
     /// Print or write pages for `man`
     Manual(shell::Manual),
+    /// Make a description of a robot's MJCF or URDF, with loops
+    Import(import::Arguments),
 }
 
 impl Command {
@@ -81,6 +84,7 @@ impl Command {
             Self::Explain(arguments) => explain::run(arguments, json),
             Self::Completions(arguments) => shell::completions(arguments),
             Self::Manual(arguments) => shell::manual(arguments),
+            Self::Import(arguments) => import::run(arguments),
         }
     }
 
@@ -99,6 +103,7 @@ impl Command {
             Self::Explain(_) => "explain",
             Self::Completions(_) => "completions",
             Self::Manual(_) => "manual",
+            Self::Import(_) => "import",
         }
     }
 
@@ -114,6 +119,7 @@ impl Command {
             Self::Simulate(arguments) => slice::from_ref(&arguments.file),
             Self::Identify(arguments) => slice::from_ref(&arguments.file),
             Self::Partitions(arguments) => slice::from_ref(&arguments.file),
+            Self::Import(arguments) => slice::from_ref(&arguments.file),
         };
         let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
         names.join(", ")

@@ -221,16 +221,26 @@ pub(super) fn nearest(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64
     leg.closure_error(&q, target).norm()
 }
 
-/// Joint positions that close a leg, near `start`; `None` if the iteration does not get there or the
-/// leg is nearly singular where it does.
+/// Condition number of a leg's Jacobian up to which it is far from singular.
+pub(super) const REGULAR: f64 = 50.0;
+
+/// Joint positions that close a leg, near `start`; `None` if the iteration does not get there or the leg's condition
+/// number where it does is not below a limit.
 #[must_use]
-pub(super) fn close_from(
+pub(super) fn close_within(
     leg: &Leg,
     start: &[f64],
     target: &nalgebra::Isometry3<f64>,
+    limit: f64,
 ) -> Option<Vec<f64>> {
     let q = close(leg, start, target).ok()?;
-    (condition(&leg.closure_jacobian(&q)) < 50.0).then_some(q)
+    (condition(&leg.closure_jacobian(&q)) < limit).then_some(q)
+}
+
+/// Up to which condition number a leg counts as regular that is worse conditioned at home than usual ones are.
+#[must_use]
+pub(super) fn lenient_limit(leg: &Leg, home: &[f64]) -> f64 {
+    (4.0 * condition(&leg.closure_jacobian(home))).max(REGULAR)
 }
 
 /// Joint positions that close a leg as well as numbers can, from some that close it. Columns that depend on

@@ -1,7 +1,7 @@
 //! Random regular states of a mechanism, found numerically: poses around home with joints that close
 //! every leg in the working mode of the home configuration.
 
-use super::home::{close_finely, close_from};
+use super::home::{REGULAR, close_finely, close_within, lenient_limit};
 use super::{JointKind, Mechanism, Motion};
 use crate::cas::Stream;
 
@@ -41,7 +41,8 @@ impl Spread {
 }
 
 /// `count` random states. The spread around home is halved for a state that no leg's Newton iteration
-/// follows; a state that stays out of reach is home itself with random rates.
+/// follows, and once more with legs measured by their own condition at home; a state that stays out of reach is
+/// home itself with random rates.
 #[must_use]
 pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<State> {
     spread_states(mechanism, count, seed, Spread::NEAR)
@@ -60,9 +61,11 @@ pub(crate) fn spread_states(
     for _ in 0..count {
         let direction: Vec<f64> = (0..mechanism.pose_len()).map(|_| stream.number()).collect();
         let mut spread = by.first;
+        let mut is_lenient = false;
         let (pose, joints) = loop {
-            match displaced(mechanism, &direction, spread) {
+            match displaced(mechanism, &direction, spread, is_lenient) {
                 Some(found) => break found,
+                None if spread < 1e-4 && !is_lenient => (spread, is_lenient) = (by.first, true),
                 None if spread < 1e-4 => {
                     break (mechanism.home.pose.clone(), mechanism.home.joints.clone());
                 }
@@ -85,6 +88,7 @@ fn displaced(
     mechanism: &Mechanism,
     direction: &[f64],
     spread: f64,
+    is_lenient: bool,
 ) -> Option<(Vec<f64>, Vec<f64>)> {
     let home = &mechanism.home;
     if mechanism.is_tree() {
@@ -101,7 +105,7 @@ fn displaced(
         Some(platform) => pose_towards(mechanism, platform.motion, direction, spread),
         None => joints_towards(mechanism, direction, spread),
     };
-    let joints = follow(mechanism, &pose)?;
+    let joints = follow(mechanism, &pose, is_lenient)?;
     Some((pose, joints))
 }
 
@@ -150,9 +154,15 @@ fn joints_towards(mechanism: &Mechanism, direction: &[f64], length: f64) -> Vec<
 }
 
 /// Joints at a pose, followed from home in small steps so that the working mode stays.
-fn follow(mechanism: &Mechanism, pose: &[f64]) -> Option<Vec<f64>> {
+fn follow(mechanism: &Mechanism, pose: &[f64], is_lenient: bool) -> Option<Vec<f64>> {
     const STEPS: usize = 8;
     let home = &mechanism.home;
+    let legs = mechanism.legs.iter().enumerate();
+    let limits = legs.map(|(index, leg)| match is_lenient {
+        true => lenient_limit(leg, &home.joints[mechanism.leg_range(index)]),
+        false => REGULAR,
+    });
+    let limits: Vec<f64> = limits.collect();
     let mut joints = home.joints.clone();
     for step in 1..=STEPS {
         let part = step as f64 / STEPS as f64;
@@ -172,7 +182,7 @@ fn follow(mechanism: &Mechanism, pose: &[f64]) -> Option<Vec<f64>> {
                 joints[range].copy_from_slice(&at);
                 continue;
             };
-            let mut closed = close_from(leg, &joints[range.clone()], &target)?;
+            let mut closed = close_within(leg, &joints[range.clone()], &target, limits[index])?;
             if step == STEPS {
                 closed = close_finely(leg, &closed, &target);
             }

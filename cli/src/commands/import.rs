@@ -1,0 +1,83 @@
+//! `overact import`: a description from the robot's file in another format.
+
+use crate::{
+    failure::{Failure, Problem},
+    output::{check, emit},
+};
+use overact_interchange::{Options, import};
+use overact_robot::Error;
+use std::path::PathBuf;
+
+/// Arguments of the command.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// The robot: MJCF or URDF
+    #[arg(value_name = "FILE")]
+    pub(super) file: PathBuf,
+    /// The description to write instead of stdout
+    #[arg(short, long, value_name = "TOML")]
+    output: Option<PathBuf>,
+    /// Name of the robot [default: that of the file]
+    #[arg(long)]
+    name: Option<String>,
+    /// Fix a base that floats where it stands
+    #[arg(long)]
+    fix_base: bool,
+    /// The driven joints [default: those that the file names]
+    #[arg(long, value_delimiter = ',', value_name = "JOINTS")]
+    actuated: Option<Vec<String>>,
+    /// Joints that shall be the independent coordinates [default: those whose chains are cheapest]
+    #[arg(long, value_delimiter = ',', value_name = "JOINTS")]
+    coordinates: Option<Vec<String>>,
+    /// Where joints stand when the search for a closed configuration starts, rad or m
+    #[arg(long, value_delimiter = ',', value_name = "JOINT=POSITION", value_parser = position)]
+    home: Vec<(String, f64)>,
+}
+
+fn position(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("write JOINT=POSITION")?;
+    let value: f64 = value
+        .trim()
+        .parse()
+        .map_err(|_| format!("`{value}` is no number"))?;
+    match value.is_finite() {
+        true => Ok((name.trim().to_owned(), value)),
+        false => Err(format!("`{value}` is no finite number")),
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// What is wrong with the file, what of it can't be said, or an output that can't be written.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let options = Options {
+        name: arguments.name.clone(),
+        fix_base: arguments.fix_base,
+        actuated: arguments.actuated.clone(),
+        coordinates: arguments.coordinates.clone(),
+        home: arguments.home.clone(),
+    };
+    let output: Vec<&std::path::Path> = arguments.output.as_deref().into_iter().collect();
+    check(&[&arguments.file], &output)?;
+    let imported = import(&arguments.file, &options).map_err(failure)?;
+    let inputs: Vec<&std::path::Path> = imported.inputs.iter().map(PathBuf::as_path).collect();
+    check(&inputs, &output)?;
+    emit(&imported.text, arguments.output.as_deref())
+}
+
+/// All errors of all files.
+fn failure(errors: overact_interchange::Errors) -> Failure {
+    let described = errors
+        .0
+        .into_iter()
+        .map(|(source, diagnostics)| Error::Description {
+            source,
+            diagnostics,
+        });
+    let all: Vec<Error> = described.collect();
+    match all.is_empty() {
+        true => Problem::new("the file can't be read").into(),
+        false => Failure::from(all),
+    }
+}

@@ -1,0 +1,68 @@
+//! Motions that move nothing but a body between two pins on one axis: by convention such a body does not turn.
+
+use super::network::{Network, Origin};
+use crate::model::{Kind, Model, Pose};
+use nalgebra::Rotation3;
+
+/// The model without idle pins, or none where it has no such pin.
+pub(crate) fn without_idle_pins(network: &Network<'_>) -> Option<Model> {
+    let mut model = network.model.clone();
+    let mut is_changed = false;
+    let mut locked = vec![false; network.edges.len()];
+    for group in 1..network.groups.len() {
+        let own: Vec<usize> = (0..network.edges.len())
+            .filter(|&edge| network.edges[edge].groups.contains(&group))
+            .collect();
+        let [a, b] = own[..] else { continue };
+        let pins = [a, b].map(|edge| &network.edges[edge]);
+        let are_free = pins
+            .iter()
+            .all(|edge| edge.kind == Kind::Revolute && edge.is_free);
+        if !are_free || locked[a] || locked[b] || !are_coaxial(network, a, b) {
+            continue;
+        }
+        let Some((edge, joint)) =
+            [a, b]
+                .into_iter()
+                .find_map(|edge| match network.edges[edge].origin {
+                    Origin::Joint(joint) => Some((edge, joint)),
+                    Origin::Closure(_) => None,
+                })
+        else {
+            continue;
+        };
+        locked[edge] = true;
+        lock(&mut model, network, joint);
+        is_changed = true;
+        let ends = network.edges[edge].groups;
+        let other = ends[usize::from(ends[0] == group)];
+        model.notes.push(format!(
+            "`{}` turns freely between two pins on one axis; by convention it does not turn against `{}`, and `{}` \
+             is no joint. Home: `{}` = {:?}",
+            network.group_name(group),
+            network.group_name(other),
+            model.joints[joint].name,
+            model.joints[joint].name,
+            network.states[0].positions[joint]
+        ));
+    }
+    is_changed.then_some(model)
+}
+
+/// Fixes a joint where it stands at home.
+fn lock(model: &mut Model, network: &Network<'_>, joint: usize) {
+    let body = model.carried_by(joint);
+    let own = &model.joints[joint];
+    let by = network.states[0].positions[joint] - own.reference;
+    let turn: Rotation3<f64> = crate::geometry::exact::turn(&own.axis, by);
+    let centre = own.at.coords;
+    let moved = Pose::from_parts((centre - turn * centre).into(), turn);
+    model.bodies[body].placement *= moved;
+    model.bodies[body].joint = None;
+}
+
+fn are_coaxial(network: &Network<'_>, a: usize, b: usize) -> bool {
+    let [a, b] = [a, b].map(|edge| network.axis(&network.edges[edge], &network.states[0]));
+    let aside = (b.point - a.point).cross(&a.direction).norm();
+    a.direction.cross(&b.direction).norm() < 1e-7 && aside < 1e-7
+}

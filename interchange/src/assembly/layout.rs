@@ -1,0 +1,370 @@
+//! Which joints are the independent coordinates, and which chains follow from them.
+//!
+//! The skeleton grows from the ground. Whatever chain is determined by the bodies that are known is taken as soon as
+//! it is; where there is none, the skeleton takes one more joint, and of all ways to do so the one is kept whose
+//! chains are cheapest to solve.
+
+use super::{
+    ears::{Ear, cheapest, follows, freedoms},
+    motion::rank,
+    network::{Network, Origin},
+};
+use crate::{files::Files, model::Kind, options::Options};
+use nalgebra::{DMatrix, Vector3};
+
+/// Skeleton and chains.
+#[derive(Debug, Clone)]
+pub(crate) struct Layout {
+    /// Edges of the skeleton in their order, each with the group that it starts from.
+    pub(crate) skeleton: Vec<(usize, usize)>,
+    /// The chains in the order in which they are solved.
+    pub(crate) chains: Vec<Ear>,
+    /// Edges that follow from all others.
+    pub(crate) redundant: Vec<usize>,
+}
+
+/// Ways to grow the skeleton that are tried.
+const TRIES: usize = 3000;
+
+/// Finds skeleton and chains; `None` after an error.
+pub(crate) fn find(files: &Files, network: &Network<'_>, options: &Options) -> Option<Layout> {
+    let wanted = match &options.coordinates {
+        None => None,
+        Some(names) => Some(wanted(files, network, names)?),
+    };
+    let count = network.groups.len();
+    let mut search = Search {
+        network,
+        kept: required(network),
+        wanted,
+        best: None,
+        furthest: Vec::new(),
+        tries: 0,
+    };
+    let mut solved = vec![false; count];
+    solved[0] = true;
+    let start = Partial {
+        in_skeleton: solved.clone(),
+        solved,
+        used: vec![false; network.edges.len()],
+        skeleton: Vec::new(),
+        chains: Vec::new(),
+        cost: 0,
+    };
+    search.grow(start);
+    let Search {
+        best,
+        furthest,
+        tries,
+        ..
+    } = search;
+    if let Some((_, found)) = best {
+        return Some(found);
+    }
+    refuse(
+        files,
+        network,
+        &furthest,
+        tries,
+        options.coordinates.is_some(),
+    );
+    None
+}
+
+fn wanted(files: &Files, network: &Network<'_>, names: &[String]) -> Option<Vec<usize>> {
+    let mut found = Vec::new();
+    for name in names {
+        let at = network
+            .edges
+            .iter()
+            .position(|edge| network.edge_name(edge) == name);
+        match at {
+            Some(at) => found.push(at),
+            None => {
+                let all = network.edges.iter().map(|edge| network.edge_name(edge));
+                let near = overact_codegen::diagnostic::did_you_mean(name, all);
+                let message = format!("there is no joint `{name}` to be a coordinate");
+                files.refuse(
+                    message,
+                    near.unwrap_or_else(|| "name joints of the file that move".to_owned()),
+                );
+            }
+        }
+    }
+    (found.len() == names.len()).then_some(found)
+}
+
+/// Groups behind which others stand that only they lead to: these have coordinates of their own, so that what carries
+/// them is part of the skeleton.
+fn required(network: &Network<'_>) -> Vec<bool> {
+    let count = network.groups.len();
+    let without = |cut: usize| {
+        let mut seen = vec![false; count];
+        let mut open = vec![0];
+        seen[0] = true;
+        while let Some(at) = open.pop() {
+            for edge in network
+                .edges
+                .iter()
+                .filter(|edge| edge.groups.contains(&at))
+            {
+                let next = edge.groups[usize::from(edge.groups[0] == at)];
+                if next != cut && !seen[next] {
+                    seen[next] = true;
+                    open.push(next);
+                }
+            }
+        }
+        seen.iter()
+            .enumerate()
+            .any(|(group, seen)| !seen && group != cut)
+    };
+    (0..count)
+        .map(|group| group != 0 && without(group))
+        .collect()
+}
+
+#[derive(Debug, Clone)]
+struct Partial {
+    solved: Vec<bool>,
+    in_skeleton: Vec<bool>,
+    used: Vec<bool>,
+    skeleton: Vec<(usize, usize)>,
+    chains: Vec<Ear>,
+    cost: usize,
+}
+
+struct Search<'s, 'm> {
+    network: &'s Network<'m>,
+    kept: Vec<bool>,
+    wanted: Option<Vec<usize>>,
+    best: Option<(usize, Layout)>,
+    /// What was solved where most was.
+    furthest: Vec<bool>,
+    tries: usize,
+}
+
+impl Search<'_, '_> {
+    fn grow(&mut self, mut partial: Partial) {
+        self.tries += 1;
+        while let Some(ear) = cheapest(self.network, &partial.solved, &self.kept, &partial.used) {
+            for &group in &ear.groups {
+                partial.solved[group] = true;
+            }
+            for &edge in &ear.edges {
+                partial.used[edge] = true;
+            }
+            partial.cost += ear.cost();
+            partial.chains.push(ear);
+        }
+        let is_dear = self
+            .best
+            .as_ref()
+            .is_some_and(|(cost, _)| partial.cost >= *cost);
+        if is_dear || self.tries > TRIES {
+            return;
+        }
+        let count = |solved: &[bool]| solved.iter().filter(|s| **s).count();
+        if count(&partial.solved) > count(&self.furthest) {
+            self.furthest.clone_from(&partial.solved);
+        }
+        if partial.solved.iter().all(|solved| *solved) {
+            self.finish(partial);
+            return;
+        }
+        for (edge, from, to) in self.candidates(&partial) {
+            let mut next = partial.clone();
+            next.skeleton.push((edge, from));
+            if !independent(self.network, &next.skeleton) {
+                continue;
+            }
+            next.used[edge] = true;
+            next.solved[to] = true;
+            next.in_skeleton[to] = true;
+            // Among equals the skeleton whose bodies carry less is taken.
+            next.cost += 1;
+            self.grow(next);
+        }
+    }
+
+    /// Edges that the skeleton may take next: one alone, where it has to be taken anyhow.
+    fn candidates(&self, partial: &Partial) -> Vec<(usize, usize, usize)> {
+        let mut all = Vec::new();
+        for (index, edge) in self.network.edges.iter().enumerate() {
+            let wanted = self.wanted.as_ref().is_none_or(|wanted| {
+                wanted.contains(&index)
+                    || follows(self.network, index)
+                    || is_bridge(self.network, index)
+            });
+            if partial.used[index] || !wanted {
+                continue;
+            }
+            for (from, to) in [
+                (edge.groups[0], edge.groups[1]),
+                (edge.groups[1], edge.groups[0]),
+            ] {
+                if partial.in_skeleton[from] && !partial.solved[to] {
+                    if is_bridge(self.network, index) {
+                        return vec![(index, from, to)];
+                    }
+                    all.push((index, from, to));
+                }
+            }
+        }
+        // One block of loops after the other.
+        let Some(&(_, first, _)) = all.first() else {
+            return all;
+        };
+        all.into_iter()
+            .filter(|(_, from, _)| *from == first || self.same_block(first, *from))
+            .collect()
+    }
+
+    /// Whether two groups stand in one block of loops: no single group parts them.
+    fn same_block(&self, a: usize, b: usize) -> bool {
+        self.network.edges.len() < 400 && connected_without_cut(self.network, a, b)
+    }
+
+    fn finish(&mut self, partial: Partial) {
+        let coordinates: usize = skeleton_freedoms(self.network, &partial.skeleton)
+            .iter()
+            .sum();
+        if coordinates != self.network.mobility {
+            return;
+        }
+        let unused = partial.used.iter().enumerate().filter(|(_, used)| !**used);
+        let redundant = unused.map(|(edge, _)| edge).collect();
+        let layout = Layout {
+            skeleton: partial.skeleton,
+            chains: partial.chains,
+            redundant,
+        };
+        self.best = Some((partial.cost, layout));
+    }
+}
+
+/// The joints that stand for each edge of a skeleton.
+pub(crate) fn skeleton_freedoms(network: &Network<'_>, skeleton: &[(usize, usize)]) -> Vec<usize> {
+    let of = |&(edge, from): &(usize, usize)| {
+        let groups = network.edges[edge].groups;
+        freedoms(network, edge, groups[usize::from(groups[0] == from)], true)
+    };
+    skeleton.iter().map(of).collect()
+}
+
+/// Whether removing an edge parts the network.
+fn is_bridge(network: &Network<'_>, cut: usize) -> bool {
+    let [a, b] = network.edges[cut].groups;
+    !reaches(network, a, b, |index, _| index != cut)
+}
+
+fn connected_without_cut(network: &Network<'_>, a: usize, b: usize) -> bool {
+    (0..network.groups.len())
+        .filter(|cut| *cut != a && *cut != b)
+        .all(|cut| reaches(network, a, b, |_, group| group != cut))
+}
+
+fn reaches(network: &Network<'_>, a: usize, b: usize, may: impl Fn(usize, usize) -> bool) -> bool {
+    let mut seen = vec![false; network.groups.len()];
+    let mut open = vec![a];
+    seen[a] = true;
+    while let Some(at) = open.pop() {
+        for (index, edge) in network.edges.iter().enumerate() {
+            if !edge.groups.contains(&at) {
+                continue;
+            }
+            let next = edge.groups[usize::from(edge.groups[0] == at)];
+            if may(index, next) && !seen[next] {
+                seen[next] = true;
+                open.push(next);
+            }
+        }
+    }
+    seen[b]
+}
+
+/// Whether the skeleton's joints can move independently of each other.
+fn independent(network: &Network<'_>, skeleton: &[(usize, usize)]) -> bool {
+    let freedoms: usize = skeleton_freedoms(network, skeleton).iter().sum();
+    // Home may be singular; of the others each has to do.
+    let looked_at = 1.min(network.states.len() - 1)..network.states.len();
+    looked_at.into_iter().all(|state| {
+        let rates = rates(network, skeleton, state);
+        rates.nrows() == freedoms && rank(&rates).0 == freedoms
+    })
+}
+
+/// The rates of the skeleton's joints for each motion that the network has.
+fn rates(network: &Network<'_>, skeleton: &[(usize, usize)], at: usize) -> DMatrix<f64> {
+    let state = &network.states[at];
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for &(index, from) in skeleton {
+        let edge = &network.edges[index];
+        if follows(network, index) {
+            continue;
+        }
+        let to = edge.groups[usize::from(edge.groups[0] == from)];
+        let relative = &network.twists[at][to] - &network.twists[at][from];
+        let axis = network.axis(edge, state);
+        let turning = |e: &Vector3<f64>| {
+            (relative.rows(3, 3).transpose() * e)
+                .iter()
+                .copied()
+                .collect()
+        };
+        match edge.kind {
+            Kind::Revolute => rows.push(turning(&axis.direction)),
+            Kind::Prismatic => {
+                let velocity = relative.rows(0, 3).transpose() * axis.direction;
+                rows.push(velocity.iter().copied().collect());
+            }
+            Kind::Ball if network.groups[to].spins => {
+                let line = network.line(to, state);
+                let across = if line.x.abs() < 0.7 {
+                    Vector3::x()
+                } else {
+                    Vector3::y()
+                };
+                let first = line.cross(&across).normalize();
+                rows.extend([first, line.cross(&first)].iter().map(turning));
+            }
+            Kind::Ball => rows.extend((0..3).map(|i| turning(&Vector3::ith(i, 1.0)))),
+        }
+    }
+    let columns = network.twists[at].first().map_or(0, DMatrix::ncols);
+    DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
+}
+
+fn refuse(files: &Files, network: &Network<'_>, furthest: &[bool], tries: usize, was_told: bool) {
+    let open = furthest.iter().enumerate().filter(|(_, solved)| !**solved);
+    let open: Vec<String> = open
+        .map(|(group, _)| format!("`{}`", network.group_name(group)))
+        .collect();
+    let first = network.edges.iter().find(|edge| {
+        edge.groups
+            .iter()
+            .any(|&group| !furthest.get(group).copied().unwrap_or(false))
+    });
+    let message = format!(
+        "no skeleton of {} coordinates was found from which chains determine {}",
+        network.mobility,
+        open.join(", ")
+    );
+    let help = match (was_told, tries > TRIES) {
+        (true, _) => {
+            "leave `--coordinates` out, or name as many joints as there are degrees of freedom, each on a way of such joints from the ground"
+        }
+        (false, true) => "name the coordinates: `--coordinates a,b,c`",
+        (false, false) => {
+            "a body that carries others with motors has to be reached from the ground by joints that are independent of each other; a closed chain with fewer degrees of freedom than joints on every way to such a body can't be said"
+        }
+    };
+    let place = first.map(|edge| match edge.origin {
+        Origin::Joint(joint) => &network.model.joints[joint].place,
+        Origin::Closure(closure) => &network.model.closures[closure].place,
+    });
+    match place {
+        Some(place) => files.report(place, message, help),
+        None => files.refuse(message, help),
+    }
+}

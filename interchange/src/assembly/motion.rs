@@ -1,0 +1,354 @@
+//! How a tree of bodies with closures moves: configurations in which the loops are closed, and the motions that
+//! they leave.
+
+use crate::{
+    geometry::exact,
+    model::{ClosureKind, Kind, Model, Pose},
+};
+use nalgebra::{DMatrix, DVector, Point3, Rotation3, Vector3};
+
+/// A configuration of the tree.
+#[derive(Debug, Clone)]
+pub(crate) struct State {
+    /// Positions of the joints as the file counts them; balls have none.
+    pub(crate) positions: Vec<f64>,
+    /// Rotations of the balls.
+    pub(crate) turns: Vec<Rotation3<f64>>,
+    /// Frames of the bodies in the world.
+    pub(crate) poses: Vec<Pose>,
+}
+
+/// A coordinate of the tree: a joint, or one of the three rates of a ball about the axes of its body's placement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Coordinate {
+    pub(crate) joint: usize,
+    pub(crate) component: usize,
+}
+
+/// The tree and its coordinates.
+#[derive(Debug)]
+pub(crate) struct Motion<'m> {
+    pub(crate) model: &'m Model,
+    pub(crate) coordinates: Vec<Coordinate>,
+}
+
+/// Twists of a body, a column for each coordinate: velocity of the body's point in the world's origin, then the
+/// angular velocity.
+pub(crate) type Twists = DMatrix<f64>;
+
+impl<'m> Motion<'m> {
+    /// The motion of a model.
+    pub(crate) fn new(model: &'m Model) -> Self {
+        let mut coordinates = Vec::new();
+        for (joint, own) in model.joints.iter().enumerate() {
+            let count = match own.kind {
+                // Joints that became part of a ball carry nothing.
+                _ if own.follow.is_some() || model.carried_by(joint) == 0 => 0,
+                Kind::Ball => 3,
+                Kind::Revolute | Kind::Prismatic => 1,
+            };
+            coordinates.extend((0..count).map(|component| Coordinate { joint, component }));
+        }
+        Self { model, coordinates }
+    }
+
+    /// The configuration of the file's home.
+    pub(crate) fn start(&self) -> State {
+        let positions = self.model.joints.iter().map(|joint| joint.home).collect();
+        let turns = vec![Rotation3::identity(); self.model.joints.len()];
+        let mut state = State {
+            positions,
+            turns,
+            poses: Vec::new(),
+        };
+        self.place(&mut state);
+        state
+    }
+
+    /// Places the bodies as the joints stand.
+    fn place(&self, state: &mut State) {
+        for (at, joint) in self.model.joints.iter().enumerate() {
+            if let Some(follow) = joint.follow {
+                state.positions[at] = follow.factor * state.positions[follow.joint] + follow.offset;
+            }
+        }
+        let mut poses: Vec<Pose> = Vec::with_capacity(self.model.bodies.len());
+        poses.push(Pose::identity());
+        for body in &self.model.bodies[1..] {
+            let placed = poses[body.parent] * body.placement;
+            poses.push(match body.joint {
+                None => placed,
+                Some(joint) => placed * self.moved(state, joint),
+            });
+        }
+        state.poses = poses;
+    }
+
+    /// What a joint does to the body that it carries.
+    fn moved(&self, state: &State, at: usize) -> Pose {
+        let joint = &self.model.joints[at];
+        let by = state.positions[at] - joint.reference;
+        let rotation = match joint.kind {
+            Kind::Prismatic => {
+                return Pose::from_parts((joint.axis * by).into(), Rotation3::identity());
+            }
+            Kind::Revolute => exact::turn(&joint.axis, by),
+            Kind::Ball => state.turns[at],
+        };
+        let centre = joint.at.coords;
+        Pose::from_parts((centre - rotation * centre).into(), rotation)
+    }
+
+    /// Twists of all bodies for each coordinate.
+    pub(crate) fn twists(&self, state: &State) -> Vec<Twists> {
+        let mut all: Vec<Twists> = Vec::with_capacity(self.model.bodies.len());
+        all.push(Twists::zeros(6, self.coordinates.len()));
+        for (at, body) in self.model.bodies.iter().enumerate().skip(1) {
+            let mut own = all[body.parent].clone();
+            if let Some(joint) = body.joint {
+                for (column, factor, twist) in self.columns(state, at, joint) {
+                    let mut column = own.column_mut(column);
+                    column += twist * factor;
+                }
+            }
+            all.push(own);
+        }
+        all
+    }
+
+    /// The columns to which a joint adds its twist.
+    fn columns(&self, state: &State, body: usize, joint: usize) -> Vec<(usize, f64, DVector<f64>)> {
+        let own = &self.model.joints[joint];
+        let (leader, factor) = own.follow.map_or((joint, 1.0), |f| (f.joint, f.factor));
+        let coordinates = self.coordinates.iter().enumerate();
+        let coordinates = coordinates.filter(|(_, c)| c.joint == leader);
+        let pose = &state.poses[body];
+        let placed =
+            state.poses[self.model.bodies[body].parent] * self.model.bodies[body].placement;
+        let twist = |component: usize| {
+            let (centre, axis) = (pose * own.at, pose.rotation * own.axis);
+            match own.kind {
+                Kind::Prismatic => screw(&axis, &Vector3::zeros()),
+                Kind::Revolute => screw(&centre.coords.cross(&axis), &axis),
+                Kind::Ball => {
+                    let axis = placed.rotation * Vector3::ith(component, 1.0);
+                    screw(&centre.coords.cross(&axis), &axis)
+                }
+            }
+        };
+        coordinates
+            .map(|(column, c)| (column, factor, twist(c.component)))
+            .collect()
+    }
+
+    /// How far the loops are from closed, m and rad: rows for each closure, and what each coordinate does to them.
+    pub(crate) fn closure(&self, state: &State) -> (Vec<f64>, DMatrix<f64>) {
+        let twists = self.twists(state);
+        let (mut gaps, mut rows) = (Vec::new(), Vec::new());
+        for closure in &self.model.closures {
+            let [a, b] = closure.bodies();
+            let relative = &twists[b] - &twists[a];
+            let (points, turn) = ends(&closure.kind, state);
+            let point = points[1].coords;
+            for axis in 0..3 {
+                let e = Vector3::ith(axis, 1.0);
+                gaps.push((points[1] - points[0])[axis]);
+                // The velocity of the point: that at the origin and ω × p.
+                rows.push(along(&relative, &e, &point.cross(&e)));
+            }
+            let Some((gap, axes)) = turn else { continue };
+            for e in axes {
+                gaps.push(gap.dot(&e));
+                rows.push(along(&relative, &Vector3::zeros(), &e));
+            }
+        }
+        let matrix = DMatrix::from_fn(rows.len(), self.coordinates.len(), |i, j| rows[i][j]);
+        (gaps, matrix)
+    }
+
+    /// Moves the joints by so much.
+    pub(crate) fn moved_by(&self, state: &State, step: &DVector<f64>) -> State {
+        let mut moved = state.clone();
+        let mut turns = vec![Vector3::zeros(); self.model.joints.len()];
+        for (coordinate, by) in self.coordinates.iter().zip(step.iter()) {
+            match self.model.joints[coordinate.joint].kind {
+                Kind::Ball => turns[coordinate.joint][coordinate.component] = *by,
+                _ => moved.positions[coordinate.joint] += by,
+            }
+        }
+        for (turn, by) in moved.turns.iter_mut().zip(turns) {
+            *turn = Rotation3::from_scaled_axis(by) * *turn;
+        }
+        self.place(&mut moved);
+        moved
+    }
+
+    /// The closed configuration nearest to one; otherwise the largest gap and its row.
+    pub(crate) fn closed(&self, start: &State) -> Result<State, (f64, usize)> {
+        let mut state = start.clone();
+        let (mut best, mut since) = (f64::INFINITY, 0);
+        for step in 0..300 {
+            let (gaps, jacobian) = self.closure(&state);
+            let (row, gap) = largest(&gaps);
+            if gap < 1e-15 || (gap < 1e-13 && step > since + 3) {
+                return Ok(state);
+            }
+            if gap < 0.9 * best {
+                (best, since) = (gap, step);
+            }
+            if step > since + 30 {
+                return if gap < 1e-10 {
+                    Ok(state)
+                } else {
+                    Err((gap, row))
+                };
+            }
+            let mut change = match solve(&jacobian, &DVector::from_vec(gaps)) {
+                Some(change) => -change,
+                None => return Err((gap, row)),
+            };
+            // Half a radian at most: beyond, the linear equations say nothing.
+            let size = change.amax();
+            if size > 0.5 {
+                change *= 0.5 / size;
+            }
+            state = self.moved_by(&state, &change);
+        }
+        let (gaps, _) = self.closure(&state);
+        let (row, gap) = largest(&gaps);
+        if gap < 1e-10 {
+            Ok(state)
+        } else {
+            Err((gap, row))
+        }
+    }
+}
+
+fn largest(gaps: &[f64]) -> (usize, f64) {
+    let sized = gaps.iter().map(|gap| gap.abs()).enumerate();
+    sized.fold((0, 0.0), |best, now| {
+        if now.1 > best.1 || now.1.is_nan() {
+            now
+        } else {
+            best
+        }
+    })
+}
+
+/// Singular values below this part of the largest are none.
+pub(crate) const RANK: f64 = 1e-7;
+
+/// A short step that makes gaps smaller: where a direction hardly moves them, it is left alone until they are small.
+fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    let svd = matrix.clone().try_svd(true, true, 1e-15, 10_000)?;
+    let (u, v) = (svd.u?, svd.v_t?);
+    let largest = svd.singular_values.amax();
+    let damping = largest * right.amax().clamp(1e-13, 1e-2);
+    let mut step = DVector::zeros(matrix.ncols());
+    for (at, value) in svd.singular_values.iter().enumerate() {
+        let along = u.column(at).dot(right) * value / (value * value + damping * damping);
+        step += v.row(at).transpose() * along;
+    }
+    step.iter().all(|v| v.is_finite()).then_some(step)
+}
+
+/// A basis of what a matrix maps to zero.
+pub(crate) fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = matrix.ncols();
+    let square = DMatrix::from_fn(matrix.nrows().max(n), n, |i, j| {
+        if i < matrix.nrows() {
+            matrix[(i, j)]
+        } else {
+            0.0
+        }
+    });
+    let Some(svd) = square.try_svd(false, true, 1e-15, 10_000) else {
+        return DMatrix::zeros(n, 0);
+    };
+    let threshold = svd.singular_values.amax().max(1e-6) * RANK;
+    let Some(v) = svd.v_t else {
+        return DMatrix::zeros(n, 0);
+    };
+    let kept: Vec<usize> = (0..n)
+        .filter(|&i| svd.singular_values[i] <= threshold)
+        .collect();
+    DMatrix::from_fn(n, kept.len(), |i, j| v[(kept[j], i)])
+}
+
+/// The rank of a matrix, and the ratio of its largest and smallest singular value.
+pub(crate) fn rank(matrix: &DMatrix<f64>) -> (usize, f64) {
+    if matrix.is_empty() {
+        return (0, 1.0);
+    }
+    let values = matrix.clone().singular_values();
+    let (largest, smallest) = (values.amax(), values.amin());
+    let count = values
+        .iter()
+        .filter(|v| **v > largest * RANK && **v > 1e-12)
+        .count();
+    (
+        count,
+        if smallest > 0.0 {
+            largest / smallest
+        } else {
+            f64::INFINITY
+        },
+    )
+}
+
+fn screw(velocity: &Vector3<f64>, rate: &Vector3<f64>) -> DVector<f64> {
+    DVector::from_iterator(6, velocity.iter().chain(rate.iter()).copied())
+}
+
+/// What each column of twists does along a direction of velocity and of turning.
+fn along(twists: &Twists, velocity: &Vector3<f64>, rate: &Vector3<f64>) -> Vec<f64> {
+    let weights = screw(velocity, rate);
+    twists
+        .column_iter()
+        .map(|column| column.dot(&weights))
+        .collect()
+}
+
+/// A gap of orientations, and the directions in which it counts.
+type Turn = Option<(Vector3<f64>, Vec<Vector3<f64>>)>;
+
+/// The points that meet, and of frames the turn between them.
+fn ends(kind: &ClosureKind, state: &State) -> ([Point3<f64>; 2], Turn) {
+    let both = |bodies: &[usize; 2], at: &[Pose; 2]| [0, 1].map(|i| state.poses[bodies[i]] * at[i]);
+    let origins = |frames: &[Pose; 2]| frames.map(|f| Point3::from(f.translation.vector));
+    match kind {
+        ClosureKind::Point { bodies, at } => ([0, 1].map(|i| state.poses[bodies[i]] * at[i]), None),
+        ClosureKind::Weld { bodies, at } => {
+            let frames = both(bodies, at);
+            let gap = scaled_axis(&(frames[1].rotation * frames[0].rotation.inverse()));
+            let axes = (0..3).map(|axis| Vector3::ith(axis, 1.0)).collect();
+            (origins(&frames), Some((gap, axes)))
+        }
+        ClosureKind::Pin { bodies, at } => {
+            let frames = both(bodies, at);
+            let [za, zb] = frames.map(|f| f.rotation * Vector3::z());
+            let x = frames[0].rotation * Vector3::x();
+            (
+                origins(&frames),
+                Some((za.cross(&zb), vec![x, za.cross(&x)])),
+            )
+        }
+    }
+}
+
+/// The axis of a rotation times its angle, to the last digit for small ones, too.
+fn scaled_axis(rotation: &Rotation3<f64>) -> Vector3<f64> {
+    let m = rotation.matrix();
+    let sine = Vector3::new(
+        m[(2, 1)] - m[(1, 2)],
+        m[(0, 2)] - m[(2, 0)],
+        m[(1, 0)] - m[(0, 1)],
+    ) * 0.5;
+    let size = sine.norm();
+    let angle = size.atan2((m.trace() - 1.0) * 0.5);
+    if size > 1e-9 {
+        sine * (angle / size)
+    } else {
+        sine
+    }
+}

@@ -1,0 +1,334 @@
+//! Bodies that are fixed together as one, the joints between them as edges, at several closed configurations.
+
+use super::{
+    motion::{Motion, State, null_space},
+    simple::{is_free, is_weld},
+};
+use crate::{
+    files::Files,
+    model::{ClosureKind, Inertia, Kind, Model, Pose},
+};
+use nalgebra::{DMatrix, DVector, Point3, Vector3};
+
+/// A group of bodies that are fixed together.
+#[derive(Debug, Clone)]
+pub(crate) struct Group {
+    /// Its bodies, the first the one that names it.
+    pub(crate) bodies: Vec<usize>,
+    /// Its inertia in the world at home.
+    pub(crate) inertia: Option<Inertia>,
+    /// A rod between two balls: it spins freely about their line.
+    pub(crate) spins: bool,
+}
+
+/// What an edge is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Origin {
+    Joint(usize),
+    Closure(usize),
+}
+
+/// A joint between two groups.
+#[derive(Debug, Clone)]
+pub(crate) struct Edge {
+    pub(crate) groups: [usize; 2],
+    pub(crate) kind: Kind,
+    pub(crate) origin: Origin,
+    /// Whether it turns without any torque of its own.
+    pub(crate) is_free: bool,
+}
+
+/// Where an edge's axis, or centre, is in a configuration.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Axis {
+    pub(crate) point: Point3<f64>,
+    pub(crate) direction: Vector3<f64>,
+}
+
+/// The network.
+#[derive(Debug)]
+pub(crate) struct Network<'m> {
+    pub(crate) model: &'m Model,
+    pub(crate) groups: Vec<Group>,
+    pub(crate) edges: Vec<Edge>,
+    /// Closed configurations, home first.
+    pub(crate) states: Vec<State>,
+    /// For each of them the twists that the groups can have, columns of a basis.
+    pub(crate) twists: Vec<Vec<DMatrix<f64>>>,
+    /// Independent motions.
+    pub(crate) mobility: usize,
+}
+
+/// Configurations that are looked at besides home.
+const SAMPLES: usize = 3;
+
+impl<'m> Network<'m> {
+    /// The network of a model; `None` after an error.
+    pub(crate) fn new(files: &Files, model: &'m Model) -> Option<Self> {
+        let motion = Motion::new(model);
+        let home = match motion.closed(&motion.start()) {
+            Ok(home) => home,
+            Err((gap, row)) => {
+                not_closed(files, model, gap, row);
+                return None;
+            }
+        };
+        let of_body = grouped(model);
+        let groups = groups(model, &of_body, &home);
+        let edges = edges(model, &of_body);
+        let mut network = Self {
+            model,
+            groups,
+            edges,
+            states: vec![home],
+            twists: Vec::new(),
+            mobility: 0,
+        };
+        network.find_spins();
+        network.sample(&motion);
+        Some(network)
+    }
+
+    /// Groups with two balls and nothing else.
+    fn find_spins(&mut self) {
+        for at in 1..self.groups.len() {
+            let mut own = self.edges.iter().filter(|edge| edge.groups.contains(&at));
+            let all_balls = own.clone().all(|edge| edge.kind == Kind::Ball);
+            self.groups[at].spins = all_balls && own.by_ref().count() == 2;
+        }
+    }
+
+    /// Configurations near home, and what can move in them.
+    fn sample(&mut self, motion: &Motion<'_>) {
+        let mut random = Random(1);
+        let home = self.states[0].clone();
+        let free = self.motions(motion, &home);
+        for attempt in 0..4 * SAMPLES {
+            if self.states.len() > SAMPLES {
+                break;
+            }
+            let size = 0.15 / (1.0 + attempt as f64 / 4.0);
+            let weights = DVector::from_fn(free.ncols(), |_, _| size * random.next());
+            let moved = motion.moved_by(&home, &(&free * weights));
+            if let Ok(closed) = motion.closed(&moved) {
+                self.states.push(closed);
+            }
+        }
+        let mut ranks = Vec::new();
+        for state in &self.states {
+            let basis = self.motions(motion, state);
+            let bodies = motion.twists(state);
+            let of = |group: &Group| &bodies[group.bodies[0]] * &basis;
+            self.twists.push(self.groups.iter().map(of).collect());
+            ranks.push(basis.ncols());
+        }
+        // Home may be singular, and then has more motions than others.
+        self.mobility = ranks.iter().copied().min().unwrap_or(0);
+    }
+
+    /// A basis of the rates of the tree's coordinates that keep loops closed and rods from spinning.
+    fn motions(&self, motion: &Motion<'_>, state: &State) -> DMatrix<f64> {
+        let (_, closure) = motion.closure(state);
+        let bodies = motion.twists(state);
+        let mut rows: Vec<Vec<f64>> = closure
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect();
+        for (at, group) in self
+            .groups
+            .iter()
+            .enumerate()
+            .filter(|(_, group)| group.spins)
+        {
+            let line = self.line(at, state);
+            let spin = bodies[group.bodies[0]].rows(3, 3).transpose() * line;
+            rows.push(spin.iter().copied().collect());
+        }
+        let matrix = DMatrix::from_fn(rows.len(), motion.coordinates.len(), |i, j| rows[i][j]);
+        null_space(&matrix)
+    }
+
+    /// The direction from one ball of a rod to the other.
+    pub(crate) fn line(&self, group: usize, state: &State) -> Vector3<f64> {
+        let own = self
+            .edges
+            .iter()
+            .filter(|edge| edge.groups.contains(&group));
+        let centres: Vec<Point3<f64>> = own.map(|edge| self.axis(edge, state).point).collect();
+        let line = centres.last().zip(centres.first()).map(|(b, a)| b - a);
+        line.and_then(|line| line.try_normalize(1e-9))
+            .unwrap_or_else(Vector3::x)
+    }
+
+    /// Where an edge is; its direction is that of a turn of the second group against the first.
+    pub(crate) fn axis(&self, edge: &Edge, state: &State) -> Axis {
+        match edge.origin {
+            Origin::Joint(joint) => {
+                let own = &self.model.joints[joint];
+                let pose = state.poses[self.model.carried_by(joint)];
+                Axis {
+                    point: pose * own.at,
+                    direction: pose.rotation * own.axis,
+                }
+            }
+            Origin::Closure(closure) => match &self.model.closures[closure].kind {
+                ClosureKind::Point { bodies, at } => Axis {
+                    point: state.poses[bodies[0]] * at[0],
+                    direction: Vector3::z(),
+                },
+                ClosureKind::Weld { bodies, at } | ClosureKind::Pin { bodies, at } => {
+                    let frame: Pose = state.poses[bodies[0]] * at[0];
+                    let point = Point3::from(frame.translation.vector);
+                    Axis {
+                        point,
+                        direction: frame.rotation * Vector3::z(),
+                    }
+                }
+            },
+        }
+    }
+
+    /// The name of an edge.
+    pub(crate) fn edge_name(&self, edge: &Edge) -> &str {
+        match edge.origin {
+            Origin::Joint(joint) => &self.model.joints[joint].name,
+            Origin::Closure(closure) => &self.model.closures[closure].name,
+        }
+    }
+
+    /// The name of a group.
+    pub(crate) fn group_name(&self, group: usize) -> &str {
+        &self.model.bodies[self.groups[group].bodies[0]].name
+    }
+}
+
+/// Numbers between -1 and 1, the same ones every time.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        let bits = u32::try_from(self.0 >> 33).unwrap_or(0);
+        f64::from(bits) / f64::from(1_u32 << 30) - 1.0
+    }
+}
+
+/// The group of each body.
+fn grouped(model: &Model) -> Vec<usize> {
+    let mut of_body: Vec<usize> = (0..model.bodies.len()).collect();
+    let root = |of: &[usize], mut at: usize| {
+        while of[at] != at {
+            at = of[at];
+        }
+        at
+    };
+    let welds = model
+        .closures
+        .iter()
+        .filter(|closure| is_weld(&closure.kind));
+    let welds = welds.map(|closure| closure.bodies());
+    let fixed = model
+        .bodies
+        .iter()
+        .enumerate()
+        .filter(|(_, body)| body.joint.is_none());
+    let fixed = fixed.map(|(at, body)| [at, body.parent]);
+    for [a, b] in fixed.chain(welds).collect::<Vec<_>>() {
+        let (a, b) = (root(&of_body, a), root(&of_body, b));
+        of_body[a.max(b)] = a.min(b);
+    }
+    let mut numbers: Vec<usize> = Vec::new();
+    (0..of_body.len())
+        .map(|at| {
+            let root = root(&of_body, at);
+            let known = numbers.iter().position(|&own| own == root);
+            known.unwrap_or_else(|| {
+                numbers.push(root);
+                numbers.len() - 1
+            })
+        })
+        .collect()
+}
+
+fn groups(model: &Model, of_body: &[usize], home: &State) -> Vec<Group> {
+    let count = of_body.iter().copied().max().unwrap_or(0) + 1;
+    let empty = Group {
+        bodies: Vec::new(),
+        inertia: None,
+        spins: false,
+    };
+    let mut groups = vec![empty; count];
+    for (at, body) in model.bodies.iter().enumerate() {
+        let group = &mut groups[of_body[at]];
+        group.bodies.push(at);
+        let own = body.inertia.map(|inertia| inertia.seen(&home.poses[at]));
+        group.inertia = match (group.inertia, own) {
+            (Some(all), Some(own)) => Some(all.with(&own)),
+            (all, own) => all.or(own),
+        };
+    }
+    groups
+}
+
+fn edges(model: &Model, of_body: &[usize]) -> Vec<Edge> {
+    let joints = model
+        .bodies
+        .iter()
+        .enumerate()
+        .skip(1)
+        .filter_map(|(at, body)| {
+            let joint = body.joint?;
+            Some(Edge {
+                groups: [of_body[body.parent], of_body[at]],
+                kind: model.joints[joint].kind,
+                origin: Origin::Joint(joint),
+                is_free: is_free(&model.joints[joint]),
+            })
+        });
+    let closures = model
+        .closures
+        .iter()
+        .enumerate()
+        .filter_map(|(at, closure)| {
+            let kind = match closure.kind {
+                ClosureKind::Point { .. } => Kind::Ball,
+                ClosureKind::Pin { .. } => Kind::Revolute,
+                ClosureKind::Weld { .. } => return None,
+            };
+            let groups = closure.bodies().map(|body| of_body[body]);
+            Some(Edge {
+                groups,
+                kind,
+                origin: Origin::Closure(at),
+                is_free: true,
+            })
+        });
+    joints
+        .chain(closures)
+        .filter(|edge| edge.groups[0] != edge.groups[1])
+        .collect()
+}
+
+fn not_closed(files: &Files, model: &Model, gap: f64, row: usize) {
+    let mut rest = row;
+    for closure in &model.closures {
+        let rows = match closure.kind {
+            ClosureKind::Point { .. } => 3,
+            ClosureKind::Weld { .. } => 6,
+            ClosureKind::Pin { .. } => 5,
+        };
+        if rest < rows {
+            let message = format!(
+                "the loop of `{}` can't close: {gap:.2e} m or rad are left",
+                closure.name
+            );
+            let help = "look at the frames that meet, or start nearer: `--home JOINT=POSITION`";
+            files.report(&closure.place, message, help);
+            return;
+        }
+        rest -= rows;
+    }
+}

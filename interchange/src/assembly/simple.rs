@@ -1,0 +1,158 @@
+//! A model in fewer joints: three passive revolute joints that meet in a point, without mass between them, are a
+//! ball, and two pins on one axis are one.
+
+use crate::model::{ClosureKind, Inertia, Joint, Kind, Model};
+use nalgebra::Matrix3;
+
+/// Takes successive revolute joints of zero distance for balls.
+pub(crate) fn join_balls(model: &mut Model) {
+    while let Some([first, second, third]) = (1..model.bodies.len()).find_map(|at| ball(model, at))
+    {
+        let [outer, middle, inner] = [first, second, third].map(|body| {
+            let joint = model.bodies[body].joint.unwrap_or(0);
+            model.joints[joint].name.clone()
+        });
+        let own = model.bodies[first].joint.unwrap_or(0);
+        let centre = model.joints[model.bodies[third].joint.unwrap_or(0)].at;
+        let between = model.bodies[second].placement * model.bodies[third].placement;
+        let name = common(&outer, &inner);
+        model.notes.push(format!(
+            "`{outer}`, `{middle}` and `{inner}` meet in a point and are the ball `{name}` here."
+        ));
+        let place = model.joints[own].place.clone();
+        model.joints[own] = Joint {
+            at: centre,
+            ..Joint::new(&name, Kind::Ball, place)
+        };
+        let (placement, parent) = (
+            model.bodies[first].placement * between,
+            model.bodies[first].parent,
+        );
+        let last = &mut model.bodies[third];
+        (last.joint, last.placement, last.parent) = (Some(own), placement, parent);
+        // The two between them stay where they are, without a joint and without anything on them.
+        for empty in [first, second] {
+            model.bodies[empty].joint = None;
+            model.bodies[empty].inertia = None;
+            model.bodies[empty].name.clear();
+        }
+    }
+}
+
+/// The three bodies whose joints are a ball, the last of which stands at `at`.
+fn ball(model: &Model, third: usize) -> Option<[usize; 3]> {
+    let second = model.bodies[third].parent;
+    let first = model.bodies[second].parent;
+    if second == 0 || first == 0 {
+        return None;
+    }
+    for empty in [first, second] {
+        let children = model
+            .bodies
+            .iter()
+            .skip(1)
+            .filter(|body| body.parent == empty)
+            .count();
+        let closes = model
+            .closures
+            .iter()
+            .any(|closure| closure.bodies().contains(&empty));
+        if children != 1 || closes || !is_massless(model.bodies[empty].inertia.as_ref()) {
+            return None;
+        }
+    }
+    let bodies = [first, second, third];
+    let joints = bodies.map(|body| model.bodies[body].joint.map(|at| &model.joints[at]));
+    let is_plain = |joint: &Option<&Joint>| joint.is_some_and(is_free);
+    if !joints.iter().all(is_plain) {
+        return None;
+    }
+    let leads = |body: usize| {
+        let joint = model.bodies[body].joint;
+        model
+            .joints
+            .iter()
+            .any(|other| other.follow.is_some_and(|f| Some(f.joint) == joint))
+    };
+    if bodies.into_iter().any(leads) {
+        return None;
+    }
+    // In the frame of the first body, as all joints stand at their reference.
+    let second_in = model.bodies[second].placement;
+    let third_in = second_in * model.bodies[third].placement;
+    let [a, b, c] = joints.map(|joint| joint.cloned());
+    let (a, b, c) = (a?, b?, c?);
+    let centre = third_in * c.at;
+    let meets = |at: nalgebra::Point3<f64>, axis: nalgebra::Vector3<f64>| {
+        (centre - at).cross(&axis).norm() < 1e-9
+    };
+    let axes = [
+        a.axis,
+        second_in.rotation * b.axis,
+        third_in.rotation * c.axis,
+    ];
+    let volume = Matrix3::from_columns(&axes).determinant().abs();
+    let meet = meets(a.at, axes[0]) && meets(second_in * b.at, axes[1]);
+    (meet && volume > 0.3).then_some(bodies)
+}
+
+/// Whether a body has neither mass nor inertia.
+pub(crate) fn is_massless(inertia: Option<&Inertia>) -> bool {
+    inertia.is_none_or(|inertia| inertia.mass == 0.0 && inertia.tensor == Matrix3::zeros())
+}
+
+/// Whether a joint turns without a motor and without any torque of its own.
+pub(crate) fn is_free(joint: &Joint) -> bool {
+    joint.kind == Kind::Revolute
+        && !joint.actuated
+        && joint.follow.is_none()
+        && [joint.damping, joint.friction, joint.armature]
+            .iter()
+            .all(|value| *value == 0.0)
+        && joint.spring.is_none()
+}
+
+/// What two names begin with, or the first of them.
+fn common(a: &str, b: &str) -> String {
+    let same = a.chars().zip(b.chars()).take_while(|(a, b)| a == b);
+    let text: String = same.map(|(a, _)| a).collect();
+    let text = text
+        .trim_end_matches("rev")
+        .trim_end_matches(['_', '-', '.']);
+    if text.len() < 3 {
+        a.to_owned()
+    } else {
+        text.to_owned()
+    }
+}
+
+/// Closures that stand apart by more than their own gap hold frames; those of a weld on a body's own parent are
+/// dropped where nothing moves between them.
+pub(crate) fn drop_closures_on_one_body(model: &mut Model) {
+    let fixed = |body: usize| {
+        let mut at = body;
+        while at != 0 && model.bodies[at].joint.is_none() {
+            at = model.bodies[at].parent;
+        }
+        at
+    };
+    let mut notes = Vec::new();
+    let kept = model.closures.iter().filter(|closure| {
+        let [a, b] = closure.bodies().map(fixed);
+        if a == b {
+            notes.push(format!(
+                "`{}` joins a body to itself and is left out.",
+                closure.name
+            ));
+        }
+        a != b
+    });
+    let kept: Vec<_> = kept.cloned().collect();
+    model.closures = kept;
+    model.notes.extend(notes);
+}
+
+/// Whether a closure has the kind that merges two bodies into one.
+pub(crate) fn is_weld(kind: &ClosureKind) -> bool {
+    matches!(kind, ClosureKind::Weld { .. })
+}

@@ -1,0 +1,148 @@
+//! Files that are read, and what is wrong in them: each error with its file and its line, all of them at once.
+
+use overact_codegen::diagnostic::{Diagnostic, Diagnostics, Source, Span};
+use std::{
+    cell::RefCell,
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+/// Largest file that is read, bytes. Meshes stand in files of their own, which are never opened.
+const LARGEST: u64 = 64 << 20;
+
+/// Where something stands: a file, as the number of the order in which it was read, and bytes of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Place {
+    /// The file.
+    pub(crate) file: usize,
+    /// The bytes.
+    pub(crate) span: Span,
+}
+
+/// All that is wrong, by file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Errors(pub Vec<(Source, Diagnostics)>);
+
+/// The files of one import and the errors that were found in them so far.
+#[derive(Debug, Default)]
+pub(crate) struct Files {
+    read: RefCell<Vec<(PathBuf, Source, Diagnostics)>>,
+}
+
+impl Files {
+    /// Reads a file; `None` after an error, which is noted at the place that names the file.
+    pub(crate) fn read(&self, path: &Path, named_at: Option<&Place>) -> Option<usize> {
+        let (text, error) = match read(path) {
+            Ok(text) => (text, None),
+            Err(error) => (String::new(), Some(error)),
+        };
+        let name = path.display().to_string();
+        let message = error.map(|error| format!("`{name}` can't be read: {error}"));
+        if let (Some(message), Some(place)) = (&message, named_at) {
+            self.report(
+                place,
+                message.clone(),
+                "give the file, or take its name out",
+            );
+            return None;
+        }
+        let source = Source::new(name, text);
+        let mut all = self.read.borrow_mut();
+        all.push((path.to_owned(), source, Diagnostics::new()));
+        let at = all.len() - 1;
+        if let Some(message) = message {
+            all[at].2.push(Diagnostic::global(message));
+            return None;
+        }
+        Some(at)
+    }
+
+    /// The text of a file.
+    pub(crate) fn text(&self, file: usize) -> String {
+        self.read.borrow()[file].1.text.clone()
+    }
+
+    /// The folder of a file.
+    pub(crate) fn folder(&self, file: usize) -> PathBuf {
+        let all = self.read.borrow();
+        all[file].0.parent().map(Path::to_owned).unwrap_or_default()
+    }
+
+    /// How many files were read.
+    pub(crate) fn count(&self) -> usize {
+        self.read.borrow().len()
+    }
+
+    /// The path of a file.
+    pub(crate) fn path(&self, file: usize) -> PathBuf {
+        self.read.borrow()[file].0.clone()
+    }
+
+    /// The name of a file as it was given.
+    pub(crate) fn name(&self, file: usize) -> String {
+        self.read.borrow()[file].1.name.clone()
+    }
+
+    /// The paths of all files that were read.
+    pub(crate) fn paths(&self) -> Vec<PathBuf> {
+        self.read
+            .borrow()
+            .iter()
+            .map(|(path, ..)| path.clone())
+            .collect()
+    }
+
+    /// The line of a place, counted from 1.
+    pub(crate) fn line(&self, place: &Place) -> usize {
+        self.read.borrow()[place.file].1.position(&place.span).line
+    }
+
+    /// Notes an error at a place.
+    pub(crate) fn report(
+        &self,
+        place: &Place,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        let error = Diagnostic::new(message, place.span.clone()).help(help);
+        self.read.borrow_mut()[place.file].2.push(error);
+    }
+
+    /// Notes an error of the first file as a whole.
+    pub(crate) fn refuse(&self, message: impl Into<String>, help: impl Into<String>) {
+        if let Some(first) = self.read.borrow_mut().first_mut() {
+            first.2.push(Diagnostic::global(message).help(help));
+        }
+    }
+
+    /// Whether nothing is wrong so far.
+    pub(crate) fn is_clean(&self) -> bool {
+        self.read
+            .borrow()
+            .iter()
+            .all(|(.., errors)| errors.is_empty())
+    }
+
+    /// All that is wrong.
+    pub(crate) fn into_errors(self) -> Errors {
+        let wrong = |(_, source, errors): (PathBuf, Source, Diagnostics)| {
+            (!errors.is_empty()).then_some((source, errors))
+        };
+        Errors(
+            self.read
+                .into_inner()
+                .into_iter()
+                .filter_map(wrong)
+                .collect(),
+        )
+    }
+}
+
+fn read(path: &Path) -> io::Result<String> {
+    let size = fs::metadata(path)?.len();
+    if size > LARGEST {
+        let message = format!("{size} bytes, more than {LARGEST}");
+        return Err(io::Error::other(message));
+    }
+    fs::read_to_string(path)
+}

@@ -1,0 +1,122 @@
+//! Angles that are meant to be exact: a file's 1.5707963 is a right angle.
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use std::f64::consts::PI;
+
+/// An angle counts as a multiple of 15° if it is nearer to one than this, rad: eight digits of a file.
+pub(crate) const TOLERANCE: f64 = 5e-8;
+
+/// The multiple of 15° that an angle is, if it is one.
+#[must_use]
+pub(crate) fn fifteenths(angle: f64, tolerance: f64) -> Option<i64> {
+    let steps = angle / (PI / 12.0);
+    let nearest = steps.round();
+    let is_near = nearest.abs() < 1e6 && (angle - nearest * (PI / 12.0)).abs() <= tolerance;
+    #[allow(clippy::cast_possible_truncation, reason = "a small whole number")]
+    is_near.then_some(nearest as i64)
+}
+
+/// The angle without what is rounding in a file.
+#[must_use]
+pub(crate) fn angle(value: f64) -> f64 {
+    #[allow(clippy::cast_precision_loss, reason = "a small whole number")]
+    fifteenths(value, TOLERANCE).map_or(value, |k| k as f64 * PI / 12.0)
+}
+
+/// Sine and cosine, those of multiples of 15° to the last digit.
+#[must_use]
+pub(crate) fn sin_cos(value: f64) -> (f64, f64) {
+    let Some(k) = fifteenths(value, 1e-14 * value.abs().max(1.0)) else {
+        return value.sin_cos();
+    };
+    // Of multiples of 90° sine and cosine are whole numbers, which a rounded π misses.
+    match (k.rem_euclid(24), k.rem_euclid(6)) {
+        (0, _) => (0.0, 1.0),
+        (6, _) => (1.0, 0.0),
+        (12, _) => (0.0, -1.0),
+        (18, _) => (-1.0, 0.0),
+        _ => value.sin_cos(),
+    }
+}
+
+/// The turn by an angle about the axis x, y or z, counted from 0.
+#[must_use]
+pub(crate) fn about(axis: usize, value: f64) -> Rotation3<f64> {
+    let (s, c) = sin_cos(value);
+    let rows = match axis {
+        0 => [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]],
+        1 => [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]],
+        _ => [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]],
+    };
+    Rotation3::from_matrix_unchecked(Matrix3::from_fn(|i, j| rows[i][j]))
+}
+
+/// The turn by an angle about any axis of length 1.
+#[must_use]
+pub(crate) fn turn(axis: &Vector3<f64>, value: f64) -> Rotation3<f64> {
+    let (s, c) = sin_cos(value);
+    let cross = axis.cross_matrix();
+    let matrix = Matrix3::identity() * c + cross * s + axis * axis.transpose() * (1.0 - c);
+    Rotation3::from_matrix_unchecked(matrix)
+}
+
+/// The rotation of URDF's roll, pitch and yaw.
+#[must_use]
+pub(crate) fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> Rotation3<f64> {
+    about(2, angle(yaw)) * about(1, angle(pitch)) * about(0, angle(roll))
+}
+
+/// The rotation of a quaternion w, x, y, z; `None` for one of no length.
+#[must_use]
+pub(crate) fn quaternion([w, x, y, z]: [f64; 4]) -> Option<Rotation3<f64>> {
+    let raw = nalgebra::Quaternion::new(w, x, y, z);
+    (raw.norm() > 1e-12).then(|| {
+        let unit = UnitQuaternion::from_quaternion(raw);
+        cleaned(&unit.to_rotation_matrix())
+    })
+}
+
+/// A rotation whose entries are freed of what rounding has left of zeros and ones.
+#[must_use]
+pub(crate) fn cleaned(rotation: &Rotation3<f64>) -> Rotation3<f64> {
+    let clean = |value: f64| {
+        let whole = value.round();
+        if (value - whole).abs() < 4e-15 {
+            whole
+        } else {
+            value
+        }
+    };
+    Rotation3::from_matrix_unchecked(rotation.matrix().map(clean))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{angle, quaternion, roll_pitch_yaw};
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
+
+    /// The number that a file writes with so many digits.
+    fn written(value: f64, digits: usize) -> f64 {
+        format!("{value:.digits$}").parse().expect("a number")
+    }
+
+    #[test]
+    fn eight_digits_of_a_right_angle_are_one() {
+        assert_eq!(angle(written(FRAC_PI_2, 7)), FRAC_PI_2);
+        assert!((angle(written(FRAC_PI_6, 7)) - FRAC_PI_6).abs() < 1e-15);
+        let coarse = written(FRAC_PI_2, 4);
+        assert_eq!(angle(coarse), coarse);
+        assert_eq!(angle(0.3), 0.3);
+    }
+
+    #[test]
+    fn rotations_by_right_angles_are_permutations() {
+        let right = written(FRAC_PI_2, 10);
+        let turned = roll_pitch_yaw([right, 0.0, -right]);
+        assert!(turned.matrix().iter().all(|v| v.fract() == 0.0));
+        let half = written(std::f64::consts::FRAC_1_SQRT_2, 6);
+        let turned = quaternion([half, 0.0, half, 0.0]).expect("a quaternion");
+        assert!(turned.matrix().iter().all(|v| v.fract() == 0.0), "{turned}");
+        assert!(quaternion([0.0; 4]).is_none());
+    }
+}

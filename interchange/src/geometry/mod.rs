@@ -1,0 +1,4 @@
+//! Rotations and numbers without loss of digits.
+
+pub(crate) mod digits;
+pub(crate) mod exact;

@@ -1,0 +1,212 @@
+//! The import from a file to a description.
+
+use crate::{
+    assembly::{idle, layout, network::Network, simple},
+    files::{Errors, Files},
+    mjcf,
+    model::Model,
+    options::Options,
+    plan::Plan,
+    urdf, writing, xml,
+};
+use std::path::{Path, PathBuf};
+
+/// A description that was made of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Imported {
+    /// The TOML.
+    pub text: String,
+    /// All files that were read.
+    pub inputs: Vec<PathBuf>,
+}
+
+/// Makes a description of a robot's file.
+///
+/// # Errors
+/// All that is wrong with the file, each at its line, or what of it can't be said.
+pub fn import(path: &Path, options: &Options) -> Result<Imported, Errors> {
+    let files = Files::default();
+    let text = described(&files, path, options);
+    match text.filter(|_| files.is_clean()) {
+        Some(text) => Ok(Imported {
+            text,
+            inputs: files.paths(),
+        }),
+        None => Err(files.into_errors()),
+    }
+}
+
+fn described(files: &Files, path: &Path, options: &Options) -> Option<String> {
+    let file = files.read(path, None)?;
+    let mut model = read(files, file, options)?;
+    choose(files, &mut model, options)?;
+    simple::drop_closures_on_one_body(&mut model);
+    if !model.closures.is_empty() {
+        simple::join_balls(&mut model);
+    }
+    if !model.closures.is_empty() {
+        model = idle::without_idle_pins(&Network::new(files, &model)?).unwrap_or(model);
+    }
+    plain_balls(&mut model);
+    no_springs_in_loops(&mut model);
+    let network = Network::new(files, &model)?;
+    check_motors(files, &network)?;
+    let layout = layout::find(files, &network, options)?;
+    let plan = Plan::new(files, &network, &layout)?;
+    let source = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned());
+    Some(writing::toml(
+        &network,
+        &plan,
+        &source.unwrap_or_default(),
+        options,
+    ))
+}
+
+fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
+    let root = xml::parse(files, file, &["visual", "collision", "asset", "geom"])?;
+    match root.name.as_str() {
+        "mujoco" => mjcf::read(files, file, options),
+        "robot" => urdf::read(files, file, options),
+        other => {
+            let message = format!("a file of <{other}> is neither MJCF nor URDF");
+            files.report(
+                &root.place,
+                message,
+                "MJCF begins with <mujoco>, URDF with <robot>",
+            );
+            None
+        }
+    }
+}
+
+/// Which joints are driven and where they stand, as the user says it.
+fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
+    let find = |model: &Model, name: &str| {
+        let found = model.joint_named(name);
+        if found.is_none() {
+            let names = model.joints.iter().map(|joint| joint.name.as_str());
+            let near = overact_codegen::diagnostic::did_you_mean(name, names);
+            let help = near.unwrap_or_else(|| "name joints of the file that move".to_owned());
+            files.refuse(format!("there is no joint `{name}`"), help);
+        }
+        found
+    };
+    if let Some(names) = &options.actuated {
+        model
+            .joints
+            .iter_mut()
+            .for_each(|joint| joint.actuated = false);
+        for name in names {
+            let at = find(model, name)?;
+            model.joints[at].actuated = true;
+        }
+    } else if !model.says_motors {
+        if !model.closures.is_empty() {
+            let help = "say which: `--actuated JOINT,JOINT`";
+            files.refuse(
+                "the file does not say which joints of its loops are driven",
+                help,
+            );
+            return None;
+        }
+        model
+            .joints
+            .iter_mut()
+            .for_each(|joint| joint.actuated = joint.follow.is_none());
+        model
+            .notes
+            .push("The file names no motors: every joint has one here.".to_owned());
+    }
+    if model.closures.is_empty() {
+        let passive = |joint: &&mut crate::model::Joint| !joint.actuated && joint.follow.is_none();
+        let mut names = Vec::new();
+        for joint in model.joints.iter_mut().filter(passive) {
+            joint.actuated = true;
+            names.push(format!("`{}`", joint.name));
+        }
+        if !names.is_empty() {
+            model.notes.push(format!(
+                "No motor drives {}: without loops every joint has a torque here, and theirs is zero in a log.",
+                names.join(", ")
+            ));
+        }
+    }
+    for (name, position) in &options.home {
+        let at = find(model, name)?;
+        model.joints[at].home = *position;
+    }
+    if model.joints.is_empty() {
+        files.refuse(
+            "the robot has no joint that moves",
+            "fixed joints alone make no robot",
+        );
+        return None;
+    }
+    Some(())
+}
+
+/// There have to be as many motors as degrees of freedom.
+fn check_motors(files: &Files, network: &Network<'_>) -> Option<()> {
+    let model = network.model;
+    if model.closures.is_empty() {
+        return Some(());
+    }
+    let motors = model.joints.iter().filter(|joint| joint.actuated).count();
+    if motors >= network.mobility {
+        return Some(());
+    }
+    let message = format!(
+        "the robot has {} degrees of freedom, and {motors} motors",
+        network.mobility
+    );
+    let help = "name all driven joints, `--actuated JOINT,JOINT`, or hold still in the file what does not move";
+    files.refuse(message, help);
+    None
+}
+
+/// Balls have no torques of their own in a description: what a file says of them is left out, and told.
+fn plain_balls(model: &mut Model) {
+    let balls = model
+        .joints
+        .iter_mut()
+        .filter(|joint| joint.kind == crate::model::Kind::Ball);
+    for ball in balls {
+        let own = [
+            ("damping", ball.damping),
+            ("friction", ball.friction),
+            ("armature", ball.armature),
+            (
+                "stiffness",
+                ball.spring.map_or(0.0, |(stiffness, _)| stiffness),
+            ),
+        ];
+        let given = own.iter().filter(|(_, value)| *value != 0.0);
+        let given: Vec<String> = given.map(|(key, value)| format!("{key} {value}")).collect();
+        if !given.is_empty() {
+            let list = given.join(", ");
+            model.notes.push(format!(
+                "LEFT OUT of the ball `{}`: {list}; balls have no torques here.",
+                ball.name
+            ));
+            (ball.damping, ball.friction, ball.armature, ball.spring) = (0.0, 0.0, 0.0, None);
+        }
+    }
+}
+
+/// Springs are those of robots without loops: what a file says of others is left out, and told.
+fn no_springs_in_loops(model: &mut Model) {
+    if model.closures.is_empty() {
+        return;
+    }
+    for joint in &mut model.joints {
+        if let Some((stiffness, rest)) = joint.spring.take() {
+            model.notes.push(format!(
+                "LEFT OUT of `{}`: its spring of stiffness {stiffness} that rests at {rest}; robots with loops have none \
+                 here.",
+                joint.name
+            ));
+        }
+    }
+}

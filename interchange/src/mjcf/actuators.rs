@@ -1,0 +1,63 @@
+//! Actuators: which joints they drive, and through which gear.
+
+use super::{Reader, defaults::MAIN};
+use crate::{
+    model::{Kind, Model},
+    xml::Element,
+};
+
+pub(super) fn read(reader: &Reader<'_>, root: &Element, model: &mut Model) {
+    for section in root.all("actuator") {
+        for element in &section.children {
+            model.says_motors = true;
+            let whole = reader.defaults.apply(reader.files, element, MAIN);
+            actuator(reader, &whole, model);
+        }
+    }
+}
+
+fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
+    let files = reader.files;
+    let name = element.get("name").unwrap_or(&element.name).to_owned();
+    let Some((joint, place)) = element
+        .attribute("joint")
+        .or_else(|| element.attribute("jointinparent"))
+    else {
+        let through = ["tendon", "site", "body", "slidersite", "cranksite"];
+        let through = through
+            .iter()
+            .find(|key| element.get(key).is_some())
+            .unwrap_or(&"nothing");
+        let message = format!("the actuator `{name}` acts on a {through}, which can't be said");
+        files.report(
+            &element.place,
+            message,
+            "actuators of joints can: take it out, or let it act on a joint",
+        );
+        return;
+    };
+    let Some(at) = model.joint_named(joint) else {
+        let all = model.joints.iter().map(|joint| joint.name.as_str());
+        let near = overact_codegen::diagnostic::did_you_mean(joint, all);
+        let help = near.unwrap_or_else(|| "name a joint".to_owned());
+        files.report(place, format!("there is no joint `{joint}`"), help);
+        return;
+    };
+    let own = &mut model.joints[at];
+    if own.kind == Kind::Ball {
+        let message =
+            format!("the actuator `{name}` drives the ball `{joint}`, which can't be said");
+        files.report(place, message, "write the ball as three hinges");
+        return;
+    }
+    own.actuated = true;
+    let gear = element
+        .list(files, "gear")
+        .and_then(|gear| gear.first().copied())
+        .unwrap_or(1.0);
+    if gear != 1.0 {
+        own.drive = format!(
+            "Actuator `{name}` with gear {gear}: the joint's torque is {gear} times its force, `torque_gain` of [data]"
+        );
+    }
+}

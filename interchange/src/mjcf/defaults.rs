@@ -1,0 +1,87 @@
+//! Default classes: attributes that elements have where they do not say otherwise.
+
+use crate::{
+    files::{Files, Place},
+    xml::Element,
+};
+use std::collections::BTreeMap;
+
+/// Attributes by tag and name.
+type Class = BTreeMap<(String, String), (String, Place)>;
+
+/// All classes; those within another have its attributes, too.
+#[derive(Debug)]
+pub(super) struct Defaults {
+    classes: BTreeMap<String, Class>,
+}
+
+/// The class of everything that names none.
+pub(super) const MAIN: &str = "main";
+
+impl Defaults {
+    /// The classes of a file; `None` after an error.
+    pub(super) fn new(files: &Files, root: &Element) -> Option<Self> {
+        let mut own = Self {
+            classes: BTreeMap::new(),
+        };
+        own.classes.insert(MAIN.to_owned(), Class::new());
+        for top in root.all("default") {
+            // Several sections at the top continue the same class.
+            let name = top.get("class").unwrap_or(MAIN).to_owned();
+            let before = own.classes.get(&name).cloned().unwrap_or_default();
+            own.add(files, top, &name, before);
+        }
+        files.is_clean().then_some(own)
+    }
+
+    fn add(&mut self, files: &Files, element: &Element, name: &str, mut class: Class) {
+        for child in element
+            .children
+            .iter()
+            .filter(|child| child.name != "default")
+        {
+            for (key, value, place) in &child.attributes {
+                let key = (child.name.clone(), key.clone());
+                class.insert(key, (value.clone(), place.clone()));
+            }
+        }
+        self.classes.insert(name.to_owned(), class.clone());
+        for inner in element.all("default") {
+            match inner.get("class") {
+                Some(own) => self.add(files, inner, own, class.clone()),
+                None => {
+                    let help = "write class=\"…\" of every <default> inside another";
+                    files.report(&inner.place, "a default class has no name", help);
+                }
+            }
+        }
+    }
+
+    /// An element with what its class gives it.
+    pub(super) fn apply(&self, files: &Files, element: &Element, around: &str) -> Element {
+        let mut whole = element.clone();
+        let named = element.attribute("class");
+        let name = named.map_or(around, |(name, _)| name);
+        let Some(class) = self.classes.get(name) else {
+            let place = named.map_or(&element.place, |(_, place)| place);
+            let near = overact_codegen::diagnostic::did_you_mean(
+                name,
+                self.classes.keys().map(String::as_str),
+            );
+            let help = near.unwrap_or_else(|| "name a class of <default>".to_owned());
+            files.report(place, format!("there is no default class `{name}`"), help);
+            return whole;
+        };
+        let rotations = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
+        let is_turned = rotations.iter().any(|key| element.get(key).is_some());
+        for ((tag, key), (value, place)) in class {
+            let is_other_rotation = is_turned && rotations.contains(&key.as_str());
+            if *tag == element.name && element.get(key).is_none() && !is_other_rotation {
+                whole
+                    .attributes
+                    .push((key.clone(), value.clone(), place.clone()));
+            }
+        }
+        whole
+    }
+}

@@ -1,0 +1,190 @@
+//! Equality constraints: points and frames that meet, and joints that follow others.
+
+use super::{Reader, Sites, defaults::MAIN};
+use crate::{
+    assembly::motion::Motion,
+    model::{Closure, ClosureKind, Follow, Model, Pose},
+    xml::Element,
+};
+use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
+
+pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &mut Model) {
+    // Where one frame is given, the other is where it is in the file's own configuration.
+    let poses = Motion::new(model).start().poses;
+    for section in root.all("equality") {
+        for element in &section.children {
+            let whole = reader.defaults.apply(reader.files, element, MAIN);
+            if whole.get("active") == Some("false") {
+                model.notes.push(format!(
+                    "The inactive equality `{}` is left out.",
+                    named(&whole)
+                ));
+                continue;
+            }
+            match whole.name.as_str() {
+                "connect" | "weld" => {
+                    if let Some(kind) = frames(reader, &whole, sites, model, &poses) {
+                        let (name, place) = (named(&whole), whole.place.clone());
+                        model.closures.push(Closure { name, kind, place });
+                    }
+                }
+                "joint" => follow(reader, &whole, model),
+                other => {
+                    let message = format!("the equality <{other}> can't be said");
+                    reader
+                        .files
+                        .report(&whole.place, message, "connect, weld and joint can");
+                }
+            }
+        }
+    }
+}
+
+/// What a constraint is called, by itself or by what it joins.
+fn named(element: &Element) -> String {
+    let ends = [["site1", "site2"], ["body1", "body2"], ["joint1", "joint2"]];
+    let joined = ends.iter().find_map(|[a, b]| {
+        let a = element.get(a)?;
+        Some(match element.get(b) {
+            Some(b) => format!("{a} and {b}"),
+            None => a.to_owned(),
+        })
+    });
+    let own = element.get("name").map(str::to_owned);
+    own.or(joined).unwrap_or_else(|| element.name.clone())
+}
+
+fn frames(
+    reader: &Reader<'_>,
+    element: &Element,
+    sites: &Sites,
+    model: &Model,
+    poses: &[Pose],
+) -> Option<ClosureKind> {
+    let files = reader.files;
+    let is_point = element.name == "connect";
+    if element.get("site1").is_some() || element.get("site2").is_some() {
+        let site = |key: &str| {
+            let name = element.required(files, key)?;
+            let found = sites.get(name).copied();
+            if found.is_none() {
+                let near = overact_codegen::diagnostic::did_you_mean(
+                    name,
+                    sites.keys().map(String::as_str),
+                );
+                let help = near.unwrap_or_else(|| "name a site of a body".to_owned());
+                files.report(&element.place, format!("there is no site `{name}`"), help);
+            }
+            found
+        };
+        let (a, b) = (site("site1")?, site("site2")?);
+        let (bodies, at) = ([a.0, b.0], [a.1, b.1]);
+        return Some(match is_point {
+            true => ClosureKind::Point {
+                bodies,
+                at: at.map(|f| Point3::from(f.translation.vector)),
+            },
+            false => ClosureKind::Weld { bodies, at },
+        });
+    }
+    let body = |key: &str| {
+        let name = element.get(key).unwrap_or("world");
+        let found = if name == "world" {
+            Some(0)
+        } else {
+            model.body_named(name)
+        };
+        if found.is_none() {
+            let all = model.bodies.iter().map(|body| body.name.as_str());
+            let near = overact_codegen::diagnostic::did_you_mean(name, all);
+            let help = near.unwrap_or_else(|| "name a body".to_owned());
+            files.report(&element.place, format!("there is no body `{name}`"), help);
+        }
+        found
+    };
+    element.required(files, "body1")?;
+    let bodies = [body("body1")?, body("body2")?];
+    let relative = poses[bodies[1]].inv_mul(&poses[bodies[0]]);
+    if is_point {
+        let anchor = Point3::from(element.numbers(files, "anchor").unwrap_or_default());
+        return Some(ClosureKind::Point {
+            bodies,
+            at: [anchor, relative * anchor],
+        });
+    }
+    let anchor: [f64; 3] = element.numbers(files, "anchor").unwrap_or_default();
+    let second = Pose::from_parts(
+        Vector3::from(anchor).into(),
+        nalgebra::Rotation3::identity(),
+    );
+    let given = element
+        .numbers::<7>(files, "relpose")
+        .filter(|pose| pose[3..].iter().any(|v| *v != 0.0));
+    let second_in_first = match given {
+        Some([x, y, z, w, i, j, k]) => {
+            let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, i, j, k));
+            Pose::from_parts(Vector3::new(x, y, z).into(), turn.to_rotation_matrix())
+        }
+        None => relative.inverse(),
+    };
+    Some(ClosureKind::Weld {
+        bodies,
+        at: [second_in_first * second, second],
+    })
+}
+
+/// A joint that follows another by a straight line.
+fn follow(reader: &Reader<'_>, element: &Element, model: &mut Model) {
+    let files = reader.files;
+    let joint = |key: &str| {
+        let name = element.get(key)?;
+        let found = model.joint_named(name);
+        if found.is_none() {
+            let all = model.joints.iter().map(|joint| joint.name.as_str());
+            let near = overact_codegen::diagnostic::did_you_mean(name, all);
+            let help = near.unwrap_or_else(|| "name a joint".to_owned());
+            files.report(&element.place, format!("there is no joint `{name}`"), help);
+        }
+        found
+    };
+    let coefficients = element
+        .list(files, "polycoef")
+        .unwrap_or_else(|| vec![0.0, 1.0]);
+    let (Some(own), Some(leader)) = (joint("joint1"), joint("joint2")) else {
+        if element.get("joint2").is_none() {
+            let help = "make the body fixed: take the joint out";
+            files.report(
+                &element.place,
+                "an equality that holds a joint still can't be said",
+                help,
+            );
+        }
+        return;
+    };
+    if own == leader || model.joints[leader].follow.is_some() {
+        let help = "let each joint follow one that follows none";
+        files.report(
+            &element.place,
+            "joints follow each other in a circle or a row",
+            help,
+        );
+        return;
+    }
+    if coefficients.iter().skip(2).any(|c| *c != 0.0) {
+        let help = "a joint may follow another by a straight line: polycoef=\"c0 c1 0 0 0\"";
+        files.report(
+            &element.place,
+            "a joint that follows another by a curve can't be said",
+            help,
+        );
+        return;
+    }
+    let [c0, factor] = [0, 1].map(|at| coefficients.get(at).copied().unwrap_or(0.0));
+    // Both count from their references.
+    let offset = c0 + model.joints[own].reference - factor * model.joints[leader].reference;
+    model.joints[own].follow = Some(Follow {
+        joint: leader,
+        factor,
+        offset,
+    });
+}

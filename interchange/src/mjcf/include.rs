@@ -1,0 +1,82 @@
+//! A file with those that it includes in their places.
+
+use crate::{
+    files::Files,
+    xml::{self, Element},
+};
+use std::path::PathBuf;
+
+/// Files within each other.
+const DEPTH: usize = 30;
+/// Files altogether.
+const FILES: usize = 500;
+/// Parts of a file that only a picture or a simulation of contacts needs.
+const SKIPPED: [&str; 15] = [
+    "asset",
+    "visual",
+    "contact",
+    "sensor",
+    "keyframe",
+    "custom",
+    "statistic",
+    "size",
+    "extension",
+    "geom",
+    "camera",
+    "light",
+    "plugin",
+    "flexcomp",
+    "composite",
+];
+
+/// The file as one element; `None` after an error.
+pub(super) fn whole(files: &Files, file: usize) -> Option<Element> {
+    let mut root = xml::parse(files, file, &SKIPPED)?;
+    let folder = files.folder(file);
+    let mut open = vec![files.path(file)];
+    expand(files, &mut root, &folder, &mut open)?;
+    files.is_clean().then_some(root)
+}
+
+/// Puts the elements of included files in the places of the includes.
+fn expand(
+    files: &Files,
+    of: &mut Element,
+    folder: &PathBuf,
+    open: &mut Vec<PathBuf>,
+) -> Option<()> {
+    let mut children = Vec::with_capacity(of.children.len());
+    for mut child in std::mem::take(&mut of.children) {
+        if child.name != "include" {
+            expand(files, &mut child, folder, open)?;
+            children.push(child);
+            continue;
+        }
+        let Some((name, place)) = child.attribute("file") else {
+            files.report(&child.place, "<include> names no file", "write file=\"…\"");
+            continue;
+        };
+        let path = folder.join(name);
+        let same = |other: &PathBuf| match (path.canonicalize(), other.canonicalize()) {
+            (Ok(a), Ok(b)) => a == b,
+            _ => *other == path,
+        };
+        if open.iter().any(same) || open.len() > DEPTH || files.count() > FILES {
+            let message = format!("`{name}` includes itself in the end");
+            files.report(place, message, "take one of the includes out");
+            return None;
+        }
+        let Some(file) = files.read(&path, Some(place)) else {
+            continue;
+        };
+        let Some(mut included) = xml::parse(files, file, &SKIPPED) else {
+            continue;
+        };
+        open.push(path);
+        expand(files, &mut included, folder, open)?;
+        open.pop();
+        children.append(&mut included.children);
+    }
+    of.children = children;
+    Some(())
+}

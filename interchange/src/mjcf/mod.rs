@@ -1,0 +1,183 @@
+//! MJCF: bodies within each other, defaults, equality constraints and actuators.
+
+mod actuators;
+mod bodies;
+mod defaults;
+mod equality;
+mod include;
+
+use crate::{
+    files::Files,
+    geometry::exact,
+    model::{Model, Pose},
+    options::Options,
+    xml::Element,
+};
+use defaults::Defaults;
+use nalgebra::{Rotation3, Vector3};
+use std::collections::BTreeMap;
+
+/// Reads a robot; what is wrong is noted in the files.
+pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
+    let root = include::whole(files, file)?;
+    let mut model = Model::new(root.get("model").unwrap_or("robot"));
+    let reader = Reader {
+        files,
+        compiler: Compiler::new(files, &root),
+        defaults: Defaults::new(files, &root)?,
+        options,
+    };
+    for option in root.all("option") {
+        if let Some(gravity) = option.numbers(files, "gravity") {
+            model.gravity = gravity;
+        }
+        if option.child("flag").and_then(|flag| flag.get("gravity")) == Some("disable") {
+            model.gravity = [0.0; 3];
+        }
+    }
+    let mut sites = BTreeMap::new();
+    bodies::read(&reader, &root, &mut model, &mut sites);
+    if !files.is_clean() {
+        return None;
+    }
+    equality::read(&reader, &root, &sites, &mut model);
+    actuators::read(&reader, &root, &mut model);
+    for tag in ["tendon", "deformable"] {
+        if let Some(element) = root.all(tag).find(|element| !element.children.is_empty()) {
+            let message = format!("<{tag}> can't be said");
+            let help = "take it out where it does not move the robot: springs and couplings between joints are said in the TOML";
+            files.report(&element.place, message, help);
+        }
+    }
+    files.is_clean().then_some(model)
+}
+
+/// What all parts of the file are read with.
+struct Reader<'r> {
+    files: &'r Files,
+    compiler: Compiler,
+    defaults: Defaults,
+    options: &'r Options,
+}
+
+/// Where a site is: its body and its frame there.
+type Sites = BTreeMap<String, (usize, Pose)>;
+
+/// How angles and bodies are written.
+struct Compiler {
+    is_degrees: bool,
+    /// Axes of Euler angles, and whether each turn is about the axes that the ones before have turned.
+    sequence: [(usize, bool); 3],
+    inertia_from_geometry: bool,
+}
+
+impl Compiler {
+    fn new(files: &Files, root: &Element) -> Self {
+        let mut own = Self {
+            is_degrees: true,
+            sequence: [(0, true), (1, true), (2, true)],
+            inertia_from_geometry: false,
+        };
+        for compiler in root.all("compiler") {
+            match compiler.attribute("angle") {
+                Some(("radian", _)) => own.is_degrees = false,
+                Some(("degree", _)) => own.is_degrees = true,
+                Some((other, place)) => {
+                    let message = format!("`{other}` is no unit of angles");
+                    files.report(place, message, "write degree or radian");
+                }
+                None => {}
+            }
+            if let Some((text, place)) = compiler.attribute("eulerseq") {
+                match sequence(text) {
+                    Some(sequence) => own.sequence = sequence,
+                    None => {
+                        let message = format!("`{text}` is no sequence of three axes");
+                        files.report(
+                            place,
+                            message,
+                            "write three of xyzXYZ, for instance \"xyz\"",
+                        );
+                    }
+                }
+            }
+            if let Some((value, place)) = compiler
+                .attribute("coordinate")
+                .filter(|(v, _)| *v != "local")
+            {
+                let message = format!("coordinates that are `{value}` can't be said");
+                files.report(place, message, "save the model with local coordinates");
+            }
+            own.inertia_from_geometry |= compiler.get("inertiafromgeom") == Some("true");
+        }
+        own
+    }
+
+    fn angle(&self, value: f64) -> f64 {
+        exact::angle(if self.is_degrees {
+            value.to_radians()
+        } else {
+            value
+        })
+    }
+
+    /// The rotation that an element says by one of `quat`, `axisangle`, `xyaxes`, `zaxis` and `euler`.
+    fn rotation(&self, files: &Files, of: &Element) -> Rotation3<f64> {
+        if let Some(quaternion) = of.numbers(files, "quat") {
+            return exact::quaternion(quaternion).unwrap_or_else(|| {
+                files.report(
+                    &of.place,
+                    "a quaternion of length zero",
+                    "write 1 0 0 0 for no rotation",
+                );
+                Rotation3::identity()
+            });
+        }
+        if let Some([x, y, z, angle]) = of.numbers(files, "axisangle") {
+            let axis = Vector3::new(x, y, z).try_normalize(1e-12);
+            return axis.map_or_else(Rotation3::identity, |axis| {
+                exact::turn(&axis, self.angle(angle))
+            });
+        }
+        if let Some([a, b, c, d, e, f]) = of.numbers(files, "xyaxes") {
+            let x = Vector3::new(a, b, c).normalize();
+            let y = Vector3::new(d, e, f);
+            let y = (y - x * x.dot(&y)).normalize();
+            let columns = [x, y, x.cross(&y)];
+            if columns.iter().all(|c| c.iter().all(|v| v.is_finite())) {
+                let matrix = nalgebra::Matrix3::from_columns(&columns);
+                return exact::cleaned(&Rotation3::from_matrix_unchecked(matrix));
+            }
+        }
+        if let Some([x, y, z]) = of.numbers(files, "zaxis") {
+            let to = Rotation3::rotation_between(&Vector3::z(), &Vector3::new(x, y, z));
+            let turned = || Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
+            return exact::cleaned(&to.unwrap_or_else(turned));
+        }
+        if let Some(angles) = of.numbers::<3>(files, "euler") {
+            let mut whole = Rotation3::identity();
+            for (angle, (axis, turns_along)) in angles.into_iter().zip(self.sequence) {
+                let turn = exact::about(axis, self.angle(angle));
+                whole = if turns_along {
+                    whole * turn
+                } else {
+                    turn * whole
+                };
+            }
+            return whole;
+        }
+        Rotation3::identity()
+    }
+
+    /// The frame of an element's `pos` and rotation.
+    fn frame(&self, files: &Files, of: &Element) -> Pose {
+        let [x, y, z] = of.numbers(files, "pos").unwrap_or_default();
+        Pose::from_parts(Vector3::new(x, y, z).into(), self.rotation(files, of))
+    }
+}
+
+fn sequence(text: &str) -> Option<[(usize, bool); 3]> {
+    let axis = |c: char| Some(("xyz".find(c.to_ascii_lowercase())?, c.is_ascii_lowercase()));
+    let found: Option<Vec<_>> = text.chars().map(axis).collect();
+    found?.try_into().ok()
+}

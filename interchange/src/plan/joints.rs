@@ -1,0 +1,383 @@
+//! Joints of a leg in the making: axes at home, names, parameters and their values.
+
+use super::{Joint, names::Names};
+use crate::{
+    assembly::{
+        ears::{Ear, Ending},
+        network::{Edge, Network, Origin},
+    },
+    files::Files,
+    frames::{
+        leg::{Framed, Node, any_across},
+        step::Step,
+    },
+    model::{Kind, Pose},
+};
+use nalgebra::{Point3, Vector3};
+
+/// A leg in the making.
+pub(super) struct Draft<'d, 'm> {
+    files: &'d Files,
+    network: &'d Network<'m>,
+    pub(super) nodes: Vec<Node>,
+    /// The group that each node carries, none of massless bodies within a universal or ball joint.
+    pub(super) groups: Vec<Option<usize>>,
+    pub(super) names: Vec<String>,
+    /// The edge that each node is of, and which of its axes.
+    origins: Vec<(usize, usize)>,
+    pub(super) used: Names,
+}
+
+impl<'d, 'm> Draft<'d, 'm> {
+    pub(super) fn new(files: &'d Files, network: &'d Network<'m>) -> Self {
+        Self {
+            files,
+            network,
+            nodes: Vec::new(),
+            groups: Vec::new(),
+            names: Vec::new(),
+            origins: Vec::new(),
+            used: Names::default(),
+        }
+    }
+
+    /// Adds the axes of an edge that is gone along from one group to another.
+    pub(super) fn push(&mut self, index: usize, from: usize, to: usize, may_shorten: bool) {
+        let edge = &self.network.edges[index];
+        let antecedent = self.groups.iter().position(|group| *group == Some(from));
+        let home = &self.network.states[0];
+        let axis = self.network.axis(edge, home);
+        let sign = if edge.groups[0] == from { 1.0 } else { -1.0 };
+        let position = match edge.origin {
+            Origin::Joint(joint) => home.positions[joint],
+            Origin::Closure(_) => 0.0,
+        };
+        let name = self.network.edge_name(edge).to_owned();
+        if edge.kind != Kind::Ball {
+            self.nodes.push(Node {
+                antecedent,
+                is_prismatic: edge.kind == Kind::Prismatic,
+                point: axis.point,
+                direction: axis.direction * sign,
+                home: position,
+            });
+            self.finish(index, 0, Some(to), &name);
+            return;
+        }
+        let is_rod = self.network.groups[to].spins && may_shorten;
+        let axes = self.ball_axes(
+            antecedent,
+            axis.point,
+            is_rod.then(|| self.network.line(to, home)),
+        );
+        for (at, direction) in axes.iter().enumerate() {
+            let antecedent = if at == 0 {
+                antecedent
+            } else {
+                Some(self.nodes.len() - 1)
+            };
+            let node = Node {
+                antecedent,
+                is_prismatic: false,
+                point: axis.point,
+                direction: *direction,
+                home: 0.0,
+            };
+            self.nodes.push(node);
+            let group = (at + 1 == axes.len()).then_some(to);
+            self.finish(index, at, group, &format!("{name}_{}", at + 1));
+        }
+    }
+
+    fn finish(&mut self, edge: usize, axis: usize, group: Option<usize>, name: &str) {
+        self.groups.push(group);
+        self.origins.push((edge, axis));
+        let name = self.used.unique(name);
+        self.names.push(name);
+    }
+
+    /// The last joint carries a body that stands elsewhere in the description.
+    pub(super) fn end_without_body(&mut self) {
+        if let Some(last) = self.groups.last_mut() {
+            *last = None;
+        }
+    }
+
+    /// The successive axes of a ball, two of them where a rod behind it may spin: the first parallel to the joint
+    /// before where it can be, none along the rod.
+    fn ball_axes(
+        &self,
+        antecedent: Option<usize>,
+        centre: Point3<f64>,
+        line: Option<Vector3<f64>>,
+    ) -> Vec<Vector3<f64>> {
+        let before = antecedent.map(|at| &self.nodes[at]).filter(|node| {
+            let arm = (centre - node.point).cross(&node.direction).norm();
+            !node.is_prismatic && arm > 1e-6
+        });
+        let before = before.map(|node| node.direction);
+        match line {
+            Some(line) => {
+                let first = before.filter(|first| first.cross(&line).norm() > 0.3);
+                let first = first.unwrap_or_else(|| any_across(&line));
+                vec![first, first.cross(&line).normalize()]
+            }
+            None => {
+                let first = before.unwrap_or_else(Vector3::z);
+                let second = any_across(&first);
+                vec![first, second, first.cross(&second)]
+            }
+        }
+    }
+
+    /// The joints as the description has them.
+    pub(super) fn joints(&self, framed: &[Framed], has_loops: bool) -> Vec<Joint> {
+        let mut all: Vec<Joint> = Vec::new();
+        let mut taken = Names::default();
+        for name in &self.names {
+            taken.unique(name);
+        }
+        let mut last: Option<usize> = None;
+        for (at, framed) in framed.iter().enumerate() {
+            let own = self.nodes[at].antecedent;
+            let mut antecedent = (own != last)
+                .then(|| own.map_or_else(|| "base".to_owned(), |own| self.names[own].clone()));
+            if framed.is_behind_turn {
+                let name = taken.unique(&format!("{}_turn", self.names[at]));
+                all.push(quarter(name, antecedent.take()));
+            }
+            all.push(self.joint(at, framed.step, antecedent, has_loops));
+            last = Some(at);
+        }
+        self.add_bodies(framed, &mut all);
+        all
+    }
+
+    fn joint(&self, at: usize, step: Step, antecedent: Option<String>, has_loops: bool) -> Joint {
+        let (index, axis) = self.origins[at];
+        let edge = &self.network.edges[index];
+        let node = &self.nodes[at];
+        let mut joint = Joint {
+            name: self.names[at].clone(),
+            kind: if node.is_prismatic {
+                "prismatic"
+            } else {
+                "revolute"
+            },
+            antecedent,
+            step,
+            follows: None,
+            actuated: false,
+            parameters: Some(Vec::new()),
+            values: Vec::new(),
+            spring: None,
+            home: node.home,
+            comment: Vec::new(),
+        };
+        if axis == 0 {
+            joint.comment.push(self.described(edge));
+            if edge.kind == Kind::Ball {
+                joint.comment.extend(at_home(self.network, edge));
+            }
+        }
+        self.torques(edge, &mut joint, has_loops);
+        joint
+    }
+
+    /// Which edge of the file a joint is.
+    fn described(&self, edge: &Edge) -> String {
+        let between = edge.groups.map(|group| self.network.group_name(group));
+        let bodies = format!("from `{}` to `{}`", between[0], between[1]);
+        let name = self.network.edge_name(edge);
+        let line = match edge.origin {
+            Origin::Joint(joint) => self.files.line(&self.network.model.joints[joint].place),
+            Origin::Closure(closure) => {
+                self.files.line(&self.network.model.closures[closure].place)
+            }
+        };
+        let kind = match edge.kind {
+            Kind::Ball => "ball ",
+            Kind::Revolute | Kind::Prismatic => "",
+        };
+        format!("{kind}`{name}` of line {line}, {bodies}")
+    }
+
+    /// Motor, friction, spring and what it follows.
+    fn torques(&self, edge: &Edge, joint: &mut Joint, has_loops: bool) {
+        let Origin::Joint(own) = edge.origin else {
+            return;
+        };
+        let own = &self.network.model.joints[own];
+        if edge.kind == Kind::Ball {
+            return;
+        }
+        joint.actuated = own.actuated;
+        let mut symbols = Vec::new();
+        let given = [
+            ("ia", own.armature),
+            ("fv", own.damping),
+            ("fs", own.friction),
+        ];
+        for (symbol, value) in given {
+            if value != 0.0 {
+                joint.values.push((symbol, value));
+            }
+            if value != 0.0 || own.actuated {
+                symbols.push(symbol);
+            }
+        }
+        if own.actuated {
+            symbols.push("off");
+        }
+        if let Some((stiffness, rest)) = own.spring.filter(|_| !has_loops) {
+            joint.spring = Some(rest);
+            joint.values.push(("k", stiffness));
+        }
+        if let Some(follow) = own.follow {
+            let leader = self.origins.iter().position(|(edge, _)| {
+                self.network.edges[*edge].origin == Origin::Joint(follow.joint)
+            });
+            if leader.is_none() {
+                let other = &self.network.model.joints[follow.joint].name;
+                let message = format!(
+                    "`{}` follows `{other}`, which stands in another leg here",
+                    own.name
+                );
+                let help = "a joint can follow one of its own leg: choose other coordinates, `--coordinates`";
+                self.files.report(&own.place, message, help);
+            }
+            let leader = leader.map_or("", |at| self.names[at].as_str());
+            let factor = crate::geometry::digits::decimal(follow.factor);
+            joint.follows = Some(format!("{factor} * q_{leader}"));
+        }
+        if !own.drive.is_empty() {
+            joint.comment.push(own.drive.clone());
+        }
+        joint.parameters = Some(symbols);
+    }
+
+    /// Adds the parameters of the bodies that the joints carry.
+    fn add_bodies(&self, framed: &[Framed], joints: &mut [Joint]) {
+        for (at, group) in self.groups.iter().enumerate() {
+            let inertia = group.and_then(|group| self.network.groups[group].inertia);
+            let inertia = inertia.filter(|i| !crate::assembly::simple::is_massless(Some(i)));
+            let Some(inertia) = inertia else { continue };
+            let Some(joint) = joints.iter_mut().find(|joint| joint.name == self.names[at]) else {
+                continue;
+            };
+            let own = inertia.seen(&framed[at].frame.inverse());
+            let about = own.about_origin();
+            let first = own.centre.coords * own.mass;
+            let values = [
+                ("xx", about[(0, 0)]),
+                ("xy", about[(0, 1)]),
+                ("xz", about[(0, 2)]),
+                ("yy", about[(1, 1)]),
+                ("yz", about[(1, 2)]),
+                ("zz", about[(2, 2)]),
+                ("mx", first.x),
+                ("my", first.y),
+                ("mz", first.z),
+                ("m", own.mass),
+            ];
+            joint.values.splice(0..0, values);
+            joint.parameters = match joint.parameters.take() {
+                Some(symbols) if symbols == ["ia", "fv", "fs", "off"] => None,
+                symbols => {
+                    let own = symbols.unwrap_or_default();
+                    Some(std::iter::once("inertia").chain(own).collect())
+                }
+            };
+        }
+    }
+}
+
+/// A massless body that is turned by 90° about x.
+fn quarter(name: String, antecedent: Option<String>) -> Joint {
+    let step = Step {
+        alpha: std::f64::consts::FRAC_PI_2,
+        ..Step::default()
+    };
+    let comment =
+        "Two axes that are nearly parallel: a turn between them keeps the digits of the constants.";
+    fixed(name, antecedent, step, vec![comment.to_owned()])
+}
+
+fn fixed(name: String, antecedent: Option<String>, step: Step, comment: Vec<String>) -> Joint {
+    Joint {
+        name,
+        kind: "fixed",
+        antecedent,
+        step,
+        follows: None,
+        actuated: false,
+        parameters: Some(Vec::new()),
+        values: Vec::new(),
+        spring: None,
+        home: 0.0,
+        comment,
+    }
+}
+
+/// The point that meets another body, in the frame of the last joint.
+pub(super) fn tip(frame: &Pose, point: &Point3<f64>, used: &mut Names) -> Option<Joint> {
+    let at = frame.inverse_transform_point(point);
+    if at.coords.norm() < 1e-14 {
+        return None;
+    }
+    let to = Pose::from_parts(at.coords.into(), nalgebra::Rotation3::identity());
+    let mut step = Step::between(&Pose::identity(), &to)?;
+    // Only the origin counts.
+    step.theta = 0.0;
+    (step.b, step.r) = (step.r, 0.0);
+    Some(fixed(used.unique("tip"), None, step, Vec::new()))
+}
+
+/// What a chain is, for its reader.
+pub(super) fn chain_comment(network: &Network<'_>, ear: &Ear) -> Vec<String> {
+    let names: Vec<String> = ear
+        .groups
+        .iter()
+        .map(|&group| format!("`{}`", network.group_name(group)))
+        .collect();
+    let mut lines = vec![format!("A chain {}.", names.join(" - "))];
+    if let (Ending::Point, Some(&last)) = (ear.ending, ear.edges.last()) {
+        let edge = &network.edges[last];
+        let name = network.edge_name(edge);
+        lines.push(match edge.kind {
+            Kind::Ball => format!("It ends in the ball `{name}`."),
+            _ => format!("It ends on the pin `{name}`, whose angle follows and is not told."),
+        });
+        lines.extend(at_home(network, edge));
+    }
+    let rods = ear
+        .groups
+        .iter()
+        .filter(|&&group| network.groups[group].spins);
+    for &rod in rods {
+        lines.push(format!(
+            "`{}` spins freely between its balls; by convention it does not, and its first ball is a universal joint.",
+            network.group_name(rod)
+        ));
+    }
+    lines
+}
+
+/// Where a joint of the file stands at home that the description has no coordinate of.
+pub(super) fn at_home(network: &Network<'_>, edge: &Edge) -> Option<String> {
+    let Origin::Joint(joint) = edge.origin else {
+        return None;
+    };
+    let (own, home) = (&network.model.joints[joint], &network.states[0]);
+    let shown = match own.kind {
+        Kind::Ball => {
+            let turn = home.turns[joint].scaled_axis();
+            if turn.norm() < 1e-14 {
+                return None;
+            }
+            format!("[{:?}, {:?}, {:?}]", turn.x, turn.y, turn.z)
+        }
+        Kind::Revolute | Kind::Prismatic => format!("{:?}", home.positions[joint]),
+    };
+    Some(format!("Home: `{}` = {shown}", own.name))
+}

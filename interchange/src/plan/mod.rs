@@ -1,0 +1,226 @@
+//! The legs of a description: joints with their constants, parameters and values, from skeleton and chains.
+
+mod joints;
+mod names;
+
+use crate::{
+    assembly::{
+        ears::{Ear, Ending},
+        layout::Layout,
+        network::Network,
+    },
+    files::Files,
+    frames::{leg, step::Step},
+    model::Pose,
+};
+use joints::Draft;
+use nalgebra::Point3;
+use names::Names;
+
+pub(crate) use names::word;
+
+/// A leg.
+#[derive(Debug)]
+pub(crate) struct Leg {
+    pub(crate) name: String,
+    /// What a reader shall know of it, lines.
+    pub(crate) comment: Vec<String>,
+    /// The body that it stands on and its base frame in that body's; nothing on the ground without any constants.
+    pub(crate) base: Option<(Option<String>, Pose)>,
+    pub(crate) joints: Vec<Joint>,
+    pub(crate) end: Option<End>,
+}
+
+/// A joint.
+#[derive(Debug)]
+pub(crate) struct Joint {
+    pub(crate) name: String,
+    /// `revolute`, `prismatic` or `fixed`.
+    pub(crate) kind: &'static str,
+    /// The joint that carries it, where it is not the one before; `base` for none.
+    pub(crate) antecedent: Option<String>,
+    pub(crate) step: Step,
+    /// What it follows, as an expression; its own variable where there is none.
+    pub(crate) follows: Option<String>,
+    pub(crate) actuated: bool,
+    /// Its parameters; all usual ones where there is none.
+    pub(crate) parameters: Option<Vec<&'static str>>,
+    /// Values of its parameters by symbol.
+    pub(crate) values: Vec<(&'static str, f64)>,
+    /// A spring: where it rests.
+    pub(crate) spring: Option<f64>,
+    pub(crate) home: f64,
+    pub(crate) comment: Vec<String>,
+}
+
+/// Where a chain ends.
+#[derive(Debug)]
+pub(crate) struct End {
+    pub(crate) body: String,
+    pub(crate) is_rigid: bool,
+    /// The point, or frame, in that of the body.
+    pub(crate) at: Pose,
+}
+
+/// All legs.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    pub(crate) legs: Vec<Leg>,
+    /// Comments for the head of the description.
+    pub(crate) notes: Vec<String>,
+}
+
+/// A body in the description: its name there and its frame in the world at home.
+type Bodies = Vec<Option<(String, Pose)>>;
+
+impl Plan {
+    /// The legs of a layout; `None` after an error.
+    pub(crate) fn new(files: &Files, network: &Network<'_>, layout: &Layout) -> Option<Self> {
+        let mut bodies: Bodies = vec![None; network.groups.len()];
+        bodies[0] = Some(("ground".to_owned(), Pose::identity()));
+        let is_tree = layout.chains.is_empty();
+        let mut leg_names = Names::default();
+        let mut legs = vec![skeleton(
+            files,
+            network,
+            layout,
+            is_tree,
+            &mut bodies,
+            &mut leg_names,
+        )];
+        for ear in &layout.chains {
+            legs.push(chain(files, network, ear, &mut bodies, &mut leg_names)?);
+        }
+        let notes = notes(network, layout);
+        Some(Self { legs, notes })
+    }
+}
+
+fn skeleton(
+    files: &Files,
+    network: &Network<'_>,
+    layout: &Layout,
+    is_tree: bool,
+    bodies: &mut Bodies,
+    names: &mut Names,
+) -> Leg {
+    let mut draft = Draft::new(files, network);
+    for &(edge, from) in &layout.skeleton {
+        let groups = network.edges[edge].groups;
+        draft.push(edge, from, groups[usize::from(groups[0] == from)], !is_tree);
+    }
+    let framed = leg::framed(&draft.nodes, &Pose::identity(), None);
+    for (at, group) in draft.groups.iter().enumerate() {
+        if let Some(group) = group {
+            bodies[*group] = Some((draft.names[at].clone(), framed[at].frame));
+        }
+    }
+    let name = names.unique(if is_tree { "robot" } else { "skeleton" });
+    let comment = match is_tree {
+        true => Vec::new(),
+        false => vec![format!(
+            "The skeleton: its joints are the {} independent coordinates, from which the chains follow.",
+            network.mobility
+        )],
+    };
+    let joints = draft.joints(&framed, !is_tree);
+    Leg {
+        name,
+        comment,
+        base: None,
+        joints,
+        end: None,
+    }
+}
+
+fn chain(
+    files: &Files,
+    network: &Network<'_>,
+    ear: &Ear,
+    bodies: &mut Bodies,
+    names: &mut Names,
+) -> Option<Leg> {
+    let (first, last) = (*ear.groups.first()?, *ear.groups.last()?);
+    let mut draft = Draft::new(files, network);
+    let is_point = ear.ending == Ending::Point;
+    let count = if is_point {
+        ear.edges.len() - 1
+    } else {
+        ear.edges.len()
+    };
+    for at in 0..count {
+        draft.push(ear.edges[at], ear.groups[at], ear.groups[at + 1], true);
+    }
+    if !is_point {
+        draft.end_without_body();
+    }
+    let closing = &network.edges[*ear.edges.last()?];
+    let point = network.axis(closing, &network.states[0]).point;
+    let end_point = is_point.then_some(point);
+    let (base_name, base_frame) = bodies[first].clone()?;
+    let base = leg::base(&draft.nodes, &base_frame, end_point);
+    let framed = leg::framed(&draft.nodes, &base, end_point);
+    let inner = ear.groups[1..ear.groups.len() - 1].first().copied();
+    let own = inner.map_or_else(
+        || network.edge_name(closing),
+        |group| network.group_name(group),
+    );
+    let name = names.unique(own);
+    for (at, group) in draft.groups.iter().enumerate() {
+        if let Some(group) = group {
+            bodies[*group] = Some((format!("{name}.{}", draft.names[at]), framed[at].frame));
+        }
+    }
+    let mut joints = draft.joints(&framed, true);
+    let (end_name, end_frame) = bodies[last].clone()?;
+    let last_frame = framed.last()?.frame;
+    if let Some(point) = end_point {
+        joints.extend(joints::tip(&last_frame, &point, &mut draft.used));
+    }
+    let at = match end_point {
+        Some(point) => {
+            let inside: Point3<f64> = end_frame.inverse_transform_point(&point);
+            Pose::from_parts(inside.coords.into(), nalgebra::Rotation3::identity())
+        }
+        None => end_frame.inv_mul(&last_frame),
+    };
+    let body = (first != 0).then_some(base_name);
+    let comment = joints::chain_comment(network, ear);
+    Some(Leg {
+        name,
+        comment,
+        base: Some((body, base_frame.inv_mul(&base))),
+        joints,
+        end: Some(End {
+            body: end_name,
+            is_rigid: !is_point,
+            at,
+        }),
+    })
+}
+
+fn notes(network: &Network<'_>, layout: &Layout) -> Vec<String> {
+    let mut notes = network.model.notes.clone();
+    for (at, group) in network.groups.iter().enumerate() {
+        let others: Vec<String> = group.bodies[1..]
+            .iter()
+            .map(|&body| network.model.bodies[body].name.as_str())
+            .filter(|name| !name.is_empty())
+            .map(|name| format!("`{name}`"))
+            .collect();
+        if !others.is_empty() {
+            let own = network.group_name(at);
+            let list = others.join(", ");
+            notes.push(format!(
+                "Fixed together, and one body here: `{own}` and {list}."
+            ));
+        }
+    }
+    for &edge in &layout.redundant {
+        let name = network.edge_name(&network.edges[edge]);
+        notes.push(format!(
+            "`{name}` closes nothing that the others leave open, and is left out."
+        ));
+    }
+    notes
+}

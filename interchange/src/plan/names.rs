@@ -1,0 +1,51 @@
+//! Names that a description may have, as near as can be to those of the file.
+
+use std::collections::BTreeSet;
+
+/// Names that are taken.
+#[derive(Debug, Default)]
+pub(crate) struct Names {
+    taken: BTreeSet<String>,
+}
+
+impl Names {
+    /// The name as a word that nobody else has.
+    pub(crate) fn unique(&mut self, name: &str) -> String {
+        let word = word(name);
+        let mut own = word.clone();
+        let mut number = 2;
+        while !self.taken.insert(own.clone()) {
+            own = format!("{word}_{number}");
+            number += 1;
+        }
+        own
+    }
+}
+
+/// A name as a word of letters, digits and underscores that begins with a letter and is no word of the language.
+pub(crate) fn word(name: &str) -> String {
+    let sound = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let text: String = name.chars().map(sound).collect();
+    let text = text.trim_matches('_');
+    let text = if text.is_empty() { "joint" } else { text };
+    let reserved = ["base", "ground", "payload", "platform"];
+    match text.starts_with(|c: char| c.is_ascii_alphabetic()) && !reserved.contains(&text) {
+        true => text.to_owned(),
+        false => format!("j_{text}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Names;
+
+    #[test]
+    fn names_are_words_of_their_own() {
+        let mut names = Names::default();
+        assert_eq!(names.unique("toe_b_1/2"), "toe_b_1_2");
+        assert_eq!(names.unique("toe_b_1\\2"), "toe_b_1_2_2");
+        assert_eq!(names.unique("1"), "j_1");
+        assert_eq!(names.unique("关节"), "joint");
+        assert_eq!(names.unique("base"), "j_base");
+    }
+}

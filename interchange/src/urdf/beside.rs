@@ -1,0 +1,265 @@
+//! The YAML file beside a URDF in which users of Pinocchio name closures and motors: pairs of frames that meet,
+//! `closed_loop`, each `3d` (a point) or `6d` (a frame), and the driven joints, `name_mot`.
+
+use super::Tree;
+use crate::{
+    files::{Files, Place},
+    model::{Closure, ClosureKind, Kind, Model, Pose},
+};
+use nalgebra::Point3;
+use std::collections::BTreeMap;
+
+/// Reads the file beside, if there is one.
+pub(super) fn read(files: &Files, file: usize, tree: &Tree, model: &mut Model) {
+    let name = files.name(file);
+    let urdf = std::path::Path::new(&name);
+    let found = ["yaml", "yml"].map(|ending| urdf.with_extension(ending));
+    let Some(path) = found.into_iter().find(|path| path.is_file()) else {
+        return;
+    };
+    let Some(own) = files.read(&path, None) else {
+        return;
+    };
+    let text = files.text(own);
+    let Some(entries) = entries(files, own, &text) else {
+        return;
+    };
+    model.notes.push(format!(
+        "Loops and motors are those of `{}` beside it.",
+        path.file_name().unwrap_or_default().to_string_lossy()
+    ));
+    for (key, (place, value)) in &entries {
+        match key.as_str() {
+            "name_mot" => motors(files, place, value, model),
+            "closed_loop" => closures(files, place, value, &entries, tree, model),
+            "joint_name" => kinds(files, place, value, &entries, model),
+            _ => {}
+        }
+    }
+}
+
+/// A value of the file: a word, or a list of values.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Value {
+    Word(String),
+    List(Vec<Value>),
+}
+
+type Entries = BTreeMap<String, (Place, Value)>;
+
+impl Value {
+    fn words(&self) -> Vec<&str> {
+        match self {
+            Self::Word(word) => vec![word],
+            Self::List(list) => list.iter().flat_map(Self::words).collect(),
+        }
+    }
+}
+
+/// The keys at the left margin with their lists, in brackets or one item a line behind hyphens. Of YAML no more is
+/// used by these files, and what is not of this form is an error.
+fn entries(files: &Files, file: usize, text: &str) -> Option<Entries> {
+    let mut entries = Entries::new();
+    let mut at = 0;
+    let mut open: Option<(String, Place, String)> = None;
+    let mut close = |open: &mut Option<(String, Place, String)>| {
+        let Some((key, place, text)) = open.take() else {
+            return;
+        };
+        match value(&text) {
+            Some(value) => drop(entries.insert(key, (place, value))),
+            None => files.report(
+                &place,
+                format!("`{key}` is no list"),
+                "write [a, b], or one `- a` a line",
+            ),
+        }
+    };
+    for line in text.split_inclusive('\n') {
+        let bare = line.split(" #").next().unwrap_or_default().trim_end();
+        let place = Place {
+            file,
+            span: at..at + bare.len(),
+        };
+        at += line.len();
+        if bare.trim().is_empty() || bare.starts_with('#') || bare == "---" {
+            continue;
+        }
+        let is_key = !bare.starts_with([' ', '-', '[', ']']);
+        match (is_key, bare.split_once(':'), &mut open) {
+            (true, Some((key, rest)), _) => {
+                close(&mut open);
+                open = Some((key.trim().to_owned(), place, rest.to_owned()));
+            }
+            (false, _, Some((_, _, text))) => {
+                text.push('\n');
+                text.push_str(bare);
+            }
+            _ => files.report(&place, "this line belongs to no key", "write `key: [a, b]`"),
+        }
+    }
+    close(&mut open);
+    files.is_clean().then_some(entries)
+}
+
+/// The value of a text: a list in brackets, items behind hyphens, or a word.
+fn value(text: &str) -> Option<Value> {
+    let text = text.trim();
+    if text.starts_with('-') {
+        let items = text
+            .lines()
+            .map(|line| line.trim().strip_prefix('-').map(str::trim));
+        let items = items.map(|item| value(item?));
+        return items.collect::<Option<Vec<_>>>().map(Value::List);
+    }
+    let mut rest = text;
+    let found = bracketed(&mut rest, 0)?;
+    rest.trim().is_empty().then_some(found)
+}
+
+fn bracketed(rest: &mut &str, depth: usize) -> Option<Value> {
+    *rest = rest.trim_start();
+    if depth > 8 {
+        return None;
+    }
+    let Some(inside) = rest.strip_prefix('[') else {
+        let end = rest.find([',', ']', '\n']).unwrap_or(rest.len());
+        let word = rest[..end].trim().trim_matches(['\'', '"']).to_owned();
+        *rest = &rest[end..];
+        return Some(Value::Word(word));
+    };
+    *rest = inside;
+    let mut list = Vec::new();
+    loop {
+        *rest = rest.trim_start();
+        if let Some(behind) = rest.strip_prefix(']') {
+            *rest = behind;
+            return Some(Value::List(list));
+        }
+        list.push(bracketed(rest, depth + 1)?);
+        *rest = rest.trim_start();
+        match rest.strip_prefix(',') {
+            Some(behind) => *rest = behind,
+            None if rest.starts_with(']') => {}
+            None => return None,
+        }
+    }
+}
+
+fn motors(files: &Files, place: &Place, value: &Value, model: &mut Model) {
+    model.says_motors = true;
+    for joint in &mut model.joints {
+        joint.actuated = false;
+    }
+    for name in value.words() {
+        match model.joint_named(name) {
+            Some(joint) => model.joints[joint].actuated = true,
+            None => {
+                let message = format!("there is no joint `{name}` that moves");
+                files.report(place, message, "name joints of the URDF that are not fixed");
+            }
+        }
+    }
+}
+
+fn closures(
+    files: &Files,
+    place: &Place,
+    value: &Value,
+    entries: &Entries,
+    tree: &Tree,
+    model: &mut Model,
+) {
+    let Value::List(pairs) = value else { return };
+    let types = entries
+        .get("type")
+        .map(|(_, value)| value.words())
+        .unwrap_or_default();
+    for (at, pair) in pairs.iter().enumerate() {
+        let [a, b] = pair.words()[..] else {
+            files.report(
+                place,
+                "a closure names two frames",
+                "write closed_loop: [[a, b], [c, d]]",
+            );
+            continue;
+        };
+        let find = |name| tree.find(files, model, name, place);
+        let (Some(first), Some(second)) = (find(a), find(b)) else {
+            continue;
+        };
+        let bodies = [first, second];
+        let kind = match types
+            .get(at)
+            .copied()
+            .unwrap_or("6d")
+            .to_lowercase()
+            .as_str()
+        {
+            "3d" => ClosureKind::Point {
+                bodies,
+                at: [Point3::origin(); 2],
+            },
+            "6d" => ClosureKind::Weld {
+                bodies,
+                at: [Pose::identity(); 2],
+            },
+            other => {
+                let message = format!("a closure of type `{other}` can't be said");
+                files.report(place, message, "write `3d` for a point or `6d` for a frame");
+                continue;
+            }
+        };
+        let name = format!("{a} and {b}");
+        model.closures.push(Closure {
+            name,
+            kind,
+            place: place.clone(),
+        });
+    }
+}
+
+/// Joints whose kind the file changes into a spherical one.
+fn kinds(files: &Files, place: &Place, value: &Value, entries: &Entries, model: &mut Model) {
+    let kinds = entries
+        .get("joint_type")
+        .map(|(_, value)| value.words())
+        .unwrap_or_default();
+    for (at, name) in value.words().into_iter().enumerate() {
+        let kind = kinds.get(at).copied().unwrap_or("no type").to_uppercase();
+        let joint = model.joint_named(name);
+        match (kind.as_str(), joint) {
+            ("SPHERICAL", Some(joint)) => model.joints[joint].kind = Kind::Ball,
+            (_, None) => {
+                let message = format!("there is no joint `{name}` that moves");
+                files.report(place, message, "name joints of the URDF that are not fixed");
+            }
+            (other, _) => {
+                let message = format!("the joint `{name}` is `{other}`, which can't be said");
+                files.report(
+                    place,
+                    message,
+                    "write SPHERICAL, or two revolute joints in the URDF",
+                );
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Value, value};
+
+    #[test]
+    fn lists_are_read_in_brackets_and_behind_hyphens() {
+        let word = |text: &str| Value::Word(text.to_owned());
+        let pair = Value::List(vec![word("a"), word("b c")]);
+        assert_eq!(value(" ['a', \"b c\"]"), Some(pair.clone()));
+        assert_eq!(
+            value("[[a, b c],\n [a, b c]]"),
+            Some(Value::List(vec![pair.clone(), pair.clone()]))
+        );
+        assert_eq!(value("\n- a\n- b c"), Some(pair));
+        assert_eq!(value("[a, [b]"), None);
+    }
+}

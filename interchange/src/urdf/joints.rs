@@ -1,0 +1,258 @@
+//! Joints of URDF: the tree, joints that follow others, and which are driven.
+
+use super::{Links, Tree, body, origin};
+use crate::{
+    files::Files,
+    geometry::exact,
+    model::{Follow, Joint, Kind, Model, Pose},
+    options::Options,
+    xml::Element,
+};
+use nalgebra::Vector3;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Joints that stand before a link.
+struct Edge<'e> {
+    element: &'e Element,
+    name: &'e str,
+    parent: &'e str,
+    child: &'e str,
+}
+
+/// The tree of bodies; `None` where links and joints are none.
+pub(super) fn tree<'e>(
+    files: &Files,
+    root: &'e Element,
+    links: &Links<'e>,
+    options: &Options,
+    model: &mut Model,
+) -> Option<Tree> {
+    let edges = edges(files, root, links);
+    let base = base(files, root, links, &edges)?;
+    let mut below: BTreeMap<&str, Vec<&Edge<'_>>> = BTreeMap::new();
+    for edge in &edges {
+        below.entry(edge.parent).or_default().push(edge);
+    }
+    let mut bodies = BTreeMap::new();
+    model
+        .bodies
+        .push(body(files, links[base], 0, Pose::identity()));
+    bodies.insert(base.to_owned(), 1);
+    let mut open = vec![base];
+    // Depth first, in the order of the file.
+    while let Some(parent) = open.pop() {
+        let at = bodies[parent];
+        let edges = below.get(parent).map_or(&[][..], Vec::as_slice);
+        for edge in edges {
+            let placement = origin(files, edge.element.child("origin"));
+            let mut own = body(files, links[edge.child], at, placement);
+            own.joint = joint(files, edge, options, model);
+            bodies.insert(edge.child.to_owned(), model.bodies.len());
+            model.bodies.push(own);
+        }
+        open.extend(edges.iter().rev().map(|edge| edge.child));
+    }
+    let reached: BTreeSet<&str> = bodies.keys().map(String::as_str).collect();
+    for (name, link) in links.iter().filter(|(name, _)| !reached.contains(*name)) {
+        let message =
+            format!("the link `{name}` is on no way from `{base}`: its joints go in a circle");
+        let help = "a <joint> may not close a loop: cut it, and name the frames that meet in <loop>, <constraint> or a YAML file beside";
+        files.report(&link.place, message, help);
+    }
+    files.is_clean().then_some(Tree { bodies })
+}
+
+fn edges<'e>(files: &Files, root: &'e Element, links: &Links<'e>) -> Vec<Edge<'e>> {
+    let mut names = BTreeSet::new();
+    let mut children = BTreeMap::new();
+    let mut edges = Vec::new();
+    for element in root.all("joint") {
+        let Some(name) = element.required(files, "name") else {
+            continue;
+        };
+        if !names.insert(name) {
+            let message = format!("two joints are called `{name}`");
+            files.report(&element.place, message, "give each joint a name of its own");
+        }
+        let end = |tag: &str| {
+            let Some(end) = element.child(tag) else {
+                let message = format!("the joint `{name}` has no <{tag}>");
+                files.report(
+                    &element.place,
+                    message,
+                    format!("write <{tag} link=\"…\"/>"),
+                );
+                return None;
+            };
+            let link = end.required(files, "link")?;
+            if !links.contains_key(link) {
+                let message = format!("there is no link `{link}`");
+                let near = overact_codegen::diagnostic::did_you_mean(link, links.keys().copied());
+                let help = near.unwrap_or_else(|| "name a <link>".to_owned());
+                files.report(&end.place, message, help);
+                return None;
+            }
+            Some(link)
+        };
+        let (Some(parent), Some(child)) = (end("parent"), end("child")) else {
+            continue;
+        };
+        if let Some(other) = children.insert(child, name) {
+            let message = format!("the link `{child}` hangs on two joints, `{other}` and `{name}`");
+            let help = "a loop is cut at one joint: name the frames that meet in <loop>, <constraint> or a YAML file beside";
+            files.report(&element.place, message, help);
+            continue;
+        }
+        edges.push(Edge {
+            element,
+            name,
+            parent,
+            child,
+        });
+    }
+    edges
+}
+
+/// The link that no joint carries.
+fn base<'e>(
+    files: &Files,
+    root: &Element,
+    links: &Links<'e>,
+    edges: &[Edge<'e>],
+) -> Option<&'e str> {
+    let carried: BTreeSet<&str> = edges.iter().map(|edge| edge.child).collect();
+    let mut free = links.keys().copied().filter(|name| !carried.contains(name));
+    let (first, second) = (free.next(), free.next());
+    let message = match (first, second) {
+        (Some(base), None) => return Some(base),
+        (Some(a), Some(b)) => format!("no joint carries the links `{a}` and `{b}`"),
+        _ => "every link hangs on a joint: there is no base".to_owned(),
+    };
+    files.report(
+        &root.place,
+        message,
+        "a robot has one base, the link that no joint carries",
+    );
+    None
+}
+
+/// The joint before a link; `None` where the two are fixed together, and after an error.
+fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -> Option<usize> {
+    let element = edge.element;
+    let kind = match element.get("type") {
+        Some("revolute" | "continuous") => Kind::Revolute,
+        Some("prismatic") => Kind::Prismatic,
+        Some("spherical" | "ball") => Kind::Ball,
+        Some("fixed") => return None,
+        Some("floating") if options.fix_base => {
+            model.notes.push(format!(
+                "The joint `{}` floats; it is fixed here where it stands.",
+                edge.name
+            ));
+            return None;
+        }
+        other => {
+            let other = other.unwrap_or("no type");
+            let message = format!(
+                "the joint `{}` is `{other}`, which can't be said",
+                edge.name
+            );
+            let help = match other {
+                "floating" => {
+                    "a base that floats has no motor to identify from: `--fix-base` fixes it where it stands"
+                }
+                _ => "revolute, continuous, prismatic, fixed and spherical joints can",
+            };
+            files.report(&element.place, message, help);
+            return None;
+        }
+    };
+    let mut joint = Joint::new(edge.name, kind, element.place.clone());
+    if kind != Kind::Ball {
+        joint.axis = axis(files, element)?;
+    }
+    if let Some(dynamics) = element.child("dynamics") {
+        joint.damping = dynamics.number(files, "damping", 0.0);
+        joint.friction = dynamics.number(files, "friction", 0.0);
+    }
+    model.joints.push(joint);
+    Some(model.joints.len() - 1)
+}
+
+/// The axis of length 1, without what rounding left in it.
+pub(super) fn axis(files: &Files, of: &Element) -> Option<Vector3<f64>> {
+    let Some(element) = of.child("axis") else {
+        return Some(Vector3::x());
+    };
+    let [x, y, z] = element.numbers(files, "xyz").unwrap_or([1.0, 0.0, 0.0]);
+    let found = Vector3::new(x, y, z).try_normalize(1e-9);
+    if found.is_none() {
+        files.report(
+            &element.place,
+            "the axis has no direction",
+            "write for instance xyz=\"0 0 1\"",
+        );
+    }
+    let clean = |v: f64| {
+        if (v - v.round()).abs() < exact::TOLERANCE {
+            v.round()
+        } else {
+            v
+        }
+    };
+    found.map(|axis| axis.map(clean).normalize())
+}
+
+/// Joints that follow others.
+pub(super) fn follow(files: &Files, root: &Element, model: &mut Model) {
+    for element in root.all("joint") {
+        let Some(mimic) = element.child("mimic") else {
+            continue;
+        };
+        let own = element.get("name").and_then(|name| model.joint_named(name));
+        let Some(own) = own else { continue };
+        let Some(name) = mimic.required(files, "joint") else {
+            continue;
+        };
+        let Some(joint) = model.joint_named(name).filter(|&joint| joint != own) else {
+            let message = format!("there is no joint `{name}` that moves to follow");
+            files.report(
+                &mimic.place,
+                message,
+                "name another joint that is not fixed",
+            );
+            continue;
+        };
+        if model.joints[joint].follow.is_some() {
+            let help = "let each joint follow one that follows none";
+            files.report(&mimic.place, "joints follow each other in a row", help);
+            continue;
+        }
+        let factor = mimic.number(files, "multiplier", 1.0);
+        let offset = mimic.number(files, "offset", 0.0);
+        model.joints[own].follow = Some(Follow {
+            joint,
+            factor,
+            offset,
+        });
+    }
+}
+
+/// Which joints `<transmission>` drives.
+pub(super) fn motors(root: &Element, model: &mut Model) {
+    for transmission in root.all("transmission") {
+        let reduction = transmission
+            .child("actuator")
+            .and_then(|a| a.child("mechanicalReduction"));
+        for joint in transmission.all("joint") {
+            let Some(at) = joint.get("name").and_then(|name| model.joint_named(name)) else {
+                continue;
+            };
+            model.says_motors = true;
+            model.joints[at].actuated = true;
+            if reduction.is_some() {
+                "through a gear, see its <transmission>".clone_into(&mut model.joints[at].drive);
+            }
+        }
+    }
+}

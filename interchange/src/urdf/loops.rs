@@ -1,0 +1,138 @@
+//! Loops that stand in the URDF itself: `<loop>` of URDF+ (Chignoli, Slotine, Wensing, Kim 2024), `<constraint>`
+//! as proposed for urdfdom, and `<loop_joint>` of Isaac Sim.
+
+use super::{Tree, joints, origin};
+use crate::{
+    files::Files,
+    model::{Closure, ClosureKind, Follow, Model, Pose},
+    xml::Element,
+};
+use nalgebra::{Point3, Rotation3, Vector3};
+
+pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model) {
+    let named = |element: &Element| element.get("name").unwrap_or(&element.name).to_owned();
+    for (tag, ends, frames) in NOTATIONS {
+        for element in root.all(tag) {
+            let frame = |at: usize| {
+                let end = element.child(ends[at])?;
+                let link = end.required(files, "link")?;
+                let body = tree.find(files, model, link, &end.place)?;
+                let own = match frames[at] {
+                    "" => end.child("origin").or(Some(end)),
+                    frame => element.child(frame),
+                };
+                Some((body, origin(files, own)))
+            };
+            let (Some(a), Some(b)) = (frame(0), frame(1)) else {
+                let [first, second] = ends;
+                let message = format!("`{}` does not say which links it joins", named(element));
+                let help = format!("write <{first} link=\"…\"/> and <{second} link=\"…\"/>");
+                files.report(&element.place, message, help);
+                continue;
+            };
+            let Some(kind) = kind(files, element, [a.0, b.0], [a.1, b.1]) else {
+                continue;
+            };
+            let place = element.place.clone();
+            model.closures.push(Closure {
+                name: named(element),
+                kind,
+                place,
+            });
+        }
+    }
+    couplings(files, root, model);
+}
+
+/// Elements of closures, those of their two ends, and those of the frames on them (in the end itself where empty).
+const NOTATIONS: [(&str, [&str; 2], [&str; 2]); 3] = [
+    ("loop", ["predecessor", "successor"], ["", ""]),
+    (
+        "constraint",
+        ["parent", "child"],
+        ["parent_origin", "child_origin"],
+    ),
+    ("loop_joint", ["link1", "link2"], ["", ""]),
+];
+
+fn kind(
+    files: &Files,
+    element: &Element,
+    bodies: [usize; 2],
+    frames: [Pose; 2],
+) -> Option<ClosureKind> {
+    match element.get("type").unwrap_or("no type") {
+        "spherical" | "ball" => {
+            let at = frames.map(|frame| Point3::from(frame.translation.vector));
+            Some(ClosureKind::Point { bodies, at })
+        }
+        "fixed" => Some(ClosureKind::Weld { bodies, at: frames }),
+        "revolute" | "continuous" => {
+            let of = |tag: &str| axis_of(files, element, tag);
+            let axes = [
+                of("parent_axis").or_else(|| of("axis")),
+                of("child_axis").or_else(|| of("axis")),
+            ];
+            let [Some(a), Some(b)] = axes else {
+                return None;
+            };
+            let [frame_a, frame_b] = frames;
+            let at = [frame_a * upright(&a), frame_b * upright(&b)];
+            Some(ClosureKind::Pin { bodies, at })
+        }
+        other => {
+            let message = format!("a loop closed by `{other}` can't be said");
+            let help = "spherical, revolute, continuous and fixed closures can";
+            files.report(&element.place, message, help);
+            None
+        }
+    }
+}
+
+/// The axis in an element of a name; where `axis` itself is absent, that of URDF.
+fn axis_of(files: &Files, element: &Element, tag: &str) -> Option<Vector3<f64>> {
+    if tag == "axis" {
+        return joints::axis(files, element);
+    }
+    let [x, y, z] = element.child(tag)?.numbers(files, "xyz")?;
+    Vector3::new(x, y, z).try_normalize(1e-9)
+}
+
+/// A frame whose z axis is the given one.
+fn upright(axis: &Vector3<f64>) -> Pose {
+    let turned = Rotation3::rotation_between(&Vector3::z(), axis);
+    let turned = turned
+        .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
+    Pose::from_parts(Vector3::zeros().into(), turned)
+}
+
+/// `<coupling>` of URDF+: the motion between two links follows that between others, by a ratio.
+fn couplings(files: &Files, root: &Element, model: &mut Model) {
+    for element in root.all("coupling") {
+        let end = |tag: &str| element.child(tag).and_then(|end| end.get("link"));
+        let joint = |link: Option<&str>| model.bodies[model.body_named(link?)?].joint;
+        let (Some(leader), Some(own)) = (joint(end("predecessor")), joint(end("successor"))) else {
+            let message = "the coupling does not join two links that joints carry";
+            let help = "name links behind moving joints, or write the coupling as <mimic>";
+            files.report(&element.place, message, help);
+            continue;
+        };
+        let ratio = element
+            .child("ratio")
+            .map_or(1.0, |ratio| ratio.number(files, "value", 1.0));
+        if leader == own || model.joints[leader].follow.is_some() {
+            let message = "the coupling's joints follow each other";
+            files.report(
+                &element.place,
+                message,
+                "let one joint follow one that follows none",
+            );
+            continue;
+        }
+        model.joints[own].follow = Some(Follow {
+            joint: leader,
+            factor: ratio,
+            offset: 0.0,
+        });
+    }
+}

@@ -1,0 +1,131 @@
+//! URDF: a tree of links and joints, and the loops that several notations add to it.
+
+mod beside;
+mod joints;
+mod loops;
+
+use crate::{
+    files::{Files, Place},
+    geometry::exact,
+    model::{Body, Inertia, Model, Pose},
+    options::Options,
+    xml::{self, Element},
+};
+use nalgebra::{Matrix3, Point3, Translation3};
+use std::collections::BTreeMap;
+
+/// Reads a robot; what is wrong is noted in the files.
+pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
+    let root = xml::parse(
+        files,
+        file,
+        &["visual", "collision", "material", "gazebo", "sensor"],
+    )?;
+    if root.name != "robot" {
+        let message = format!("`{}` is no robot of URDF", root.name);
+        files.report(&root.place, message, "the first element of URDF is <robot>");
+        return None;
+    }
+    let mut model = Model::new(root.get("name").unwrap_or("robot"));
+    let links = links(files, &root);
+    let tree = joints::tree(files, &root, &links, options, &mut model)?;
+    joints::follow(files, &root, &mut model);
+    joints::motors(&root, &mut model);
+    loops::read(files, &root, &tree, &mut model);
+    beside::read(files, file, &tree, &mut model);
+    files.is_clean().then_some(model)
+}
+
+/// The links by name.
+type Links<'e> = BTreeMap<&'e str, &'e Element>;
+
+fn links<'e>(files: &Files, root: &'e Element) -> Links<'e> {
+    let mut links = Links::new();
+    for link in root.all("link") {
+        let Some(name) = link.required(files, "name") else {
+            continue;
+        };
+        if links.insert(name, link).is_some() {
+            let message = format!("two links are called `{name}`");
+            files.report(&link.place, message, "give each link a name of its own");
+        }
+    }
+    links
+}
+
+/// The frame of an element's `<origin>`, or of the element itself where it has `xyz` and `rpy`.
+fn origin(files: &Files, of: Option<&Element>) -> Pose {
+    let Some(element) = of else {
+        return Pose::identity();
+    };
+    let [x, y, z] = element.numbers(files, "xyz").unwrap_or_default();
+    let rotation = match element.numbers::<4>(files, "quat_xyzw") {
+        Some([qx, qy, qz, qw]) => exact::quaternion([qw, qx, qy, qz]),
+        None => Some(exact::roll_pitch_yaw(
+            element.numbers(files, "rpy").unwrap_or_default(),
+        )),
+    };
+    Pose::from_parts(Translation3::new(x, y, z), rotation.unwrap_or_default())
+}
+
+/// A link's body without its joint.
+fn body(files: &Files, link: &Element, parent: usize, placement: Pose) -> Body {
+    Body {
+        name: link.get("name").unwrap_or_default().to_owned(),
+        parent,
+        placement,
+        joint: None,
+        inertia: link
+            .child("inertial")
+            .map(|inertial| inertia(files, inertial)),
+    }
+}
+
+fn inertia(files: &Files, inertial: &Element) -> Inertia {
+    let mass = inertial
+        .child("mass")
+        .map_or(0.0, |mass| mass.number(files, "value", 0.0));
+    let value = |name: &str| {
+        let found = inertial.child("inertia");
+        found.map_or(0.0, |inertia| inertia.number(files, name, 0.0))
+    };
+    let [xx, xy, xz] = [value("ixx"), value("ixy"), value("ixz")];
+    let [yy, yz, zz] = [value("iyy"), value("iyz"), value("izz")];
+    let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let frame = origin(files, inertial.child("origin"));
+    if mass < 0.0 {
+        let message = "a mass is negative";
+        files.report(&inertial.place, message, "give a mass that is zero or more");
+    }
+    Inertia {
+        mass,
+        centre: Point3::origin(),
+        tensor,
+    }
+    .seen(&frame)
+}
+
+/// The bodies of a robot by the names of their links, and frames that joints name.
+#[derive(Debug)]
+struct Tree {
+    bodies: BTreeMap<String, usize>,
+}
+
+impl Tree {
+    /// The body of a link, or that which a joint carries; an error where neither is called so.
+    fn find(&self, files: &Files, model: &Model, name: &str, place: &Place) -> Option<usize> {
+        let carried = || model.joint_named(name).map(|joint| model.carried_by(joint));
+        let found = self.bodies.get(name).copied().or_else(carried);
+        if found.is_none() {
+            let message = format!("there is no link or joint `{name}`");
+            let names = self.bodies.keys().map(String::as_str);
+            let help = overact_codegen::diagnostic::did_you_mean(name, names);
+            files.report(
+                place,
+                message,
+                help.unwrap_or_else(|| "name a <link>".to_owned()),
+            );
+        }
+        found
+    }
+}

@@ -1,0 +1,303 @@
+//! The description as TOML, with a comment at each choice.
+
+use crate::{
+    assembly::network::Network,
+    frames::step::angles,
+    geometry::digits::{angle, decimal, fine, is_zero},
+    model::Pose,
+    options::Options,
+    plan::{Joint, Leg, Plan, word},
+};
+use std::fmt::Write as _;
+
+/// The description.
+pub(crate) fn toml(network: &Network<'_>, plan: &Plan, source: &str, options: &Options) -> String {
+    let model = network.model;
+    let mut text = String::new();
+    let name = options.name.as_deref().unwrap_or(&model.name);
+    let _ = writeln!(
+        text,
+        "# Made by overact import from {}.",
+        comment_text(source)
+    );
+    text.push_str("# Frames are those of modified Denavit-Hartenberg constants; positions of joints are those of the file.\n");
+    for note in &plan.notes {
+        comment(&mut text, note);
+    }
+    let _ = writeln!(text, "\nname = \"{}\"", robot_name(name));
+    let _ = writeln!(
+        text,
+        "summary = \"{}\"",
+        quoted(&format!("{name}, imported from {source}"))
+    );
+    let _ = writeln!(text, "source = \"{}\"", quoted(source));
+    let gravity: Vec<String> = model.gravity.iter().map(|g| decimal(*g)).collect();
+    let _ = writeln!(text, "gravity = [{}]", gravity.join(", "));
+    for leg in &plan.legs {
+        shape(&mut text, leg);
+    }
+    for leg in &plan.legs {
+        place(&mut text, leg);
+    }
+    values(&mut text, plan);
+    text
+}
+
+fn shape(text: &mut String, leg: &Leg) {
+    text.push('\n');
+    for line in &leg.comment {
+        comment(text, line);
+    }
+    if leg.base.is_some() || leg.joints.is_empty() {
+        let _ = writeln!(text, "[leg.{}]", leg.name);
+    }
+    if let Some((body, frame)) = &leg.base {
+        let mut parts: Vec<String> = body
+            .iter()
+            .map(|body| format!("body = \"{body}\""))
+            .collect();
+        parts.extend(placement(frame, true));
+        let _ = writeln!(text, "base = {{ {} }}", parts.join(", "));
+    }
+    for joint in &leg.joints {
+        self::joint(text, &leg.name, joint);
+    }
+    if let Some(end) = &leg.end {
+        let _ = writeln!(text, "\n[leg.{}.end]", leg.name);
+        let kind = if end.is_rigid { "rigid" } else { "point" };
+        let _ = writeln!(text, "type = \"{kind}\"\nbody = \"{}\"", end.body);
+        for part in placement(&end.at, end.is_rigid) {
+            let _ = writeln!(text, "{part}");
+        }
+    }
+}
+
+/// `at` and `rotation` of a frame.
+fn placement(frame: &Pose, has_rotation: bool) -> Vec<String> {
+    let at: Vec<String> = frame
+        .translation
+        .vector
+        .iter()
+        .map(|v| decimal(*v))
+        .collect();
+    let mut parts = vec![format!("at = [{}]", at.join(", "))];
+    let turned = angles(&frame.rotation);
+    if has_rotation && turned.iter().any(|angle| !is_zero(*angle)) {
+        let turned: Vec<String> = turned.iter().map(|v| angle_value(*v)).collect();
+        parts.push(format!("rotation = [{}]", turned.join(", ")));
+    }
+    parts
+}
+
+fn joint(text: &mut String, leg: &str, joint: &Joint) {
+    text.push('\n');
+    for line in &joint.comment {
+        comment(text, line);
+    }
+    let _ = writeln!(
+        text,
+        "[[leg.{leg}.joint]]\nname = \"{}\"\ntype = \"{}\"",
+        joint.name, joint.kind
+    );
+    if let Some(antecedent) = &joint.antecedent {
+        let _ = writeln!(text, "antecedent = \"{antecedent}\"");
+    }
+    let step = &joint.step;
+    let mut angle_key = |key: &str, value: f64| {
+        if !is_zero(value) {
+            let _ = writeln!(text, "{key} = {}", angle_value(value));
+        }
+    };
+    angle_key("gamma", step.gamma);
+    angle_key("alpha", step.alpha);
+    for (key, value) in [("b", step.b), ("d", step.d)] {
+        if !is_zero(value) {
+            let _ = writeln!(text, "{key} = {}", decimal(value));
+        }
+    }
+    variable(text, joint, "theta", "revolute", step.theta, angle);
+    variable(text, joint, "r", "prismatic", step.r, decimal);
+    if let Some(rest) = joint.spring {
+        let rest = if joint.kind == "revolute" {
+            angle(rest)
+        } else {
+            decimal(rest)
+        };
+        let _ = writeln!(text, "spring = \"q - ({rest})\"");
+    }
+    if joint.actuated {
+        text.push_str("actuated = true\n");
+    }
+    if let Some(parameters) = &joint.parameters {
+        let list: Vec<String> = parameters.iter().map(|p| format!("\"{p}\"")).collect();
+        let _ = writeln!(text, "parameters = [{}]", list.join(", "));
+    }
+}
+
+/// `theta` or `r`: a constant, or the variable and one.
+fn variable(
+    text: &mut String,
+    joint: &Joint,
+    key: &str,
+    of: &str,
+    constant: f64,
+    show: fn(f64) -> String,
+) {
+    if joint.kind != of {
+        if !is_zero(constant) {
+            let shown = show(constant);
+            let shown = if shown.ends_with("deg") {
+                format!("\"{shown}\"")
+            } else {
+                shown
+            };
+            let _ = writeln!(text, "{key} = {shown}");
+        }
+        return;
+    }
+    let shown = show(constant.abs());
+    let sign = if constant < 0.0 { '-' } else { '+' };
+    match (&joint.follows, is_zero(constant)) {
+        (None, true) => {}
+        (None, false) => {
+            let _ = writeln!(text, "{key} = \"q {sign} {shown}\"");
+        }
+        (Some(follows), true) => {
+            let _ = writeln!(text, "{key} = \"{follows}\"");
+        }
+        (Some(follows), false) => {
+            let _ = writeln!(text, "{key} = \"{follows} {sign} {shown}\"");
+        }
+    }
+}
+
+fn place(text: &mut String, leg: &Leg) {
+    let _ = writeln!(
+        text,
+        "\n[[place]]\nname = \"{0}\"\nshape = \"{0}\"",
+        leg.name
+    );
+    let moved = leg
+        .joints
+        .iter()
+        .filter(|j| j.kind != "fixed" && j.follows.is_none());
+    let moved = moved.filter(|joint| !is_zero(joint.home));
+    let home: Vec<String> = moved
+        .map(|joint| format!("{} = {}", joint.name, plain(joint.home)))
+        .collect();
+    if !home.is_empty() {
+        let _ = writeln!(text, "home = {{ {} }}", home.join(", "));
+    }
+}
+
+/// Values of the file's masses, inertias and friction: those of the virtual robot, and the prior.
+fn values(text: &mut String, plan: &Plan) {
+    let single = plan.legs.len() == 1;
+    let mut lines = Vec::new();
+    for leg in &plan.legs {
+        for joint in &leg.joints {
+            let mass = joint
+                .values
+                .iter()
+                .find(|(s, _)| *s == "m")
+                .map_or(1.0, |(_, m)| *m);
+            let largest = |of: &[&str]| {
+                let own = joint
+                    .values
+                    .iter()
+                    .filter(|(symbol, _)| of.contains(symbol));
+                own.map(|(_, value)| value.abs()).fold(0.0, f64::max)
+            };
+            let second = largest(&["xx", "xy", "xz", "yy", "yz", "zz"]);
+            let first = largest(&["mx", "my", "mz"]).max(mass * 1e-3);
+            for (symbol, value) in &joint.values {
+                let scale = match *symbol {
+                    "mx" | "my" | "mz" => first,
+                    "xx" | "xy" | "xz" | "yy" | "yz" | "zz" => second,
+                    _ => value.abs(),
+                };
+                let shown = fine(*value, scale);
+                let of = if single {
+                    String::new()
+                } else {
+                    format!("_{}", leg.name)
+                };
+                lines.push((*symbol, format!("{symbol}_{}{of} = {shown}", joint.name)));
+            }
+        }
+    }
+    if lines.is_empty() {
+        return;
+    }
+    text.push_str("\n# What the file says of masses, inertias and friction: the virtual robot's,\n[experiment.parameters]\n");
+    for (_, line) in lines.iter().filter(|(_, line)| !line.ends_with(" = 0")) {
+        let _ = writeln!(text, "{line}");
+    }
+    text.push_str("\n# and what is believed before data speak.\n[prior.values]\n");
+    for (_, line) in lines {
+        let _ = writeln!(text, "{line}");
+    }
+}
+
+/// An angle as a value: a number, or a text with its unit.
+fn angle_value(value: f64) -> String {
+    let shown = angle(value);
+    if shown.ends_with("deg") {
+        format!("\"{shown}\"")
+    } else {
+        shown
+    }
+}
+
+/// A position with all its digits.
+fn plain(value: f64) -> String {
+    decimal(value)
+}
+
+/// A line of comment, wrapped.
+fn comment(text: &mut String, line: &str) {
+    let mut width = 0;
+    text.push('#');
+    for word in comment_text(line)
+        .split(' ')
+        .filter(|word| !word.is_empty())
+    {
+        if width > 0 && width + word.len() > 108 {
+            text.push_str("\n#");
+            width = 0;
+        }
+        text.push(' ');
+        text.push_str(word);
+        width += word.len() + 1;
+    }
+    text.push('\n');
+}
+
+/// A text without anything that would end a comment.
+fn comment_text(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect()
+}
+
+/// A text inside quotation marks.
+fn quoted(text: &str) -> String {
+    let text = comment_text(text);
+    text.replace('\\', "\\\\").replace('"', "\\\"")
+}
+
+/// The name of the robot: words that begin with capitals, as a Rust type.
+fn robot_name(name: &str) -> String {
+    let word = word(name);
+    let capital = |part: &str| {
+        let mut letters = part.chars();
+        let first = letters.next().map(|c| c.to_ascii_uppercase());
+        first.into_iter().chain(letters).collect::<String>()
+    };
+    let text: String = word.split('_').map(capital).collect();
+    if text == "Self" {
+        "Robot".to_owned()
+    } else {
+        text
+    }
+}

@@ -1,0 +1,172 @@
+//! XML as a tree of elements that know their place: without entities, of bounded depth and size, and without the
+//! parts that only a picture of the robot needs.
+
+use crate::files::{Files, Place};
+
+/// Elements within each other.
+const DEPTH: usize = 400;
+/// Elements, attributes and texts of a file.
+const NODES: u32 = 2_000_000;
+
+/// An element.
+#[derive(Debug, Clone)]
+pub(crate) struct Element {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its attributes in the order of the file, each with the place of its value.
+    pub(crate) attributes: Vec<(String, String, Place)>,
+    /// The elements in it.
+    pub(crate) children: Vec<Element>,
+    /// Where it begins.
+    pub(crate) place: Place,
+}
+
+/// Reads a file's text; `None` after an error. Elements whose names `skip` knows are left out with all that is in
+/// them.
+pub(crate) fn parse(files: &Files, file: usize, skip: &[&str]) -> Option<Element> {
+    let text = files.text(file);
+    let options = roxmltree::ParsingOptions {
+        allow_dtd: false,
+        nodes_limit: NODES,
+        ..roxmltree::ParsingOptions::default()
+    };
+    let document = match roxmltree::Document::parse_with_options(&text, options) {
+        Ok(document) => document,
+        Err(error) => {
+            let place = place_of(&text, file, error.pos());
+            let help = match error {
+                roxmltree::Error::DtdDetected => {
+                    "take the document type and its entities out: write what they stand for"
+                }
+                _ => "the file has to be well-formed XML of at most two million elements",
+            };
+            files.report(
+                &place,
+                format!("this is no XML that can be read: {error}"),
+                help,
+            );
+            return None;
+        }
+    };
+    let found = element(document.root_element(), file, skip, 0);
+    if found.is_none() {
+        let place = Place { file, span: 0..1 };
+        let message = format!("elements stand in each other more than {DEPTH} deep");
+        files.report(&place, message, "describe the robot in parts");
+    }
+    found
+}
+
+/// The byte of a line and column.
+fn place_of(text: &str, file: usize, at: roxmltree::TextPos) -> Place {
+    let line = (at.row as usize).saturating_sub(1);
+    let start: usize = text.split_inclusive('\n').take(line).map(str::len).sum();
+    let rest = &text[start..];
+    let column = (at.col as usize).saturating_sub(1);
+    let inner = rest.char_indices().nth(column).map_or(0, |(byte, _)| byte);
+    let span = start + inner..start + inner + 1;
+    Place { file, span }
+}
+
+fn element(
+    node: roxmltree::Node<'_, '_>,
+    file: usize,
+    skip: &[&str],
+    depth: usize,
+) -> Option<Element> {
+    if depth > DEPTH {
+        return None;
+    }
+    let attributes = node.attributes().map(|a| {
+        let place = Place {
+            file,
+            span: a.range_value(),
+        };
+        (a.name().to_owned(), a.value().to_owned(), place)
+    });
+    let children = node.children().filter(|child| child.is_element());
+    let children = children.filter(|child| !skip.contains(&child.tag_name().name()));
+    let children = children.map(|child| element(child, file, skip, depth + 1));
+    let start = node.range().start;
+    let name = node.tag_name().name().to_owned();
+    Some(Element {
+        attributes: attributes.collect(),
+        children: children.collect::<Option<Vec<_>>>()?,
+        place: Place {
+            file,
+            span: start..start + 1 + name.len(),
+        },
+        name,
+    })
+}
+
+impl Element {
+    /// The value of an attribute.
+    pub(crate) fn get(&self, name: &str) -> Option<&str> {
+        self.attribute(name).map(|(value, _)| value)
+    }
+
+    /// The value of an attribute and its place.
+    pub(crate) fn attribute(&self, name: &str) -> Option<(&str, &Place)> {
+        let mut all = self.attributes.iter();
+        all.find(|(own, ..)| own == name)
+            .map(|(_, value, place)| (value.as_str(), place))
+    }
+
+    /// The first element of a name in it.
+    pub(crate) fn child(&self, name: &str) -> Option<&Self> {
+        self.children.iter().find(|child| child.name == name)
+    }
+
+    /// All elements of a name in it.
+    pub(crate) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Self> + 'a {
+        self.children.iter().filter(move |child| child.name == name)
+    }
+
+    /// A number; the default where the attribute is absent or, after an error, no number.
+    pub(crate) fn number(&self, files: &Files, name: &str, default: f64) -> f64 {
+        self.numbers(files, name).map_or(default, |[value]| value)
+    }
+
+    /// So many numbers; `None` where the attribute is absent or, after an error, something else.
+    pub(crate) fn numbers<const N: usize>(&self, files: &Files, name: &str) -> Option<[f64; N]> {
+        let (text, place) = self.attribute(name)?;
+        match numbers(text).map(<[f64; N]>::try_from) {
+            Some(Ok(values)) => Some(values),
+            _ => {
+                let message = format!("`{name}` of `{}` has to be {N} finite numbers", self.name);
+                files.report(place, message, "write numbers with blanks between them");
+                None
+            }
+        }
+    }
+
+    /// Any number of numbers.
+    pub(crate) fn list(&self, files: &Files, name: &str) -> Option<Vec<f64>> {
+        let (text, place) = self.attribute(name)?;
+        let found = numbers(text);
+        if found.is_none() {
+            let message = format!("`{name}` of `{}` has to be finite numbers", self.name);
+            files.report(place, message, "write numbers with blanks between them");
+        }
+        found
+    }
+
+    /// The name that refers to something; an error where it is absent.
+    pub(crate) fn required(&self, files: &Files, name: &str) -> Option<&str> {
+        let found = self.get(name);
+        if found.is_none() {
+            let message = format!("`{}` has no `{name}`", self.name);
+            files.report(&self.place, message, format!("write {name}=\"…\""));
+        }
+        found
+    }
+}
+
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    let words = text
+        .split([' ', '\t', '\n', '\r', ','])
+        .filter(|word| !word.is_empty());
+    let number = |word: &str| word.parse::<f64>().ok().filter(|value| value.is_finite());
+    words.map(number).collect()
+}

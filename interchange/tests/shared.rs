@@ -1,0 +1,127 @@
+//! Robots of other people, from a folder beside the repository: each becomes a description that passes its check, or
+//! is refused by name.
+
+use overact_codegen::{Source, check};
+use overact_interchange::{Imported, Options, import};
+use std::path::{Path, PathBuf};
+
+/// The folder of the models; none where it is not there.
+fn shared() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
+    let folder = std::env::var_os("OVERACT_SHARED")
+        .map_or(beside, PathBuf::from)
+        .join("models");
+    if !folder.is_dir() {
+        eprintln!("skipped: there are no models in {}", folder.display());
+        return None;
+    }
+    Some(folder)
+}
+
+/// Each with its degrees of freedom, motors, legs and joints.
+const SAID: [(&str, [usize; 4]); 8] = [
+    ("ankles/g1.xml", [2, 2, 3, 11]),
+    ("ankles/tiangong.xml", [2, 2, 3, 8]),
+    ("reachy_mini/reachy_mini.xml", [9, 9, 6, 24]),
+    (
+        "example-parallel-robots/5bar_linkage/robot.urdf",
+        [2, 2, 2, 4],
+    ),
+    (
+        "example-parallel-robots/5bar_linkage_iso3d/robot.urdf",
+        [2, 2, 2, 5],
+    ),
+    (
+        "example-parallel-robots/5bar_linkage_iso6d/robot.urdf",
+        [2, 2, 2, 5],
+    ),
+    (
+        "example-parallel-robots/robot_delta/robot.urdf",
+        [2, 2, 4, 8],
+    ),
+    (
+        "example-parallel-robots/talos_like/robot.urdf",
+        [6, 6, 2, 9],
+    ),
+];
+
+/// Each with a part of the reason.
+const REFUSED: [(&str, &str); 3] = [
+    (
+        "example-parallel-robots/cassie_like/robot.urdf",
+        "no skeleton of 5 coordinates was found from which chains determine `tarsus`",
+    ),
+    (
+        "example-parallel-robots/digit_like/robot.urdf",
+        "no skeleton of 6 coordinates was found from which chains determine `tarsus`",
+    ),
+    (
+        "example-parallel-robots/disney_like/robot.urdf",
+        "the robot has 7 degrees of freedom, and 6 motors",
+    ),
+];
+
+#[test]
+fn models_of_others_pass_their_check() {
+    let Some(folder) = shared() else { return };
+    for (name, sizes) in SAID {
+        let Imported { text, .. } = import(&folder.join(name), &Options::default())
+            .unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
+        let source = Source::new("made.toml", text);
+        let checked = match check(&source) {
+            Ok(checked) => checked.mechanism,
+            Err(errors) => panic!("{name}: {}", errors.render_plain(&source)),
+        };
+        let found = [
+            checked.dof(),
+            checked.actuated().len(),
+            checked.legs.len(),
+            checked.joints().len(),
+        ];
+        assert_eq!(found, sizes, "{name}");
+    }
+}
+
+#[test]
+fn what_cannot_be_said_is_refused_by_name() {
+    let Some(folder) = shared() else { return };
+    for (name, reason) in REFUSED {
+        let errors = import(&folder.join(name), &Options::default()).expect_err(name);
+        let said =
+            |(source, errors): &(Source, overact_codegen::Diagnostics)| errors.render_plain(source);
+        let text: String = errors.0.iter().map(said).collect();
+        assert!(text.contains(reason), "{name}: {text}");
+    }
+}
+
+#[test]
+fn the_same_file_gives_the_same_bytes() {
+    let Some(folder) = shared() else { return };
+    let made = || {
+        import(&folder.join("ankles/g1.xml"), &Options::default())
+            .expect("an ankle")
+            .text
+    };
+    assert_eq!(made(), made());
+}
+
+#[test]
+fn a_file_that_includes_another_is_the_same_robot() {
+    let Some(folder) = shared().filter(|_| overact_tier::is_full()) else {
+        return;
+    };
+    let made = |name: &str| {
+        let options = Options {
+            name: Some("mini".to_owned()),
+            ..Options::default()
+        };
+        let text = import(&folder.join(name), &options).expect("a robot").text;
+        // Lines and the name of the file differ.
+        let kept = text.lines().filter(|line| !line.starts_with(['#', 's']));
+        kept.map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        made("reachy_mini/scene.xml"),
+        made("reachy_mini/reachy_mini.xml")
+    );
+}

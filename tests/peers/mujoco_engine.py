@@ -1,0 +1,186 @@
+"""MuJoCo as the engine of an imported robot."""
+
+import mujoco
+import numpy as np
+from description import relative_turn
+
+
+class Engine:
+    def __init__(self, file, description, home):
+        self.model = mujoco.MjModel.from_xml_string(*without_pictures(file))
+        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+        self.model.dof_frictionloss[:] = 0
+        # Balls have no torques of their own in descriptions, which the import says.
+        for dof in range(self.model.nv):
+            if self.model.jnt_type[self.model.dof_jntid[dof]] == mujoco.mjtJoint.mjJNT_BALL:
+                self.model.dof_damping[dof] = self.model.dof_armature[dof] = 0
+        self.data = mujoco.MjData(self.model)
+        self.description = description
+        self.carried = description.carried()
+        self.at_home(home)
+
+    def at_home(self, home):
+        """Where the engine's bodies are when the description is at home: balls turn until the loops are closed."""
+        model, data = self.model, self.data
+        still = self.description.motion(home, 0 * home, 0 * home)
+        data.qpos[:] = model.qpos0
+        for (_, name), value in zip(self.description.joints(), home):
+            joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
+            if joint >= 0:
+                data.qpos[model.jnt_qposadr[joint]] = value
+        balls = [d for d in range(model.nv) if model.jnt_type[model.dof_jntid[d]] == mujoco.mjtJoint.mjJNT_BALL]
+        for _ in range(20):
+            mujoco.mj_forward(model, data)
+            gap, rows = self.closure()
+            if not len(gap) or not balls:
+                break
+            step = np.zeros(model.nv)
+            step[balls] = -np.linalg.lstsq(rows[:, balls], gap, rcond=1e-9)[0]
+            mujoco.mj_integratePos(model, data.qpos, step, 1.0)
+        mujoco.mj_forward(model, data)
+        gap, _ = self.closure()
+        assert not len(gap) or np.abs(gap).max() < 1e-10, f"MuJoCo's loops are {np.abs(gap).max()} m open at home"
+        self.offset = {}
+        for name, joint in self.carried.items():
+            body = self.body(name)
+            self.offset[name] = relative_turn(still[joint].frame[:3, :3], data.xmat[body].reshape(3, 3))
+
+    def body(self, name):
+        return mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, name)
+
+    def closure(self):
+        """Gaps of all connects and what coordinates do to them."""
+        model, data = self.model, self.data
+        gaps, rows = [], []
+        for at in range(model.neq):
+            if model.eq_type[at] != mujoco.mjtEq.mjEQ_CONNECT:
+                continue
+            a, b = model.eq_obj1id[at], model.eq_obj2id[at]
+            if model.eq_objtype[at] == mujoco.mjtObj.mjOBJ_SITE:
+                points = [(model.site_bodyid[s], data.site_xpos[s]) for s in (a, b)]
+            else:
+                local = [model.eq_data[at][:3], model.eq_data[at][3:6]]
+                points = [(i, data.xpos[i] + data.xmat[i].reshape(3, 3) @ p) for i, p in zip((a, b), local)]
+            jacobians = []
+            for body, point in points:
+                jacobian = np.zeros((3, model.nv))
+                mujoco.mj_jac(model, data, jacobian, None, point, body)
+                jacobians.append(jacobian)
+            gaps.append(points[0][1] - points[1][1])
+            rows.append(jacobians[0] - jacobians[1])
+        return (np.concatenate(gaps), np.vstack(rows)) if gaps else (np.zeros(0), np.zeros((0, model.nv)))
+
+    def turned(self, bodies, body):
+        """Rotation, angular velocity and acceleration of a body of the engine."""
+        while body and self.model.body(body).name not in self.carried:
+            if self.model.body_jntnum[body]:
+                raise RuntimeError(f"the description has no body `{self.model.body(body).name}`")
+            parent = self.model.body_parentid[body]
+            turn, rate, acceleration = self.turned(bodies, parent)
+            own = np.zeros(9)
+            mujoco.mju_quat2Mat(own, self.model.body_quat[body])
+            return turn @ own.reshape(3, 3), rate, acceleration
+        if not body:
+            return np.eye(3), np.zeros(3), np.zeros(3)
+        name = self.model.body(body).name
+        moved = bodies[self.carried[name]]
+        return moved.frame[:3, :3] @ self.offset[name], moved.rate, moved.acceleration
+
+    def moved(self, q, rates, accelerations):
+        """Positions of the joints themselves, which slides are read from."""
+        self.scalar = {name: (q[i], rates[i], accelerations[i]) for i, (_, name) in enumerate(self.description.joints())}
+
+    def state(self, bodies):
+        model = self.model
+        q, v, a = model.qpos0.copy(), np.zeros(model.nv), np.zeros(model.nv)
+        for joint in range(model.njnt):
+            body = model.jnt_bodyid[joint]
+            if model.body_jntnum[body] > 1:
+                raise RuntimeError("bodies of several joints are not compared")
+            turn, rate, acceleration = self.turned(bodies, body)
+            before, rate0, acceleration0 = self.turned(bodies, model.body_parentid[body])
+            placed = np.zeros(9)
+            mujoco.mju_quat2Mat(placed, model.body_quat[body])
+            relative = (before @ placed.reshape(3, 3)).T @ turn
+            quaternion = np.zeros(4)
+            mujoco.mju_mat2Quat(quaternion, relative.flatten())
+            local = turn.T @ (rate - rate0)
+            change = turn.T @ (acceleration - acceleration0 - np.cross(rate, rate - rate0))
+            qa, va = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
+            if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_BALL:
+                q[qa : qa + 4], v[va : va + 3], a[va : va + 3] = quaternion, local, change
+            elif model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE:
+                axis = model.jnt_axis[joint]
+                q[qa] += 2 * np.arctan2(quaternion[1:] @ axis, quaternion[0])
+                v[va], a[va] = local @ axis, change @ axis
+            else:
+                q[qa], v[va], a[va] = self.scalar[model.joint(joint).name]
+        return q, v, a
+
+    def centres(self, position, description, bodies, values):
+        """The largest distance between centres of mass, and of the closures' ends."""
+        model, data = self.model, self.data
+        data.qpos[:] = position
+        mujoco.mj_forward(model, data)
+        gap, _ = self.closure()
+        worst = np.abs(gap).max() if len(gap) else 0.0
+        single = len(description.legs) == 1
+        sums = {}
+        for body in range(1, model.nbody):
+            group = self.model.body(self.group(body)).name
+            if group in self.carried:
+                mass, moment = sums.get(self.carried[group], (0.0, np.zeros(3)))
+                sums[self.carried[group]] = mass + model.body_mass[body], moment + model.body_mass[body] * data.xipos[body]
+        for (leg, joint), (mass, moment) in sums.items():
+            value = lambda symbol: values.get(f"{symbol}_{joint}" + ("" if single else f"_{leg}"), 0.0)
+            if mass == 0 and value("m") == 0:
+                continue
+            own = bodies[leg, joint].frame
+            ours = own[:3, 3] + own[:3, :3] @ np.array([value("mx"), value("my"), value("mz")]) / value("m")
+            worst = max(worst, np.abs(ours - moment / mass).max(), abs(mass / value("m") - 1))
+        return worst
+
+    def group(self, body):
+        while body and not self.model.body_jntnum[body]:
+            body = self.model.body_parentid[body]
+        return body
+
+    def inverse_dynamics(self, q, v, a):
+        data = self.data
+        data.qpos[:], data.qvel[:], data.qacc[:] = q, v, a
+        mujoco.mj_inverse(self.model, data)
+        return data.qfrc_inverse.copy()
+
+    def on_motors(self, torques, sheet):
+        force = np.zeros(self.model.nv)
+        for (_, name), torque in zip(actuated(self.description), torques):
+            joint = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_JOINT, name)
+            force[self.model.jnt_dofadr[joint]] = torque
+        return force
+
+
+def actuated(description):
+    for leg in description.legs:
+        for joint in description.toml["leg"][leg]["joint"]:
+            if joint.get("actuated"):
+                yield leg, joint["name"]
+
+
+def without_pictures(file):
+    """The model without meshes, which need not be there, and the folder's other files for its includes."""
+    from pathlib import Path
+    import re
+
+    def text(path):
+        text = Path(path).read_text()
+        text = re.sub(r"<!--.*?-->", "", text, flags=re.S)
+        include = lambda m: re.sub(r"</?mujoco[^>]*>|<\?xml.*?\?>", "", text_of(Path(path).parent / m[1]))
+        return re.sub(r"<include\s+file=[\"'](.*?)[\"']\s*/>", include, text)
+
+    def text_of(path):
+        return text(path)
+
+    whole = text(file)
+    whole = re.sub(r"<asset>.*?</asset>", "", whole, flags=re.S)
+    whole = re.sub(r"<geom\b[^>]*?/>", "", whole, flags=re.S)
+    return (whole,)
