@@ -242,15 +242,18 @@ fn arrays_that_are_none_are_named() {
     let refused = |file: &[u8]| log("a.npz", file, &mapping("q", "tau")).expect_err("an error");
     assert_eq!(
         refused(&npy("<U3", "False", "(1,)", &[0; 12])),
-        "a.npz: the file is NumPy's, but its elements are no numbers that are read (`<U3`)"
+        "a.npz: the file is NumPy's, but its elements are no numbers that are read (`<U3`)\n  \
+         help: write it anew with `numpy.save`, an array of numbers, samples x columns"
     );
     assert_eq!(
         refused(&npy("<f8", "False", "(2, 2, 2)", &[0; 64])),
-        "a.npz: the file is NumPy's, but the array has 3 dimensions"
+        "a.npz: the file is NumPy's, but the array has 3 dimensions\n  \
+         help: write it anew with `numpy.save`, an array of numbers, samples x columns"
     );
     assert_eq!(
         refused(&npy("<f8", "False", "(4000000000, 4000000000)", &[0; 64])),
-        "a.npz: the file is NumPy's, but it is cut off"
+        "a.npz: the file is NumPy's, but it is cut off\n  \
+         help: write it anew with `numpy.save`, an array of numbers, samples x columns"
     );
     assert_eq!(
         refused(&zip(&[("xl/workbook.xml", b"<x/>".to_vec())])),
@@ -260,7 +263,8 @@ fn arrays_that_are_none_are_named() {
     let names = zip(&[("names.npy", npy("<U3", "False", "(1,)", &[0; 12]))]);
     assert_eq!(
         refused(&names),
-        "a.npz: no array of the file can be read: `names`: its elements are no numbers that are read (`<U3`)"
+        "a.npz: no array of the file can be read: `names`: its elements are no numbers that are read (`<U3`)\n  \
+         help: write it anew with `numpy.savez`, arrays of numbers, samples x columns"
     );
 }
 

@@ -111,7 +111,10 @@ fn a_time_that_is_not_uniform_is_located() {
 #[test]
 fn empty_files_are_errors() {
     let (log, folder) = csv("time,q_1,tau_1\n");
-    assert_eq!(text(log, folder.path()), "log.csv: the run is empty");
+    assert_eq!(
+        text(log, folder.path()),
+        "log.csv: the run is empty\n  help: give a log with the samples of a whole motion"
+    );
     let (log, folder) = csv("");
     assert!(
         text(log, folder.path())
@@ -120,7 +123,7 @@ fn empty_files_are_errors() {
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n");
     assert_eq!(
         text(log, folder.path()),
-        "log.csv: the run has a single sample"
+        "log.csv: the run has a single sample\n  help: give a log with the samples of a whole motion"
     );
 }
 

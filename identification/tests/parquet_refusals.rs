@@ -142,7 +142,7 @@ fn files_that_are_cut_off_or_empty_are_refused() {
     assert!(log(&half, &mapping).is_err());
     assert_eq!(
         log(&written(SCHEMA, &[]), &mapping).expect_err("no rows"),
-        "a.parquet: the run is empty"
+        "a.parquet: the run is empty\n  help: give a log with the samples of a whole motion"
     );
     assert_eq!(
         log(&written("message log { }", &[]), &mapping).expect_err("no columns"),

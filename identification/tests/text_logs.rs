@@ -174,9 +174,12 @@ fn a_single_sample_or_none_is_no_run() {
     let mapping = numbered(Time::Frequency(10.0));
     assert_eq!(
         refused(b"1,2,3\n", &mapping),
-        "log.txt: the run has a single sample"
+        "log.txt: the run has a single sample\n  help: give a log with the samples of a whole motion"
     );
-    assert_eq!(refused(b"a,b,c\n", &mapping), "log.txt: the run is empty");
+    assert_eq!(
+        refused(b"a,b,c\n", &mapping),
+        "log.txt: the run is empty\n  help: give a log with the samples of a whole motion"
+    );
     let bad = numbered(Time::Frequency(0.0));
     let error = read(Path::new("none"), &bad, false).expect_err("an error");
     assert_eq!(error.to_string(), "the sampling frequency is 0 Hz");

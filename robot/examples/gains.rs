@@ -147,14 +147,17 @@ fn rows(path: &str, draws: u64) -> Result<(), Failure> {
         let own = misses(&result, &gains)?;
         let gains: Vec<String> = gains.iter().map(|gain| format!("{gain:.2}")).collect();
         println!(
-            "| {name} | {draw} | {} | {:.2} | {:.2} | {:.2} | {:.2} of {} | {:.2} |",
+            "| {name} | {draw} | {} | {:.2} | {:.2} | {} | {:.2} of {} | {:.2} |",
             gains.join(", "),
             100.0 * own.largest,
             largest(&own.gains),
-            largest(&own.masses),
+            match own.masses[..] {
+                [] => String::from("-"),
+                _ => format!("{:.2}", largest(&own.masses)),
+            },
             largest(&own.parameters),
             own.parameters.len(),
-            100.0 * own.weighed,
+            100.0 * own.weighed.abs(),
         );
         squares.0 += own.gains.iter().map(|miss| miss * miss).sum::<f64>();
         squares.1 += own.gains.len() as f64;

@@ -64,7 +64,10 @@ impl Clock {
             1 => "the run has a single sample",
             _ => return Ok(()),
         };
-        Err(Problem::new(Code::LOG_TOO_SHORT, message).file(file).into())
+        let problem = Problem::new(Code::LOG_TOO_SHORT, message).file(file);
+        Err(problem
+            .help("give a log with the samples of a whole motion")
+            .into())
     }
 
     /// Tells the usual step from the beginning and checks the beginning by it.
