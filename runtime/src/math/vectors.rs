@@ -2,7 +2,7 @@
 //!
 //! The method and its numbers are those of [`overact_core::trigonometry`]. Without a branch, four angles
 //! cost little more than one, if the compiler turns every step into one instruction: that is why this stands
-//! in optimised builds alone, and [`plain`](super::plain) in the others.
+//! in optimised builds alone, and `plain.rs` in the others.
 
 use overact_core::trigonometry::{COSINE, HALF_PI, ROUND, SINE};
 use wide::{f64x2, f64x4, u64x2, u64x4};
