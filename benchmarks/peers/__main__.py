@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import identification, ours, pinocchio_peer, report, timing
+from . import controller, identification, ours, pinocchio_peer, report, timing
 from .description import load
 from .ours import Function
 from .peers import Model, check, models
@@ -67,6 +67,9 @@ def main():
         "--blocks", action="store_true", help="only the evaluation over blocks beside the compiled function"
     )
     parser.add_argument("--pinocchio", action="store_true", help="only Pinocchio's regressor of serial robots")
+    parser.add_argument(
+        "--dynamics", action="store_true", help="only dynamics of given parameters, as a controller needs them"
+    )
     parser.add_argument("--no-times", action="store_true", help="count only")
     parser.add_argument("--core", type=int, default=0, help="the core on which all programs are timed")
     parser.add_argument("--rounds", type=int, default=15, help="turns of every program")
@@ -81,6 +84,11 @@ def main():
     if arguments.pinocchio:
         os.sched_setaffinity(0, {arguments.core})
         print(report.calls(pinocchio_peer.measure_all()))
+        return
+    if arguments.dynamics:
+        timed = not arguments.no_times
+        given = arguments.only, arguments.samples, timed, arguments.core, arguments.rounds
+        print(controller.measure(*given))
         return
     results = []
     for work in WORKS:

@@ -1,20 +1,81 @@
 """Sines and cosines of a leg's joints from the platform's pose: no angle is ever computed.
 
-Legs of two links in the platform's plane, as their closure is usually written: with the vector from the first
-joint to the leg's end, the law of cosines gives the second joint, the direction of the vector the first.
+Three kinds of legs, as their closure is usually written: two links in the platform's plane, where the law of
+cosines gives the second joint and the direction to the leg's end the first; an arm with a rod on a universal
+joint, the same in the arm's plane behind the rod's slope to it; a universal joint with a prismatic one, where the
+direction to the end is all.
 """
 
 import math
 
-from .algebra import ONE, apply, sub, vector
+from .algebra import ONE, add, apply, matrix, sub, transpose, vector
 from .values import Linear
 
 
 def close(angles, algebra, platform, leg, pose, home):
     """Tells `angles` the pairs of all sums of a leg's joints."""
+    kinds = [joint.kind[0] for joint in leg.joints]
+    alphas = [round(math.degrees(joint.alpha), 9) for joint in leg.joints]
+    if platform.robot.motion == "planar" and kinds == ["r"] * 3 and not any(alphas):
+        plane(angles, algebra, platform, leg, pose, home)
+    elif kinds == ["r", "r", "r", "f"] and alphas == [-90.0, 0.0, 90.0, 0.0] and leg.end_type == "point":
+        arm(angles, algebra, to_end(platform, leg, pose), leg, home)
+    elif kinds == ["r", "r", "p"] and alphas == [90.0] * 3 and leg.end_type == "point":
+        strut(angles, algebra, to_end(platform, leg, pose), leg, home)
+    else:
+        raise NotImplementedError("the closure of other legs than these")
+
+
+def to_end(platform, leg, pose):
+    """The end of a leg in its base's frame, where the platform moves in space."""
+    if platform.robot.motion not in ("translation", "spatial"):
+        raise NotImplementedError("the closure of a platform that does not move in space")
+    end = add(pose[:3], apply(platform.rotation, vector(leg.end_at)))
+    return apply(transpose(matrix(leg.base_rotation)), sub(end, vector(leg.base_at)))
+
+
+def arm(angles, algebra, end, leg, home):
+    """An arm about -y, and a rod on a universal joint at its end."""
+    first, second, third, tip = leg.joints
+    x, y, across = end[0] - first.d, -end[2], end[1]
+    a, rod = second.d, tip.d
+    s3 = across * (1.0 / rod)
+    b_squared = rod * rod - across * across
+    b = algebra.sqrt(b_squared) * math.copysign(1.0, math.cos(home[2]))
+    squares = x * x + y * y
+    along = (squares - a * a - b_squared) * (0.5 / a)
+    beside = algebra.sqrt(b_squared - along * along) * math.copysign(1.0, math.sin(home[1]))
+    reciprocal = ONE / squares
+    c1 = (x * (along + a) + y * beside) * reciprocal
+    s1 = (y * (along + a) - x * beside) * reciprocal
+    inverse = ONE / b
+    one, two, three = (joint.name for joint in (first, second, third))
+    angles.closed = {
+        (one,): (c1, s1),
+        (two,): (along * inverse, beside * inverse),
+        tuple(sorted((one, two))): ((x - c1 * a) * inverse, (y - s1 * a) * inverse),
+        (three,): (b * (1.0 / rod), s3),
+    }
+
+
+def strut(angles, algebra, end, leg, home):
+    """A universal joint about z and x of its base turned by a right angle, and a prismatic joint."""
     first, second, third = leg.joints
-    if platform.robot.motion != "planar" or any(j.kind != "revolute" or j.alpha for j in leg.joints):
-        raise NotImplementedError("the closure of other legs than those of two links in a plane")
+    quarter = math.pi / 2
+    if any(abs(joint.theta.constant - quarter) > 1e-12 for joint in (first, second)) or first.d or second.d:
+        raise NotImplementedError("the closure of other struts")
+    x, y, z = end
+    flat = x * x + z * z
+    length = algebra.sqrt(flat + y * y)
+    flat = algebra.sqrt(flat) * math.copysign(1.0, math.cos(home[1]))
+    one, two = ONE / flat, ONE / length
+    angles.closed = {(first.name,): (z * one, -(x * one)), (second.name,): (flat * two, -(y * two))}
+    angles.variables[third.name] = length
+
+
+def plane(angles, algebra, platform, leg, pose, home):
+    """Two links in the platform's plane."""
+    first, second, third = leg.joints
     axis = [math.cos(first.gamma), math.sin(first.gamma), 0.0]
     lever = apply(platform.rotation, vector(leg.end_at))
     end = sub([pose[0] + lever[0], pose[1] + lever[1]], vector([first.d * a for a in axis[:2]]))

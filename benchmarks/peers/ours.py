@@ -1,6 +1,7 @@
 """overact's side: what its command line says of a robot, and its own results."""
 
 import json
+import os
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,8 @@ from .count import Count
 
 ROOT = Path(__file__).resolve().parents[2]
 
+#: The command line: this repository's, or another build of it.
+BINARY = os.environ.get("OVERACT", ROOT / "target" / "release" / "overact")
 
 #: Where descriptions lie: the library, and robots that only tests use.
 FOLDERS = [ROOT / "robots", ROOT / "tests" / "fixtures"]
@@ -23,9 +26,8 @@ def description(robot):
 
 def overact(*arguments, stdin=None):
     """The JSON document that a command of the release build prints."""
-    binary = ROOT / "target" / "release" / "overact"
     done = subprocess.run(
-        [binary, *map(str, arguments), "--json"], input=stdin, capture_output=True, text=True
+        [BINARY, *map(str, arguments), "--json"], input=stdin, capture_output=True, text=True
     )
     if done.returncode:
         raise RuntimeError(f"overact {' '.join(map(str, arguments))}: {done.stderr.strip()}")

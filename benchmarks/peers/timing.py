@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .ours import ROOT, description
+from .ours import BINARY, ROOT, description
 from .states import states
 
 BUILD = ROOT / "target" / "benchmarks"
@@ -75,7 +75,7 @@ def rust_crate(functions):
     folder = BUILD / "ours"
     robots = sorted({function.robot for function in functions})
     for robot in robots:
-        command = [ROOT / "target/release/overact", "generate", description(robot)]
+        command = [BINARY, "generate", description(robot)]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         write(folder / "src" / f"{robot}.rs", done.stdout)
     modules = "".join(f"pub mod {robot};\n" for robot in robots)

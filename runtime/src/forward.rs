@@ -3,6 +3,9 @@
 //! The pose minimises |q_measured - q(x)|², where q(x) is the inverse kinematics. Gauss-Newton with
 //! the Jacobian J_p^inv converges in two or three steps when it starts from the previous sample; the
 //! redundant actuators average the noise of the others, and starting near keeps the assembly mode.
+//!
+//! All of it may be inlined: sizes are constants in generated code, and loops of three or four turns cost
+//! more than what they do where the compiler does not know them.
 
 use crate::{
     ActuatorGroup, Error,
@@ -46,6 +49,7 @@ pub struct Workspace<'a> {
 ///
 /// # Errors
 /// [`Error::NoConvergence`], [`Error::SingularPlatform`], or what `evaluate` reports.
+#[inline]
 pub fn gauss_newton(
     measured: Measured<'_>,
     pose: &mut [f64],
@@ -79,6 +83,7 @@ pub fn gauss_newton(
 }
 
 /// Adds Jᵀ J to `normal` and Jᵀ Δq to `step`, J being J_p^inv; returns the largest difference.
+#[inline]
 fn accumulate(
     measured: Measured<'_>,
     actuators: &[f64],
@@ -111,6 +116,7 @@ fn accumulate(
 ///
 /// # Errors
 /// [`Error::SingularPlatform`] when a pivot vanishes, [`Error::Length`] for a matrix that is not square.
+#[inline]
 pub fn solve_positive_definite(matrix: &mut [f64], vector: &mut [f64]) -> Result<(), Error> {
     let n = vector.len();
     if n.checked_mul(n) != Some(matrix.len()) {
@@ -133,6 +139,7 @@ pub fn solve_positive_definite(matrix: &mut [f64], vector: &mut [f64]) -> Result
 }
 
 /// Brings S to upper triangular form, and the right-hand side with it.
+#[inline]
 fn eliminate(matrix: &mut [f64], vector: &mut [f64]) -> Result<(), Error> {
     let n = vector.len().max(1);
     let diagonal = matrix.chunks_exact(n).enumerate();
@@ -165,6 +172,7 @@ fn eliminate(matrix: &mut [f64], vector: &mut [f64]) -> Result<(), Error> {
 }
 
 /// Moves a pose whose coordinates are its twist coordinates' integrals: x + step.
+#[inline]
 pub fn displace(pose: &mut [f64], step: &[f64]) {
     for (coordinate, step) in pose.iter_mut().zip(step) {
         *coordinate += step;

@@ -12,6 +12,12 @@ impl<const R: usize, const C: usize> Output for [[f64; C]; R] {
     }
 }
 
+impl<const N: usize> Output for [f64; N] {
+    fn numbers(&self) -> Result<Vec<f64>, overact::Error> {
+        Ok(self.to_vec())
+    }
+}
+
 impl<T: Output> Output for Result<T, overact::Error> {
     fn numbers(&self) -> Result<Vec<f64>, overact::Error> {
         self.as_ref().map_err(Clone::clone)?.numbers()

@@ -2,7 +2,11 @@
 //! the feature `std`, those of `libm` with the feature of that name alone. The angles of a whole function have their sines and
 //! cosines from [`sin_cos_all`].
 
+#[cfg(any(test, not(vectors)))]
+mod plain;
 mod trigonometry;
+#[cfg(any(test, vectors))]
+mod vectors;
 
 pub use trigonometry::sin_cos_all;
 

@@ -1,0 +1,21 @@
+//! Says whether sines and cosines are computed in vector registers (`cfg(vectors)`).
+//!
+//! No attribute of the language knows the level of optimisation, and what is best differs by a factor of fifty.
+//! This crate's functions of many angles are compiled with the crate that calls them, so a build counts as
+//! optimised for speed only if its profile is, and not this package alone.
+
+use std::env::var;
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rustc-check-cfg=cfg(vectors)");
+    let is = |name: &str, values: &[&str]| var(name).is_ok_and(|x| values.contains(&x.as_str()));
+    let feature =
+        |name: &str| var("CARGO_CFG_TARGET_FEATURE").is_ok_and(|x| x.split(',').any(|f| f == name));
+    let registers = is("CARGO_CFG_TARGET_ARCH", &["x86_64", "aarch64"])
+        || feature("sse2")
+        || feature("simd128");
+    if registers && is("OPT_LEVEL", &["2", "3"]) && is("PROFILE", &["release"]) {
+        println!("cargo::rustc-cfg=vectors");
+    }
+}
