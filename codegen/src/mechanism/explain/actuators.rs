@@ -4,6 +4,7 @@ use super::motions::{Motions, listed};
 use crate::description::Description;
 use crate::diagnostic::{Diagnostic, DiagnosticKind};
 use crate::mechanism::mobility::Mobility;
+use crate::mechanism::parasitic::Parasitic;
 use crate::mechanism::singular_values::SingularValues;
 use crate::mechanism::states::random_states;
 use crate::mechanism::{Home, Leg, Mechanism};
@@ -13,7 +14,7 @@ use nalgebra::DMatrix;
 pub(in crate::mechanism) fn too_few_actuators(
     description: &Description,
     mechanism: &Mechanism,
-    mobility: Option<Mobility>,
+    left: Option<(Mobility, Option<Parasitic>)>,
 ) -> Diagnostic {
     let (dof, count) = (mechanism.dof(), mechanism.actuated().len());
     let motion = description.platform.as_ref().map(|p| &p.motion);
@@ -25,17 +26,36 @@ pub(in crate::mechanism) fn too_few_actuators(
     };
     let message =
         format!("{owner} has {dof} degrees of freedom, but the robot has {count} {actuators}");
-    let left = mobility.and_then(|m| Some((m.of(motion?.value), m.parts())));
+    let left = left.and_then(|(m, parasitic)| Some((m.of(motion?.value), m.parts(), parasitic)));
     let help = match left {
-        Some((left, parts)) if left < dof => format!(
-            "the legs leave the platform only {left} of these {dof} motions ({}), so more actuators are no way out: choose a `motion` that the legs allow, or give the legs more passive joints",
-            Motions::of_directions(&parts).words("along", "about")
+        Some((left, parts, parasitic)) if left < dof => format!(
+            "the legs leave the platform only {left} of these {dof} motions ({}), so more actuators are no way out: {}",
+            Motions::of_directions(&parts).words("along", "about"),
+            way_out(parasitic.as_ref())
         ),
         _ => "mark more joints with actuated = true".to_owned(),
     };
     Diagnostic::new(message, span)
         .label(legs_without_actuator(mechanism))
         .help(help)
+}
+
+/// What can be done where the legs leave fewer motions: another `motion`, unless the platform moves aside.
+fn way_out(parasitic: Option<&Parasitic>) -> String {
+    let Some(found) = parasitic else {
+        return "choose a `motion` that the legs allow, or give the legs more passive joints"
+            .to_owned();
+    };
+    let words = |directions: &[usize]| {
+        let parts = std::array::from_fn(|at| f64::from(u8::from(directions.contains(&at))));
+        Motions::of_directions(&parts).words("along", "about")
+    };
+    format!(
+        "it is determined best {} (condition number {:.1} at home), and beside the home pose moves aside, {}, which no `motion` describes: give the legs more passive joints, or hold the platform with a leg that is a skeleton, as robots/tricept.toml does",
+        words(&found.independent),
+        found.condition,
+        words(&found.following)
+    )
 }
 
 /// The legs whose joints are all passive, where the missing actuator may have its place.

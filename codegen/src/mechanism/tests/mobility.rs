@@ -1,6 +1,6 @@
 //! What is said where the legs leave other motions than those that are described.
 
-use super::{assert_said, said};
+use super::{PLANAR, assert_said, changed, said};
 use crate::description;
 use crate::diagnostic::{DiagnosticKind, Source};
 
@@ -52,11 +52,51 @@ fn more_actuators_are_no_way_out_where_the_legs_leave_fewer_motions() {
         &[
             "the platform has 6 degrees of freedom, but the robot has 3 actuators",
             "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
-            "choose a `motion` that the legs allow",
+            "determined best along z, and about x and y (condition number 1.0 at home)",
+            "moves aside, along x and y",
+            "which no `motion` describes",
             "leg `rps` has too few joints to follow the platform's motion",
         ],
     );
     assert!(!said(&text).contains("mark more joints"));
+}
+
+/// A pose that is tilted, but not moved aside, is none that the legs allow: it is brought back onto them, and
+/// what is left there is said. The legs' planes keep it from turning about z by itself.
+#[test]
+fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
+    let tilted = three_rps("spatial").replace(
+        "z = \"0.5 m\" }",
+        "z = \"0.5 m\", rx = \"20 deg\", ry = \"5 deg\" }",
+    );
+    assert_said(
+        &tilted,
+        "5:10",
+        &[
+            "the legs leave the platform only 3 of these 6 motions",
+            "determined best along z, and about x and y (condition number 1.",
+            "moves aside, along x and y, and about z, which no `motion` describes",
+        ],
+    );
+    assert!(!said(&tilted).contains("mark more joints"));
+}
+
+/// Three legs of three parallel axes each keep a free platform in a plane, everywhere the same.
+#[test]
+fn a_platform_that_does_not_move_aside_has_a_motion() {
+    let free = [
+        ("motion = \"planar\"", "motion = \"spatial\""),
+        ("phi = \"0 deg\"", "rz = \"0 deg\""),
+    ];
+    let text = changed(PLANAR, &free);
+    let said = said(&text);
+    for words in [
+        "only 3 of these 6 motions (along x and y, and about z)",
+        "choose a `motion` that the legs allow",
+    ] {
+        assert!(said.contains(words), "{words}\nin\n{said}");
+    }
+    assert!(!said.contains("moves aside"), "{said}");
 }
 
 #[test]
