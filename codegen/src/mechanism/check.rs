@@ -71,7 +71,7 @@ fn base_columns(description: &Description) -> BaseColumns {
 }
 
 /// The mechanism as the description says it, with an empty home configuration.
-fn plain(description: &Description) -> Mechanism {
+pub(super) fn plain(description: &Description) -> Mechanism {
     let joint = |j: &crate::description::Joint| Joint {
         name: j.name.value.clone(),
         kind: j.kind.value,
@@ -243,7 +243,8 @@ fn check_structure(description: &Description, mechanism: &Mechanism, errors: &mu
     }
 }
 
-fn rough_home(description: &Description) -> Home {
+/// The home configuration as it is given, which may not close the legs.
+pub(super) fn rough_home(description: &Description) -> Home {
     let joints = description.legs.iter().flat_map(|leg| {
         let own = leg
             .joints

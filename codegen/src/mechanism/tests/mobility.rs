@@ -3,6 +3,12 @@
 use super::{PLANAR, assert_said, changed, said};
 use crate::description;
 use crate::diagnostic::{DiagnosticKind, Source};
+use crate::mechanism::Motion;
+use crate::mechanism::check::{plain, rough_home};
+use crate::mechanism::mobility::Mobility;
+use crate::mechanism::numeric::platform_frame;
+use crate::mechanism::parasitic::closed;
+use nalgebra::Vector3;
 
 /// Three legs of a revolute joint with a horizontal axis, a linear motor and a ball joint. They leave
 /// the platform the motion along z and the rotations about x and y.
@@ -79,6 +85,47 @@ fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
         ],
     );
     assert!(!said(&tilted).contains("mark more joints"));
+}
+
+/// The ball of each leg stays in the vertical plane of the leg's slide, n · (p + R a) = 0: three equations in the
+/// pose alone, and their derivatives n · v + (R a × n) · ω = 0, which owe nothing to the legs' joints.
+#[test]
+fn a_pose_that_is_brought_back_and_its_motions_are_those_of_the_legs_planes() {
+    let tilted = three_rps("spatial").replace(
+        "z = \"0.5 m\" }",
+        "z = \"0.5 m\", rx = \"20 deg\", ry = \"5 deg\" }",
+    );
+    let source = Source::new("rps.toml", tilted);
+    let description = description::parse(&source).expect("a description");
+    let mechanism = plain(&description);
+    let rough = rough_home(&description);
+    let found = closed(&mechanism, &rough).expect("a pose that the legs allow");
+    let pose = platform_frame(Motion::Spatial, &found.home.pose);
+    let mobility = Mobility::at_home(&found).expect("motions");
+    assert_eq!(mobility.count(), 3);
+    let size = found.length_scale();
+    let start = platform_frame(Motion::Spatial, &rough.pose);
+    let mut missed: f64 = 0.0;
+    for psi in [0.0_f64, 120.0, 240.0].map(f64::to_radians) {
+        let normal = Vector3::new(-psi.sin(), psi.cos(), 0.0);
+        let ball = Vector3::new(psi.cos(), psi.sin(), 0.0) * 0.3;
+        missed = missed.max(
+            normal
+                .dot(&(start * nalgebra::Point3::from(ball)).coords)
+                .abs(),
+        );
+        let arm = pose.rotation * ball;
+        let gap = normal.dot(&(pose.translation.vector + arm));
+        assert!(gap.abs() < 1e-9, "{gap}");
+        for twist in mobility.allowed.column_iter() {
+            let linear = Vector3::new(twist[0], twist[1], twist[2]) * size;
+            let angular = Vector3::new(twist[3], twist[4], twist[5]);
+            let rate = normal.dot(&linear) + arm.cross(&normal).dot(&angular);
+            assert!(rate.abs() < 1e-9, "{rate}");
+        }
+    }
+    // What the test starts from is not allowed.
+    assert!(missed > 1e-3, "{missed}");
 }
 
 /// Three legs of three parallel axes each keep a free platform in a plane, everywhere the same.
