@@ -28,11 +28,19 @@ pub(in crate::mechanism) fn too_few_actuators(
         format!("{owner} has {dof} degrees of freedom, but the robot has {count} {actuators}");
     let left = left.and_then(|(m, parasitic)| Some((m.of(motion?.value), m.parts(), parasitic)));
     let help = match left {
-        Some((left, parts, parasitic)) if left < dof => format!(
-            "the legs leave the platform only {left} of these {dof} motions ({}), so more actuators are no way out: {}",
-            Motions::of_directions(&parts).words("along", "about"),
-            way_out(parasitic.as_ref())
-        ),
+        Some((left, parts, parasitic)) if left < dof => {
+            let (words, way) = match &parasitic {
+                Some(found) => (words(&found.independent), moves_aside(found)),
+                None => (
+                    Motions::of_directions(&parts).words("along", "about"),
+                    "choose a `motion` that the legs allow, or give the legs more passive joints"
+                        .to_owned(),
+                ),
+            };
+            format!(
+                "the legs leave the platform only {left} of these {dof} motions ({words}), so more actuators are no way out: {way}"
+            )
+        }
         _ => "mark more joints with actuated = true".to_owned(),
     };
     Diagnostic::new(message, span)
@@ -40,22 +48,19 @@ pub(in crate::mechanism) fn too_few_actuators(
         .help(help)
 }
 
-/// What can be done where the legs leave fewer motions: another `motion`, unless the platform moves aside.
-fn way_out(parasitic: Option<&Parasitic>) -> String {
-    let Some(found) = parasitic else {
-        return "choose a `motion` that the legs allow, or give the legs more passive joints"
-            .to_owned();
-    };
-    let words = |directions: &[usize]| {
-        let parts = std::array::from_fn(|at| f64::from(u8::from(directions.contains(&at))));
-        Motions::of_directions(&parts).words("along", "about")
-    };
+/// A platform that moves aside while it moves: what it does, and a way out.
+fn moves_aside(found: &Parasitic) -> String {
     format!(
-        "it is determined best {} (condition number {:.1} at home), and beside the home pose moves aside, {}, which no `motion` describes: give the legs more passive joints, or hold the platform with a leg that is a skeleton, as robots/tricept.toml does",
-        words(&found.independent),
+        "these determine the others best (condition number {:.1} at home), and beside the home pose the platform moves aside with them, {}, which no `motion` describes: give the legs more passive joints, or hold the platform with a leg that is a skeleton, as robots/tricept.toml does",
         found.condition,
         words(&found.following)
     )
+}
+
+/// "along z, and about x and y".
+fn words(directions: &[usize]) -> String {
+    let parts = std::array::from_fn(|at| f64::from(u8::from(directions.contains(&at))));
+    Motions::of_directions(&parts).words("along", "about")
 }
 
 /// The legs whose joints are all passive, where the missing actuator may have its place.

@@ -58,8 +58,8 @@ fn more_actuators_are_no_way_out_where_the_legs_leave_fewer_motions() {
         &[
             "the platform has 6 degrees of freedom, but the robot has 3 actuators",
             "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
-            "determined best along z, and about x and y (condition number 1.0 at home)",
-            "moves aside, along x and y",
+            "these determine the others best (condition number 1.0 at home)",
+            "moves aside with them, along x and y",
             "which no `motion` describes",
             "leg `rps` has too few joints to follow the platform's motion",
         ],
@@ -79,9 +79,9 @@ fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
         &tilted,
         "5:10",
         &[
-            "the legs leave the platform only 3 of these 6 motions",
-            "determined best along z, and about x and y (condition number 1.",
-            "moves aside, along x and y, and about z, which no `motion` describes",
+            "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
+            "these determine the others best (condition number 1.",
+            "moves aside with them, along x and y, and about z, which no `motion` describes",
         ],
     );
     assert!(!said(&tilted).contains("mark more joints"));
