@@ -4,6 +4,7 @@ use super::actuation::{rates_per_velocity, shared_velocities};
 use super::explain;
 use super::home::Home;
 use super::mobility::Mobility;
+use super::parasitic::{Parasitic, closed};
 use super::states::random_states;
 use super::structure::defects;
 use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
@@ -70,7 +71,7 @@ fn base_columns(description: &Description) -> BaseColumns {
 }
 
 /// The mechanism as the description says it, with an empty home configuration.
-fn plain(description: &Description) -> Mechanism {
+pub(super) fn plain(description: &Description) -> Mechanism {
     let joint = |j: &crate::description::Joint| Joint {
         name: j.name.value.clone(),
         kind: j.kind.value,
@@ -149,15 +150,16 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
                 .help("write `actuated = true` at this joint, or describe the platform that closes the loop"),
         );
     } else if n < r {
-        let mobility = Home::refine(mechanism, &rough_home(description)).ok();
-        let mobility = mobility.and_then(|home| {
-            let closed = Mechanism {
-                home,
-                ..mechanism.clone()
-            };
-            Mobility::at_home(&closed)
-        });
-        errors.push(explain::too_few_actuators(description, mechanism, mobility));
+        let rough = rough_home(description);
+        let at = |home| Mechanism {
+            home,
+            ..mechanism.clone()
+        };
+        let home = Home::refine(mechanism, &rough).ok().map(at);
+        // Where legs block directions, a rough pose is none that they allow.
+        let home = home.or_else(|| closed(mechanism, &rough));
+        let left = home.and_then(|at| Some((Mobility::at_home(&at)?, Parasitic::at_home(&at))));
+        errors.push(explain::too_few_actuators(description, mechanism, left));
     }
 }
 
@@ -252,7 +254,8 @@ fn check_structure(description: &Description, mechanism: &Mechanism, errors: &mu
     }
 }
 
-fn rough_home(description: &Description) -> Home {
+/// The home configuration as it is given, which may not close the legs.
+pub(super) fn rough_home(description: &Description) -> Home {
     let joints = description.legs.iter().flat_map(|leg| {
         let own = leg
             .joints

@@ -25,7 +25,7 @@ use nalgebra::{DMatrix, Matrix3};
 #[derive(Debug)]
 pub(super) struct Mobility {
     /// Twists that the legs leave, as columns.
-    allowed: DMatrix<f64>,
+    pub(super) allowed: DMatrix<f64>,
     /// The shared velocities of all legs per twist.
     felt: DMatrix<f64>,
     /// Rank of what the legs block.
@@ -117,7 +117,7 @@ impl Mobility {
 }
 
 /// The shared velocities of a leg's end per twist of the platform as a free body.
-fn end_velocities(motion: Motion, pose: &[f64], end: &End, size: f64) -> DMatrix<f64> {
+pub(super) fn end_velocities(motion: Motion, pose: &[f64], end: &End, size: f64) -> DMatrix<f64> {
     let frame = platform_frame(motion, pose);
     let arm = (target(end, &frame).translation.vector - frame.translation.vector) / size;
     let mut all = DMatrix::identity(6, 6);
@@ -155,7 +155,8 @@ fn directions(motion: Motion) -> DMatrix<f64> {
     })
 }
 
-fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
+/// One matrix above another.
+pub(super) fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(
         above.nrows() + below.nrows(),
         above.ncols(),

@@ -13,6 +13,7 @@ mod home;
 mod mobility;
 mod motion;
 pub mod numeric;
+mod parasitic;
 mod reach;
 mod singular_values;
 pub(crate) mod states;

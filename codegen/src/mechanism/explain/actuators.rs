@@ -4,6 +4,7 @@ use super::motions::{Motions, listed};
 use crate::description::Description;
 use crate::diagnostic::{Code, Diagnostic, DiagnosticKind};
 use crate::mechanism::mobility::Mobility;
+use crate::mechanism::parasitic::Parasitic;
 use crate::mechanism::singular_values::SingularValues;
 use crate::mechanism::states::random_states;
 use crate::mechanism::{Home, Leg, Mechanism};
@@ -13,7 +14,7 @@ use nalgebra::DMatrix;
 pub(in crate::mechanism) fn too_few_actuators(
     description: &Description,
     mechanism: &Mechanism,
-    mobility: Option<Mobility>,
+    left: Option<(Mobility, Option<Parasitic>)>,
 ) -> Diagnostic {
     let (dof, count) = (mechanism.dof(), mechanism.actuated().len());
     let motion = description.platform.as_ref().map(|p| &p.motion);
@@ -25,17 +26,41 @@ pub(in crate::mechanism) fn too_few_actuators(
     };
     let message =
         format!("{owner} has {dof} degrees of freedom, but the robot has {count} {actuators}");
-    let left = mobility.and_then(|m| Some((m.of(motion?.value), m.parts())));
+    let left = left.and_then(|(m, parasitic)| Some((m.of(motion?.value), m.parts(), parasitic)));
     let help = match left {
-        Some((left, parts)) if left < dof => format!(
-            "the legs leave the platform only {left} of these {dof} motions ({}), so more actuators are no way out: choose a `motion` that the legs allow, or give the legs more passive joints",
-            Motions::of_directions(&parts).words("along", "about")
-        ),
+        Some((left, parts, parasitic)) if left < dof => {
+            let (words, way) = match &parasitic {
+                Some(found) => (words(&found.independent), moves_aside(found)),
+                None => (
+                    Motions::of_directions(&parts).words("along", "about"),
+                    "choose a `motion` that the legs allow, or give the legs more passive joints"
+                        .to_owned(),
+                ),
+            };
+            format!(
+                "the legs leave the platform only {left} of these {dof} motions ({words}), so more actuators are no way out: {way}"
+            )
+        }
         _ => "mark more joints with actuated = true".to_owned(),
     };
     Diagnostic::new(Code::MOVES_FREELY, message, span)
         .label(legs_without_actuator(mechanism))
         .help(help)
+}
+
+/// A platform that moves aside while it moves: what it does, and a way out.
+fn moves_aside(found: &Parasitic) -> String {
+    format!(
+        "these determine the others best (condition number {:.1} at home), and beside the home pose the platform moves aside with them, {}, which no `motion` describes: give the legs more passive joints, or hold the platform with a leg that is a skeleton, as robots/tricept.toml does",
+        found.condition,
+        words(&found.following)
+    )
+}
+
+/// "along z, and about x and y".
+fn words(directions: &[usize]) -> String {
+    let parts = std::array::from_fn(|at| f64::from(u8::from(directions.contains(&at))));
+    Motions::of_directions(&parts).words("along", "about")
 }
 
 /// The legs whose joints are all passive, where the missing actuator may have its place.

@@ -1,8 +1,14 @@
 //! What is said where the legs leave other motions than those that are described.
 
-use super::{assert_said, said};
+use super::{PLANAR, assert_said, changed, said};
 use crate::description;
 use crate::diagnostic::{DiagnosticKind, Source};
+use crate::mechanism::Motion;
+use crate::mechanism::check::{plain, rough_home};
+use crate::mechanism::mobility::Mobility;
+use crate::mechanism::numeric::platform_frame;
+use crate::mechanism::parasitic::closed;
+use nalgebra::Vector3;
 
 /// Three legs of a revolute joint with a horizontal axis, a linear motor and a ball joint. They leave
 /// the platform the motion along z and the rotations about x and y.
@@ -52,11 +58,92 @@ fn more_actuators_are_no_way_out_where_the_legs_leave_fewer_motions() {
         &[
             "the platform has 6 degrees of freedom, but the robot has 3 actuators",
             "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
-            "choose a `motion` that the legs allow",
+            "these determine the others best (condition number 1.0 at home)",
+            "moves aside with them, along x and y",
+            "which no `motion` describes",
             "leg `rps` has too few joints to follow the platform's motion",
         ],
     );
     assert!(!said(&text).contains("mark more joints"));
+}
+
+/// A pose that is tilted, but not moved aside, is none that the legs allow: it is brought back onto them, and
+/// what is left there is said. The legs' planes keep it from turning about z by itself.
+#[test]
+fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
+    let tilted = three_rps("spatial").replace(
+        "z = \"0.5 m\" }",
+        "z = \"0.5 m\", rx = \"20 deg\", ry = \"5 deg\" }",
+    );
+    assert_said(
+        &tilted,
+        "5:10",
+        &[
+            "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
+            "these determine the others best (condition number 1.",
+            "moves aside with them, along x and y, and about z, which no `motion` describes",
+        ],
+    );
+    assert!(!said(&tilted).contains("mark more joints"));
+}
+
+/// The ball of each leg stays in the vertical plane of the leg's slide, n · (p + R a) = 0: three equations in the
+/// pose alone, and their derivatives n · v + (R a × n) · ω = 0, which owe nothing to the legs' joints.
+#[test]
+fn a_pose_that_is_brought_back_and_its_motions_are_those_of_the_legs_planes() {
+    let tilted = three_rps("spatial").replace(
+        "z = \"0.5 m\" }",
+        "z = \"0.5 m\", rx = \"20 deg\", ry = \"5 deg\" }",
+    );
+    let source = Source::new("rps.toml", tilted);
+    let description = description::parse(&source).expect("a description");
+    let mechanism = plain(&description);
+    let rough = rough_home(&description);
+    let found = closed(&mechanism, &rough).expect("a pose that the legs allow");
+    let pose = platform_frame(Motion::Spatial, &found.home.pose);
+    let mobility = Mobility::at_home(&found).expect("motions");
+    assert_eq!(mobility.count(), 3);
+    let size = found.length_scale();
+    let start = platform_frame(Motion::Spatial, &rough.pose);
+    let mut missed: f64 = 0.0;
+    for psi in [0.0_f64, 120.0, 240.0].map(f64::to_radians) {
+        let normal = Vector3::new(-psi.sin(), psi.cos(), 0.0);
+        let ball = Vector3::new(psi.cos(), psi.sin(), 0.0) * 0.3;
+        missed = missed.max(
+            normal
+                .dot(&(start * nalgebra::Point3::from(ball)).coords)
+                .abs(),
+        );
+        let arm = pose.rotation * ball;
+        let gap = normal.dot(&(pose.translation.vector + arm));
+        assert!(gap.abs() < 1e-9, "{gap}");
+        for twist in mobility.allowed.column_iter() {
+            let linear = Vector3::new(twist[0], twist[1], twist[2]) * size;
+            let angular = Vector3::new(twist[3], twist[4], twist[5]);
+            let rate = normal.dot(&linear) + arm.cross(&normal).dot(&angular);
+            assert!(rate.abs() < 1e-9, "{rate}");
+        }
+    }
+    // What the test starts from is not allowed.
+    assert!(missed > 1e-3, "{missed}");
+}
+
+/// Three legs of three parallel axes each keep a free platform in a plane, everywhere the same.
+#[test]
+fn a_platform_that_does_not_move_aside_has_a_motion() {
+    let free = [
+        ("motion = \"planar\"", "motion = \"spatial\""),
+        ("phi = \"0 deg\"", "rz = \"0 deg\""),
+    ];
+    let text = changed(PLANAR, &free);
+    let said = said(&text);
+    for words in [
+        "only 3 of these 6 motions (along x and y, and about z)",
+        "choose a `motion` that the legs allow",
+    ] {
+        assert!(said.contains(words), "{words}\nin\n{said}");
+    }
+    assert!(!said.contains("moves aside"), "{said}");
 }
 
 #[test]
