@@ -23,8 +23,23 @@ use std::f64::consts::TAU;
 
 use crate::{error::Cause, experiment::Experiment};
 
+/// A controller in the loop: the simulation's own, or one that is to be tried on the virtual robot.
+pub trait Control {
+    /// Writes the n torques for one sample from what the trajectory asks for and the measured positions.
+    ///
+    /// # Errors
+    /// A motion for which the controller's model has no value; the run ends there.
+    fn step(
+        &mut self,
+        desired: &Desired<'_>,
+        measured: &[f64],
+        torques: &mut [f64],
+    ) -> Result<(), overact::Error>;
+}
+
 /// Controller of one run; nothing is allocated after `new`.
 pub(crate) struct Controller<'a> {
+    model: &'a dyn Model,
     stiffness: Vec<f64>,
     damping: Vec<f64>,
     sampling_hz: f64,
@@ -40,11 +55,12 @@ pub(crate) struct Controller<'a> {
 }
 
 impl<'a> Controller<'a> {
-    /// A controller for actuators of the given effective inertias (kg m² or kg) on a platform with
-    /// `dof` coordinates.
-    pub(crate) fn new(experiment: &'a Experiment, inertia: &[f64], dof: usize) -> Self {
+    /// A controller for actuators of the given effective inertias (kg m² or kg) of a robot.
+    pub(crate) fn new(model: &'a dyn Model, experiment: &'a Experiment, inertia: &[f64]) -> Self {
+        let dof = model.info().sizes.dof;
         let rate = TAU * experiment.bandwidth_hz;
         Self {
+            model,
             stiffness: inertia.iter().map(|m| rate * rate * m).collect(),
             damping: inertia
                 .iter()
@@ -61,16 +77,15 @@ impl<'a> Controller<'a> {
             command: vec![0.0; inertia.len()],
         }
     }
+}
 
-    /// Writes the torques for one sample from desired and measured positions, the feed-forward and
-    /// the desired pose.
-    pub(crate) fn step(
+impl Control for Controller<'_> {
+    fn step(
         &mut self,
-        model: &dyn Model,
         desired: &Desired<'_>,
         measured: &[f64],
         torques: &mut [f64],
-    ) -> Result<(), Cause> {
+    ) -> Result<(), overact::Error> {
         for (i, position) in measured.iter().enumerate() {
             let error = desired.positions[i] - position;
             let rate = if self.started {
@@ -86,13 +101,10 @@ impl<'a> Controller<'a> {
         }
         self.started = true;
         if self.project {
-            model
-                .evaluate(
-                    Function::ProjectTorques,
-                    &[desired.pose, &self.command],
-                    torques,
-                )
-                .map_err(|e| Cause::Model(e.error))?;
+            let inputs: [&[f64]; 2] = [desired.pose, &self.command];
+            self.model
+                .evaluate(Function::ProjectTorques, &inputs, torques)
+                .map_err(|e| e.error)?;
         } else {
             torques.copy_from_slice(&self.command);
         }
@@ -104,13 +116,18 @@ impl<'a> Controller<'a> {
 }
 
 /// What the trajectory asks for at one sample.
-pub(crate) struct Desired<'a> {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Desired<'a> {
     /// Platform pose.
-    pub(crate) pose: &'a [f64],
-    /// Actuator positions.
-    pub(crate) positions: &'a [f64],
-    /// Feed-forward torques.
-    pub(crate) torques: &'a [f64],
+    pub pose: &'a [f64],
+    /// Twist, r numbers, m/s or rad/s.
+    pub twist: &'a [f64],
+    /// Its derivative, m/s² or rad/s².
+    pub acceleration: &'a [f64],
+    /// Positions of the n actuators, m or rad, without jumps of a turn.
+    pub positions: &'a [f64],
+    /// Feed-forward torques, N m or N; zero where the experiment has none.
+    pub torques: &'a [f64],
 }
 
 /// a of the filtered derivative.
@@ -266,15 +283,17 @@ mod tests {
         let range = &jacobian * jacobian.clone().pseudo_inverse(1e-12).unwrap();
         let experiment = Experiment::default();
         let internal = |experiment: &Experiment| {
-            let mut controller = Controller::new(experiment, &[1.0, 1.0, 1.0], 2);
+            let mut controller = Controller::new(&model, experiment, &[1.0, 1.0, 1.0]);
             let desired = Desired {
                 pose: &pose,
+                twist: &[0.0; 2],
+                acceleration: &[0.0; 2],
                 positions: &[1.0; 3],
                 torques: &[1.0, 2.0, 3.0],
             };
             let mut torques = [0.0; 3];
             controller
-                .step(&model, &desired, &[0.999, 1.0, 1.001], &mut torques)
+                .step(&desired, &[0.999, 1.0, 1.001], &mut torques)
                 .unwrap();
             let torques = DMatrix::from_column_slice(3, 1, &torques);
             ((&range * &torques - &torques).norm(), torques.amax())

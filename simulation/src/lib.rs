@@ -64,10 +64,11 @@ mod validation;
 mod support;
 
 pub use cascade::{Cascade, Recorded, follow_recorded};
+pub use controller::{Control, Desired};
 pub use drives::Drives;
 pub use error::{Cause, Error, Problem, RunError, Stage};
 pub use experiment::{Experiment, Run};
 pub use log::write_csv;
 pub use reference::{Sampled, sample};
-pub use run::{Record, simulate};
+pub use run::{Record, actuator_inertias, simulate, simulate_controlled};
 pub use trajectory::{Term, Trajectory};

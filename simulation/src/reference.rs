@@ -141,8 +141,11 @@ impl<'a> Reference<'a> {
     pub(crate) fn row(&self, row: usize) -> Desired<'_> {
         let sizes = self.info.sizes;
         let actuators = row * sizes.actuators..(row + 1) * sizes.actuators;
+        let platform = row * sizes.dof..(row + 1) * sizes.dof;
         Desired {
             pose: &self.pose[row * sizes.pose..(row + 1) * sizes.pose],
+            twist: &self.twist[platform.clone()],
+            acceleration: &self.acceleration[platform],
             positions: &self.positions[actuators.clone()],
             torques: &self.torques[actuators],
         }

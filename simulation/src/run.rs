@@ -20,7 +20,7 @@ use std::{
 use overact::{Function, Model};
 
 use crate::{
-    controller::{Controller, Desired, effective_inertia},
+    controller::{Control, Controller, Desired, effective_inertia},
     error::{Cause, Error, RunError, Stage},
     experiment::{Experiment, Run},
     plant::Plant,
@@ -120,6 +120,58 @@ pub fn simulate(
     }
 }
 
+/// Makes one run with a controller of the caller's in the place of the simulation's own. Of the experiment's
+/// controller only the feed-forward is computed, for those who take it from [`Desired::torques`]; what the torque
+/// limit is to the controller is its own affair.
+///
+/// # Errors
+/// All problems of the experiment with this run, or what ended the run.
+pub fn simulate_controlled(
+    model: &dyn Model,
+    experiment: &Experiment,
+    run: &Run,
+    control: &mut dyn Control,
+) -> Result<Record, Error> {
+    checked(model, experiment, run)?;
+    controlled(model, experiment, run, control, &|_| {}).map_err(|error| Error::Runs(vec![error]))
+}
+
+/// Effective inertias of the actuators (kg m² or kg) from which the gains of the simulation's controller are
+/// computed for a run: K_p = ω_c² m and K_d = 2ξω_c m. With them no mode of the controlled robot is faster than
+/// the bandwidth anywhere along the run.
+///
+/// # Errors
+/// All problems of the experiment with this run, or a robot that has no such inertias at home.
+pub fn actuator_inertias(
+    model: &dyn Model,
+    experiment: &Experiment,
+    run: &Run,
+) -> Result<Vec<f64>, Error> {
+    checked(model, experiment, run)?;
+    let nominal = experiment.controller_parameters(run, &model.info().sizes);
+    inertias(model, experiment, run, &nominal).map_err(|cause| {
+        Error::Runs(vec![RunError {
+            run: run.name.clone(),
+            time_s: 0.0,
+            stage: Stage::Controller,
+            cause,
+        }])
+    })
+}
+
+/// Refuses an experiment of this run alone that makes no sense.
+fn checked(model: &dyn Model, experiment: &Experiment, run: &Run) -> Result<(), Error> {
+    let alone = Experiment {
+        runs: vec![run.clone()],
+        ..experiment.clone()
+    };
+    let problems = alone.problems(&model.info());
+    match problems.is_empty() {
+        true => Ok(()),
+        false => Err(Error::Experiment(problems)),
+    }
+}
+
 /// What a worker tells of a run.
 enum News {
     /// So many samples more are done.
@@ -128,34 +180,60 @@ enum News {
     Finished(Result<Record, RunError>),
 }
 
-/// Makes one run; `tell` hears the number of samples that have just been done.
+/// Makes one run with the experiment's controller; `tell` hears the number of samples that have just been done.
 fn simulate_run(
     model: &dyn Model,
     experiment: &Experiment,
     run: &Run,
     tell: &dyn Fn(usize),
 ) -> Result<Record, RunError> {
+    let nominal = experiment.controller_parameters(run, &model.info().sizes);
+    // A trajectory out of reach is told before what it makes of the controller.
+    let mut reference = Reference::new(model, &run.trajectory, experiment.sampling_hz, None);
+    let samples = experiment.samples(run);
+    reference
+        .fill(0, BLOCK.min(samples))
+        .map_err(|(k, error)| at(experiment, run, k)((Stage::Trajectory, Cause::Model(error))))?;
+    let inertia = inertias(model, experiment, run, &nominal)
+        .map_err(|cause| at(experiment, run, 0)((Stage::Controller, cause)))?;
+    let mut controller = Controller::new(model, experiment, &inertia);
+    controlled(model, experiment, run, &mut controller, tell)
+}
+
+/// What went wrong at sample k of a run.
+fn at<'a>(
+    experiment: &'a Experiment,
+    run: &'a Run,
+    k: usize,
+) -> impl Fn((Stage, Cause)) -> RunError + 'a {
+    move |(stage, cause)| RunError {
+        run: run.name.clone(),
+        time_s: k as f64 / experiment.sampling_hz,
+        stage,
+        cause,
+    }
+}
+
+/// Makes one run; `tell` hears the number of samples that have just been done.
+fn controlled(
+    model: &dyn Model,
+    experiment: &Experiment,
+    run: &Run,
+    control: &mut dyn Control,
+    tell: &dyn Fn(usize),
+) -> Result<Record, RunError> {
     let sizes = model.info().sizes;
     let samples = experiment.samples(run);
     let truth = experiment.true_parameters(run, &sizes);
     let nominal = experiment.controller_parameters(run, &sizes);
-    let located = |k: usize| {
-        move |(stage, cause)| RunError {
-            run: run.name.clone(),
-            time_s: k as f64 / experiment.sampling_hz,
-            stage,
-            cause,
-        }
-    };
+    let located = |k: usize| at(experiment, run, k);
     let off_course = |(k, error): AtSample| located(k)((Stage::Trajectory, Cause::Model(error)));
 
     let feed_forward = experiment.feed_forward.then_some(nominal.as_slice());
     let mut reference =
         Reference::new(model, &run.trajectory, experiment.sampling_hz, feed_forward);
     reference.fill(0, BLOCK.min(samples)).map_err(off_course)?;
-    let controller = run_controller(model, experiment, run, &nominal)
-        .map_err(|cause| located(0)((Stage::Controller, cause)))?;
-    let mut state = Loop::new(model, experiment, run, &truth, controller, &reference);
+    let mut state = Loop::new(model, experiment, run, &truth, control, &reference);
     for first in (0..samples).step_by(BLOCK) {
         let count = BLOCK.min(samples - first);
         if first > 0 {
@@ -174,7 +252,7 @@ fn simulate_run(
 /// The closed loop of one run.
 struct Loop<'a> {
     model: &'a dyn Model,
-    controller: Controller<'a>,
+    control: &'a mut dyn Control,
     drives: Train<'a>,
     plant: Plant<'a>,
     sensors: Sensors<'a>,
@@ -196,7 +274,7 @@ impl<'a> Loop<'a> {
         experiment: &'a Experiment,
         run: &Run,
         truth: &'a [f64],
-        controller: Controller<'a>,
+        control: &'a mut dyn Control,
         reference: &Reference<'_>,
     ) -> Self {
         let info = model.info();
@@ -205,7 +283,7 @@ impl<'a> Loop<'a> {
         let steps = experiment.integration_steps;
         Self {
             model,
-            controller,
+            control,
             drives: Train::new(experiment, info.actuator_is_revolute),
             plant: Plant::new(model, truth, pose, twist),
             sensors: Sensors::new(experiment, sizes.actuators, &run.name),
@@ -230,9 +308,9 @@ impl<'a> Loop<'a> {
         self.drives.deflect(measured);
         self.sensors.delay(measured);
         self.sensors.encode(measured);
-        self.controller
-            .step(self.model, desired, measured, &mut self.commands)
-            .map_err(|cause| (Stage::Controller, cause))?;
+        self.control
+            .step(desired, measured, &mut self.commands)
+            .map_err(|error| (Stage::Controller, Cause::Model(error)))?;
         self.drives.take(&self.commands);
         self.record
             .track(k, desired)
@@ -265,25 +343,19 @@ impl<'a> Loop<'a> {
     }
 }
 
-/// The controller of a run, its gains checked at poses spread along the run.
-fn run_controller<'a>(
+/// Effective inertias of a run's actuators, checked at poses spread along the run.
+fn inertias(
     model: &dyn Model,
-    experiment: &'a Experiment,
+    experiment: &Experiment,
     run: &Run,
     parameters: &[f64],
-) -> Result<Controller<'a>, Cause> {
+) -> Result<Vec<f64>, Cause> {
     let samples = experiment.samples(run);
     let poses: Vec<Vec<f64>> = (0..GAIN_POSES)
         .map(|i| (i * samples / GAIN_POSES) as f64 / experiment.sampling_hz)
         .map(|t| pose_at(model, &run.trajectory, t))
         .collect();
-    let poses = poses.iter().map(Vec::as_slice);
-    let inertia = effective_inertia(model, parameters, poses)?;
-    Ok(Controller::new(
-        experiment,
-        &inertia,
-        model.info().sizes.dof,
-    ))
+    effective_inertia(model, parameters, poses.iter().map(Vec::as_slice))
 }
 
 impl Record {
