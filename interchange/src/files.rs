@@ -1,6 +1,6 @@
 //! Files that are read, and what is wrong in them: each error with its file and its line, all of them at once.
 
-use overact_codegen::diagnostic::{Diagnostic, Diagnostics, Source, Span};
+use overact_codegen::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span};
 use std::{
     cell::RefCell,
     fs, io,
@@ -51,7 +51,7 @@ impl Files {
         all.push((path.to_owned(), source, Diagnostics::new()));
         let at = all.len() - 1;
         if let Some(message) = message {
-            all[at].2.push(Diagnostic::global(message));
+            all[at].2.push(Diagnostic::global(Code::FOREIGN, message));
             return None;
         }
         Some(at)
@@ -104,14 +104,16 @@ impl Files {
         message: impl Into<String>,
         help: impl Into<String>,
     ) {
-        let error = Diagnostic::new(message, place.span.clone()).help(help);
+        let error = Diagnostic::new(Code::FOREIGN, message, place.span.clone()).help(help);
         self.read.borrow_mut()[place.file].2.push(error);
     }
 
     /// Notes an error of the first file as a whole.
     pub(crate) fn refuse(&self, message: impl Into<String>, help: impl Into<String>) {
         if let Some(first) = self.read.borrow_mut().first_mut() {
-            first.2.push(Diagnostic::global(message).help(help));
+            first
+                .2
+                .push(Diagnostic::global(Code::FOREIGN, message).help(help));
         }
     }
 

@@ -4,6 +4,7 @@ use crate::{
     failure::{Failure, Problem},
     output::{check, emit},
 };
+use overact_codegen::diagnostic::Code;
 use overact_interchange::{Options, import};
 use overact_robot::Error;
 use std::path::PathBuf;
@@ -77,7 +78,7 @@ fn failure(errors: overact_interchange::Errors) -> Failure {
         });
     let all: Vec<Error> = described.collect();
     match all.is_empty() {
-        true => Problem::new("the file can't be read").into(),
+        true => Problem::new(Code::FOREIGN, "the file can't be read").into(),
         false => Failure::from(all),
     }
 }

@@ -24,7 +24,8 @@ pub(super) fn open_array(file: String, path: &Path) -> Result<Arrays, Error> {
     let bytes = std::fs::read(path).map_err(|error| unreadable(&file, &error))?;
     let mut arrays = Arrays::new(file.clone());
     push(&mut arrays, "array", &bytes).map_err(|why| {
-        let problem = Problem::new(Code::LOG_FORMAT, format!("the file is NumPy's, but {why}")).file(file);
+        let problem =
+            Problem::new(Code::LOG_FORMAT, format!("the file is NumPy's, but {why}")).file(file);
         problem.help("write it anew with `numpy.save`, an array of numbers, samples x columns")
     })?;
     Ok(arrays)
@@ -38,7 +39,10 @@ pub(super) fn open_array(file: String, path: &Path) -> Result<Arrays, Error> {
 pub(super) fn open_archive(file: String, path: &Path) -> Result<Arrays, Error> {
     let bytes = std::fs::read(path).map_err(|error| unreadable(&file, &error))?;
     let broken = |why: String| -> Error {
-        let problem = Problem::new(Code::LOG_FORMAT, format!("the zip archive can't be read: {why}"));
+        let problem = Problem::new(
+            Code::LOG_FORMAT,
+            format!("the zip archive can't be read: {why}"),
+        );
         let help = "copy the file once more, or write it anew with `numpy.savez`";
         problem.file(file.as_str()).help(help).into()
     };
@@ -65,7 +69,10 @@ pub(super) fn open_archive(file: String, path: &Path) -> Result<Arrays, Error> {
     if arrays.columns() == 0 {
         let message = format!("no array of the file can be read: {}", left_out.join("; "));
         let help = "write it anew with `numpy.savez`, arrays of numbers, samples x columns";
-        return Err(Problem::new(Code::LOG_FORMAT, message).file(file).help(help).into());
+        return Err(Problem::new(Code::LOG_FORMAT, message)
+            .file(file)
+            .help(help)
+            .into());
     }
     Ok(arrays)
 }
