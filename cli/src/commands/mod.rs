@@ -3,9 +3,12 @@
 mod check;
 mod evaluate;
 mod excite;
+mod factor;
+mod factors;
 mod generate;
 mod identify;
 mod inspect;
+mod merge;
 mod new;
 mod partitions;
 mod payloads;
@@ -47,6 +50,10 @@ pub(crate) enum Command {
     Simulate(simulate::Arguments),
     /// Estimate a robot's parameters from logs, or from its virtual experiment
     Identify(identify::Arguments),
+    /// Write the R factors of logs, kilobytes from which parameters are identified without them
+    Factor(factor::Arguments),
+    /// Put factor files together, nothing twice
+    Merge(merge::Arguments),
     /// Compare all choices of kept actuators of case 2
     Partitions(partitions::Arguments),
 }
@@ -66,6 +73,8 @@ impl Command {
             Self::Excite(arguments) => excite::run(arguments, json),
             Self::Simulate(arguments) => simulate::run(arguments, json),
             Self::Identify(arguments) => identify::run(arguments, json),
+            Self::Factor(arguments) => factor::run(arguments, json),
+            Self::Merge(arguments) => merge::run(arguments, json),
             Self::Partitions(arguments) => partitions::run(arguments, json),
         }
     }
@@ -81,6 +90,8 @@ impl Command {
             Self::Excite(_) => "excite",
             Self::Simulate(_) => "simulate",
             Self::Identify(_) => "identify",
+            Self::Factor(_) => "factor",
+            Self::Merge(_) => "merge",
             Self::Partitions(_) => "partitions",
         }
     }
@@ -88,7 +99,8 @@ impl Command {
     /// The descriptions that it is about, for a report of a defect.
     pub(crate) fn descriptions(&self) -> String {
         let files: &[PathBuf] = match self {
-            Self::New(_) => &[],
+            Self::New(_) | Self::Merge(_) => &[],
+            Self::Factor(arguments) => slice::from_ref(&arguments.file),
             Self::Check(arguments) => arguments.files.as_slice(),
             Self::Generate(arguments) => arguments.files.as_slice(),
             Self::Inspect(arguments) => slice::from_ref(&arguments.file),
