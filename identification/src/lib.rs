@@ -26,6 +26,7 @@
 //! | `consistent` | standard parameters that a robot can have, the nearest to a prior that the data allow |
 //! | `assessment` | checks of data, model, fit and extrapolation, and the verdict that follows from them alone |
 //! | `identify` | the procedure and its result |
+//! | [`factors`] | runs as factor files, merged and identified without their logs |
 
 mod assessment;
 mod blocks;
@@ -34,6 +35,7 @@ mod consistent;
 pub mod data;
 mod error;
 mod estimation;
+pub mod factors;
 pub mod filters;
 mod gains;
 mod gravity;

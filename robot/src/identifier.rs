@@ -11,8 +11,9 @@ use overact::Model;
 use overact_codegen::description::{COUPLED_MOTORS, GAINS_AND_GRAVITY, KNOWN_TORQUES, Leg};
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
-    Before, Calibration, CalibrationScope, Dataset, Gains, GravityDirection, Identification,
-    Instruments, Log, Progress, Settings, Stage, Study, drive_gains, identify_after, study,
+    Before, Calibration, CalibrationScope, Dataset, Estimate, Gains, GravityDirection,
+    Identification, Instruments, Log, Progress, Settings, Stage, Study, drive_gains,
+    identify_after, study,
 };
 use std::collections::BTreeMap;
 
@@ -293,7 +294,7 @@ impl<'a> Identifier<'a> {
             self.robot.model(),
             &dataset,
             before,
-            &without_elimination(&settings, essential),
+            &essential_or_not(&settings, essential),
             self.progress,
         )?;
         if !essential {
@@ -326,7 +327,7 @@ impl<'a> Identifier<'a> {
     fn studied(&self) -> Result<Study, Error> {
         let sizes = self.robot.model().info().sizes;
         let choices = partitions(sizes.actuators, sizes.dof);
-        let settings = without_elimination(&self.with_defaults(), self.essential());
+        let settings = essential_or_not(&self.with_defaults(), self.essential());
         let (model, dataset) = (self.robot.model(), self.dataset());
         Ok(study(model, &dataset, &choices, &settings, self.progress)?)
     }
@@ -355,7 +356,7 @@ impl<'a> Identifier<'a> {
 
 /// Settings with which the elimination ends before it starts, where no essential parameters are asked
 /// for.
-fn without_elimination(settings: &Settings, essential: bool) -> Settings {
+pub(crate) fn essential_or_not(settings: &Settings, essential: bool) -> Settings {
     let r_sigma = match essential {
         true => settings.r_sigma,
         false => f64::INFINITY,
@@ -366,10 +367,15 @@ fn without_elimination(settings: &Settings, essential: bool) -> Settings {
     }
 }
 
+/// Leaves the estimates of the base parameters only.
+pub(crate) fn without_essential_estimates(estimates: &mut Vec<Estimate>) {
+    estimates.retain(|one| matches!(one.stage, Stage::Base | Stage::Consistent));
+}
+
 /// Leaves the base parameters only.
 fn without_essential(result: &mut Identification) {
     let is_kept = |stage: Stage| matches!(stage, Stage::Base | Stage::Consistent);
-    result.estimates.retain(|one| is_kept(one.stage));
+    without_essential_estimates(&mut result.estimates);
     result.cross_validation.retain(|one| is_kept(one.stage));
     for verdict in &mut result.verdicts {
         verdict.stages.retain(|one| is_kept(one.stage));

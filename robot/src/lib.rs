@@ -33,7 +33,8 @@
 //! - `instruments`: the motion of the simulated robot beside runs, by which errors of theirs are told;
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
 //! - `kept`: kept actuators of case 2 by name;
-//! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
+//! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators;
+//! - `factors`: runs as factor files, and the parameters from them.
 
 /// The programs of the page that shows languages side by side.
 #[cfg(doctest)]
@@ -47,6 +48,7 @@ mod compiled_file;
 mod error;
 mod excitation;
 mod experiment;
+mod factors;
 mod gravity;
 mod identifier;
 mod instruments;

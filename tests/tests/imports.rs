@@ -64,6 +64,7 @@ const HOUSES: [House; 7] = [
             "consistent",
             "assessment",
             "identify",
+            "factors",
         ],
     },
     House {
@@ -129,6 +130,7 @@ const HOUSES: [House; 7] = [
             "partitions",
             "motors",
             "identifier",
+            "factors",
         ],
     },
     House {

@@ -3,7 +3,7 @@
 //! Measured or virtual, the identification sees positions and torques of the actuators only. The true
 //! values of a virtual experiment stand beside the estimates and nowhere in them.
 
-use super::runs;
+use super::{factors, runs};
 use crate::{
     failure::{Failure, Problem},
     input, note, output,
@@ -25,6 +25,12 @@ pub(crate) struct Arguments {
     pub(super) file: PathBuf,
     #[command(flatten)]
     runs: runs::Arguments,
+    /// Factor files (`overact factor`) in the place of logs
+    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "parameters"])]
+    factors: Vec<PathBuf>,
+    /// Leave out what can't be used of factor files, and say so
+    #[arg(long, requires = "factors")]
+    skip_bad: bool,
     /// Kept actuators of case 2 [default: those of the description]
     #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
     kept: Option<Vec<String>>,
@@ -97,6 +103,9 @@ impl From<Scope> for CalibrationScope {
 /// Logs that can't be used, a virtual experiment that can't be made, or data that determine nothing; with
 /// `--strict` a result that is not to be used, which has been written then.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    if !arguments.factors.is_empty() {
+        return from_factors(arguments, as_json);
+    }
     let reports = arguments.reports.check(&arguments.file)?;
     let inputs = [arguments.runs.inputs(&arguments.file), reports.inputs()].concat();
     let output = output::file(arguments.output.as_ref());
@@ -172,6 +181,22 @@ fn warnings(result: &Identification) -> Vec<String> {
         }
     }
     all
+}
+
+/// The parameters from factor files.
+fn from_factors(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    if arguments.runs.names_logs() {
+        let message = "`--factors` takes the place of logs: leave out one of both";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    factors::run(&factors::Request {
+        description: &arguments.file,
+        files: &arguments.factors,
+        skip_bad: arguments.skip_bad,
+        kept: arguments.kept.as_deref(),
+        output: output::file(arguments.output.as_ref()),
+        as_json,
+    })
 }
 
 fn no_parameters() -> Failure {

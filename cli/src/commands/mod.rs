@@ -4,10 +4,13 @@ mod check;
 mod evaluate;
 mod excite;
 mod explain;
+mod factor;
+mod factors;
 mod generate;
 mod identify;
 mod import;
 mod inspect;
+mod merge;
 mod new;
 mod partitions;
 mod payloads;
@@ -53,6 +56,10 @@ pub(crate) enum Command {
     Simulate(simulate::Arguments),
     /// Estimate a robot's parameters from logs, or from its virtual experiment
     Identify(identify::Arguments),
+    /// Write the R factors of logs, kilobytes from which parameters are identified without them
+    Factor(factor::Arguments),
+    /// Put factor files together, nothing twice
+    Merge(merge::Arguments),
     /// Compare all choices of kept actuators of case 2
     Partitions(partitions::Arguments),
     /// Tell the cause and the cure of an error by its code
@@ -80,6 +87,8 @@ impl Command {
             Self::Excite(arguments) => excite::run(arguments, json),
             Self::Simulate(arguments) => simulate::run(arguments, json),
             Self::Identify(arguments) => identify::run(arguments, json),
+            Self::Factor(arguments) => factor::run(arguments, json),
+            Self::Merge(arguments) => merge::run(arguments, json),
             Self::Partitions(arguments) => partitions::run(arguments, json),
             Self::Explain(arguments) => explain::run(arguments, json),
             Self::Completions(arguments) => shell::completions(arguments),
@@ -99,6 +108,8 @@ impl Command {
             Self::Excite(_) => "excite",
             Self::Simulate(_) => "simulate",
             Self::Identify(_) => "identify",
+            Self::Factor(_) => "factor",
+            Self::Merge(_) => "merge",
             Self::Partitions(_) => "partitions",
             Self::Explain(_) => "explain",
             Self::Completions(_) => "completions",
@@ -110,7 +121,12 @@ impl Command {
     /// The descriptions that it is about, for a report of a defect.
     pub(crate) fn descriptions(&self) -> String {
         let files: &[PathBuf] = match self {
-            Self::New(_) | Self::Explain(_) | Self::Completions(_) | Self::Manual(_) => &[],
+            Self::New(_)
+            | Self::Merge(_)
+            | Self::Explain(_)
+            | Self::Completions(_)
+            | Self::Manual(_) => &[],
+            Self::Factor(arguments) => slice::from_ref(&arguments.file),
             Self::Check(arguments) => arguments.files.as_slice(),
             Self::Generate(arguments) => arguments.files.as_slice(),
             Self::Inspect(arguments) => slice::from_ref(&arguments.file),

@@ -56,6 +56,25 @@ enum Friction {
 }
 
 impl Arguments {
+    /// Runs of logs, without and with the payload.
+    pub(super) const fn of_logs(data: Vec<PathBuf>, payload_data: Vec<PathBuf>) -> Self {
+        Self {
+            data,
+            payload_data,
+            cross_validate: Vec::new(),
+            cross_validate_payload: Vec::new(),
+            seed: None,
+            spool: OnceCell::new(),
+            friction: None,
+        }
+    }
+
+    /// Whether any log is named.
+    pub(super) fn names_logs(&self) -> bool {
+        let held_out = [&self.cross_validate, &self.cross_validate_payload];
+        !self.are_virtual() || held_out.into_iter().any(|logs| !logs.is_empty())
+    }
+
     /// Whether the runs are those of the virtual experiment.
     pub(super) fn are_virtual(&self) -> bool {
         self.data.is_empty() && self.payload_data.is_empty()

@@ -43,4 +43,7 @@ super::codes! {
     LOG_ACTUATORS 314 "a log of another robot"
         cause "The run has another number of actuators than the robot."
         cure "Check that the description and the log belong together, and `positions` of [data]."
+    FACTORS 315 "a factor file that can't be used"
+        cause "The file is not whole, is of a newer version, holds runs of another description or of other settings, or lacks a model, or nothing is left of it."
+        cure "Copy the file again, or factor its logs anew with this description and program; `--skip-bad` goes on without what can't be used, and says what was left out."
 }

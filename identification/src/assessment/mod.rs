@@ -21,5 +21,5 @@ pub(crate) mod suspects;
 pub(crate) mod torques;
 pub(crate) mod verdict;
 
-pub(crate) use checks::{Context, Watched, checks};
+pub(crate) use checks::{Context, Watched, checks, raw_numbers::suspicious};
 pub(crate) use explained::explained;

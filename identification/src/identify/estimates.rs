@@ -301,7 +301,7 @@ impl Context<'_> {
         selected: &[usize],
     ) -> Vec<f64> {
         let own = noise.map_or_else(
-            || estimation.standard_deviations.clone(),
+            || self.without_noise(estimation, selected),
             |noise| noise.deviations(selected, estimation),
         );
         let place = (selected, estimation.weights.as_slice());
@@ -311,6 +311,23 @@ impl Context<'_> {
         let more = more.diagonal();
         let each = own.iter().zip(more.iter());
         each.map(|(own, more)| (own * own + more).sqrt()).collect()
+    }
+
+    /// Deviations without successive equations: white ones, and of all base parameters those of the intervals where
+    /// these are larger.
+    fn without_noise(&self, estimation: &Estimation, selected: &[usize]) -> Vec<f64> {
+        let white = estimation.standard_deviations.iter();
+        if !self.system.stretches.is_empty() || selected.len() < self.intervals.deviations().len() {
+            return white.copied().collect();
+        }
+        let pairs = white.zip(selected);
+        pairs
+            .map(|(white, &column)| {
+                self.intervals
+                    .deviation_of(column)
+                    .map_or(*white, |own| white.max(own))
+            })
+            .collect()
     }
 
     /// SI unit of a base parameter.

@@ -21,6 +21,7 @@ use overact::Model;
 
 pub use estimates::{Outcome, estimate_projection};
 pub use identification::{BaseParameter, Identification, Regrouping};
+pub(crate) use prepare::LARGEST_STRETCHES;
 pub use prepare::{Prepared, prepare};
 pub use progress::Progress;
 pub use study::{RankedProjection, Study, study};
@@ -178,6 +179,21 @@ pub fn identify_after(
         cross_validation,
         errors_in_regressor,
     })
+}
+
+/// The estimates of systems that are prepared, by least squares, then by ordinary ones.
+pub(crate) fn estimates_of(
+    prepared: &Prepared,
+    settings: &Settings,
+    progress: &dyn Fn(Progress<'_>),
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Estimate>, Error> {
+    warnings.extend(prepared_warnings(prepared, &[]));
+    let outcomes = estimate_all(prepared, settings, None, progress);
+    let (_, beside) = regressor_errors(&outcomes);
+    let own = estimates(outcomes, &prepared.projections, warnings)?;
+    let own = own.into_iter().map(|(_, one)| one);
+    Ok(own.chain(beside).collect())
 }
 
 /// Where the actuators moved in all runs.

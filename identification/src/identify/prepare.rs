@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// Values of all runs and projections that are kept as successive equations (64 MB).
-const LARGEST_STRETCHES: usize = 1 << 23;
+pub(crate) const LARGEST_STRETCHES: usize = 1 << 23;
 
 /// The data as the projections see them: their systems, the columns and the base parameters.
 #[derive(Debug, Clone)]
@@ -55,6 +55,26 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// Of systems that were made elsewhere, without what is told of the logs beside their equations.
+    pub(crate) fn of_systems(
+        (columns, base, payload): (ColumnSet, BaseParameters, PayloadUse),
+        (projections, systems): (Vec<Projection>, Vec<Result<System, Error>>),
+        runs: Vec<RunSummary>,
+    ) -> Self {
+        Self {
+            columns,
+            base,
+            payload,
+            projections,
+            systems,
+            runs,
+            seen: Vec::new(),
+            points: Vec::new(),
+            companions: Companions::default(),
+            shares: None,
+        }
+    }
+
     /// With the uncertainty of gains by which the torques of the runs have been multiplied.
     pub(super) fn with_gains(
         mut self,

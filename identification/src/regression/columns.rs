@@ -136,6 +136,11 @@ impl Column {
         }
     }
 
+    /// Whether it is one of the payload.
+    pub(crate) const fn is_of_payload(&self) -> bool {
+        self.origin.is_of_payload()
+    }
+
     /// Whether the column counts where the robot carries this.
     fn counts(&self, carried: Load<'_>) -> bool {
         !self.origin.is_of_payload()

@@ -35,6 +35,15 @@ impl Factor {
         }
     }
 
+    /// The factor with this R, upper triangular, of so many equations with these sums of columns.
+    pub(crate) fn of(r: DMatrix<f64>, equations: usize, sums: Vec<f64>) -> Self {
+        Self {
+            r,
+            equations,
+            sums: DVector::from_vec(sums),
+        }
+    }
+
     /// Adds equations: rows x (parameters + 1), the last column being Y. A matrix of another
     /// width is ignored.
     pub fn push(&mut self, rows: &DMatrix<f64>) {
@@ -132,6 +141,11 @@ impl Factor {
     #[must_use]
     pub const fn matrix(&self) -> &DMatrix<f64> {
         &self.r
+    }
+
+    /// The sums of all columns, Y's last.
+    pub(crate) fn sums(&self) -> &[f64] {
+        self.sums.as_slice()
     }
 
     /// ||Y||.

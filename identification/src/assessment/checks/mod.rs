@@ -13,7 +13,7 @@ mod missing_parameters;
 mod negative_parameters;
 mod partition;
 mod payload_labels;
-pub(super) mod raw_numbers;
+pub(crate) mod raw_numbers;
 mod regressor_errors;
 mod relative_error;
 mod residual_correlation;

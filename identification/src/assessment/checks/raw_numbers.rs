@@ -73,11 +73,7 @@ fn dry_friction(context: &Context<'_>) -> Vec<String> {
 }
 
 /// What is suspicious in the raw numbers of a run that a monitor has watched.
-pub(in crate::assessment) fn suspicious(
-    model: &dyn Model,
-    run: &str,
-    monitor: Monitor,
-) -> Vec<Check> {
+pub(crate) fn suspicious(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<Check> {
     let info = model.info();
     let coupled = couples(model);
     let revolute = monitor

@@ -3,6 +3,7 @@
 //! - `scores`: the covariance of the base estimate, whatever the residual is like in time and size,
 //!   and the degrees of freedom of its variances.
 //! - `repeats`: how much larger it is for what returns with the motion.
+//! - `parts`: the covariance from sums over parts of the runs, where factors are all there is.
 //! - `distributions`: Student's distribution and its kin.
 //!
 //! The interval of base parameter i is χ_i ± t_0.975(ν_i) σ_i.
@@ -23,6 +24,7 @@
 //! Association* 100, 2005), so it gets this one.
 
 pub(crate) mod distributions;
+mod parts;
 pub(crate) mod repeats;
 pub(crate) mod scores;
 
@@ -51,14 +53,17 @@ pub(crate) struct Intervals {
 
 impl Intervals {
     /// Those of the base `estimation` of the columns `selected`. Without successive equations they are
-    /// those under white residuals.
+    /// those of sums over parts, and where these tell too little those under white residuals.
     pub(crate) fn new(system: &System, selected: &[usize], estimation: &Estimation) -> Self {
         let context = Context::new(selected, estimation);
-        Self::of_context(system, &context).unwrap_or_else(|| {
-            let square = estimation.residual_deviation.powi(2);
-            let (columns, values) = (selected.to_vec(), &estimation.values);
-            Self::known(columns, values, context.inverse * square, f64::INFINITY)
-        })
+        let found = Self::of_context(system, &context);
+        found
+            .or_else(|| Self::of_parts(system, &context))
+            .unwrap_or_else(|| {
+                let square = estimation.residual_deviation.powi(2);
+                let (columns, values) = (selected.to_vec(), &estimation.values);
+                Self::known(columns, values, context.inverse * square, f64::INFINITY)
+            })
     }
 
     /// Those of any linear estimate; none without successive equations.
@@ -77,6 +82,26 @@ impl Intervals {
             freedom,
             freedoms: covariance.freedoms,
         })
+    }
+
+    /// Those of sums over parts of the runs.
+    fn of_parts(system: &System, context: &Context<'_>) -> Option<Self> {
+        let covariance = parts::covariance(system, context)?;
+        let mut sorted = covariance.freedoms.clone();
+        sorted.sort_by(f64::total_cmp);
+        Some(Self {
+            columns: context.selected.to_vec(),
+            values: context.estimation.values.clone(),
+            freedom: *sorted.get(sorted.len() / 2)?,
+            covariance: covariance.matrix,
+            freedoms: covariance.freedoms,
+        })
+    }
+
+    /// The standard deviation of the estimate of a column.
+    pub(crate) fn deviation_of(&self, column: usize) -> Option<f64> {
+        let place = self.columns.iter().position(|own| *own == column)?;
+        Some(self.covariance[(place, place)].sqrt())
     }
 
     /// With what else makes the estimates err, independently of their residual.

@@ -1,0 +1,81 @@
+//! `overact factor`: logs as R factors of their equations.
+
+use super::{factors::instant, runs};
+use crate::{failure::Failure, output, progress::Progress};
+use overact_identification::{
+    Progress as Doing,
+    factors::{Origin, write_factors},
+};
+use overact_robot::Robot;
+use std::path::PathBuf;
+
+/// Arguments of the command.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Description
+    #[arg(value_name = "TOML")]
+    pub(super) file: PathBuf,
+    /// Logs, as `overact identify --data` takes them
+    #[arg(value_name = "LOG", required_unless_present = "payload_data")]
+    data: Vec<PathBuf>,
+    /// Logs of runs with the payload on the platform; `NAME=LOG` where the description names several payloads
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    payload_data: Vec<PathBuf>,
+    /// Serial number of the robot
+    #[arg(long, default_value = "")]
+    serial: String,
+    /// When each run began, in the order of the logs, those with payload last: `2026-03-02` or
+    /// `2026-03-02T14:05:00`, UTC
+    #[arg(long, value_name = "TIME", num_args = 1..)]
+    time: Vec<String>,
+    /// Keep successive equations beside the factors, for deviations as from the logs: larger files
+    #[arg(long)]
+    equations: bool,
+    /// The factor file
+    #[arg(short, long, value_name = "PARQUET")]
+    output: PathBuf,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Logs that can't be used, times that are none.
+pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let runs = runs::Arguments::of_logs(arguments.data.clone(), arguments.payload_data.clone());
+    let logs = arguments.data.len() + arguments.payload_data.len();
+    if !arguments.time.is_empty() && arguments.time.len() != logs {
+        let message = format!(
+            "`--time` gives {} times for {logs} logs",
+            arguments.time.len()
+        );
+        return Err(Failure::Usage(message));
+    }
+    let times = arguments.time.iter().map(|time| instant(time).map(Some));
+    let origin = Origin {
+        serial: arguments.serial.clone(),
+        times_us: times.collect::<Result<_, _>>()?,
+    };
+    output::check(&runs.inputs(&arguments.file), &[arguments.output.as_path()])?;
+    let robot = Robot::from_toml(&arguments.file)?;
+    let found = runs.runs(&robot, as_json)?;
+    let settings = runs.settings(&robot, &found);
+    let bar = Progress::new("factoring", as_json);
+    let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
+    let identified = (found.identified.as_slice(), &origin);
+    let made = robot.factors(identified, &settings, arguments.equations, &tell)?;
+    drop(bar);
+    let bytes = write_factors(&made)?;
+    let said = match as_json {
+        true => output::json(&serde_json::json!({
+            "runs": made.iter().map(|run| &run.summary).collect::<Vec<_>>(),
+            "like": made.first().map(|run| &run.like),
+            "bytes": bytes.len(),
+        }))?,
+        false => format!(
+            "{}, {} bytes",
+            output::counted(made.len(), "run", "runs"),
+            bytes.len()
+        ),
+    };
+    output::emit_with(&said, None, vec![(arguments.output.clone(), bytes)])
+}

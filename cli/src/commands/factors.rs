@@ -1,0 +1,173 @@
+//! `overact identify --factors`: parameters from factor files.
+
+use super::runs;
+use crate::{
+    failure::{Failure, Problem},
+    output,
+    progress::Progress,
+};
+use overact_codegen::diagnostic::Code;
+use overact_identification::{
+    Progress as Doing,
+    factors::{Deviations, FromFactors, LeftOut, gather},
+};
+use overact_robot::Robot;
+use std::{
+    fmt::Write,
+    path::{Path, PathBuf},
+};
+
+/// What is asked for.
+pub(super) struct Request<'a> {
+    pub(super) description: &'a Path,
+    pub(super) files: &'a [PathBuf],
+    pub(super) skip_bad: bool,
+    pub(super) kept: Option<&'a [String]>,
+    pub(super) output: Option<&'a Path>,
+    pub(super) as_json: bool,
+}
+
+/// Identifies a robot from factor files.
+///
+/// # Errors
+/// Files that can't be used, unless they are to be skipped; factors that do not fit the description.
+pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
+    let files = request.files.iter().map(PathBuf::as_path);
+    let inputs: Vec<&Path> = std::iter::once(request.description).chain(files).collect();
+    output::check(&inputs, request.output.as_slice())?;
+    let robot = Robot::from_toml(request.description)?;
+    let kept = request
+        .kept
+        .map(|names| overact_robot::kept_actuators(robot.model().model(), names));
+    // Settings follow from the rate of the first run, as they do where logs are read.
+    let first = gather(request.files, None, true)?;
+    let rate = first
+        .runs
+        .first()
+        .map_or(0.0, |run| run.summary.sampling_frequency);
+    let mut settings = robot.settings(rate);
+    settings.kept_actuators = kept.transpose()?.unwrap_or(settings.kept_actuators);
+    let like = robot.likeness(&settings);
+    let gathered = gather(request.files, Some(&like), request.skip_bad)?;
+    let bar = Progress::new("identifying", request.as_json);
+    let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
+    let found = robot.identify_factors(&gathered, &settings, request.skip_bad, &tell)?;
+    drop(bar);
+    let text = match request.as_json {
+        true => output::json(&found)?,
+        false => text(&found),
+    };
+    output::emit(&text, request.output)
+}
+
+/// The result for a person.
+fn text(found: &FromFactors) -> String {
+    let mut text = format!(
+        "{} from the factors of {}\n\n",
+        found.robot,
+        output::counted(found.runs.len(), "run", "runs")
+    );
+    for estimate in &found.estimates {
+        text.push_str(&overact_report::estimate(estimate));
+        text.push('\n');
+    }
+    text.push_str(match found.deviations {
+        Deviations::Equations => "Intervals are those of the logs: the files hold the equations.\n",
+        Deviations::Parts => {
+            "Intervals are from the sums of parts of the runs, not from single equations.\n"
+        }
+    });
+    text.push_str(
+        "Raw numbers and the fit were not checked as they are where logs are identified.\n",
+    );
+    for warning in &found.warnings {
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    text.push_str(&left_out(&found.left_out));
+    text
+}
+
+/// What was left out, a line each.
+pub(super) fn left_out(all: &[LeftOut]) -> String {
+    let mut text = String::new();
+    if !all.is_empty() {
+        let _ = writeln!(text, "left out: {}", all.len());
+    }
+    for one in all {
+        let run = one.run.as_ref().map(|run| format!(" run `{run}`:"));
+        let _ = writeln!(
+            text,
+            "  {}:{} {}",
+            one.file,
+            run.unwrap_or_default(),
+            one.message
+        );
+    }
+    text
+}
+
+/// Days from 1970-01-01 to a day of the Gregorian calendar; none of a day that is not there.
+fn days(year: i64, month: i64, day: i64) -> Option<i64> {
+    let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let february = if leap { 29 } else { 28 };
+    let months = [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
+    let place = usize::try_from(month - 1).ok()?;
+    let longest = *months.get(place)?;
+    if !(1970..=9999).contains(&year) || !(1..=longest).contains(&day) {
+        return None;
+    }
+    let before = year - 1;
+    let leaps = before / 4 - before / 100 + before / 400;
+    let to_1970 = 719_162;
+    let own: i64 = months[..place].iter().sum();
+    Some(before * 365 + leaps - to_1970 + own + day - 1)
+}
+
+/// An instant, µs since 1970, of `2026-03-02` or `2026-03-02T14:05:00`, in UTC.
+///
+/// # Errors
+/// Another text.
+pub(super) fn instant(text: &str) -> Result<i64, Failure> {
+    let none = || {
+        let help = "write `2026-03-02` or `2026-03-02T14:05:00`, UTC";
+        Failure::from(Problem::new(Code::USAGE, format!("`{text}` is no time")).help(help))
+    };
+    let plain = text.strip_suffix('Z').unwrap_or(text);
+    let (day, time) = plain.split_once('T').unwrap_or((plain, "00:00:00"));
+    let three = |text: &str, mark: char| -> Option<[i64; 3]> {
+        let digits = |one: &str| one.bytes().all(|byte| byte.is_ascii_digit());
+        let parts = text
+            .split(mark)
+            .map(|one| digits(one).then(|| one.parse().ok())?);
+        parts.collect::<Option<Vec<i64>>>()?.try_into().ok()
+    };
+    let [year, month, day] = three(day, '-').ok_or_else(none)?;
+    let [hour, minute, second] = three(time, ':').ok_or_else(none)?;
+    let fits = hour < 24 && minute < 60 && second < 60;
+    let days = days(year, month, day).filter(|_| fits).ok_or_else(none)?;
+    Ok((((days * 24 + hour) * 60 + minute) * 60 + second) * 1_000_000)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::instant;
+
+    #[test]
+    fn instants_are_counted_from_1970() {
+        assert_eq!(instant("1970-01-01").ok(), Some(0));
+        // date -u -d 2026-03-02T14:05:00 +%s
+        assert_eq!(
+            instant("2026-03-02T14:05:00Z").ok(),
+            Some(1_772_460_300_000_000)
+        );
+        for wrong in [
+            "2026-02-29",
+            "2026-3",
+            "yesterday",
+            "2026-03-02T24:00:00",
+            "2026-13-01",
+        ] {
+            assert!(instant(wrong).is_err(), "{wrong}");
+        }
+    }
+}

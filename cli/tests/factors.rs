@@ -1,0 +1,209 @@
+//! `factor`, `merge` and `identify --factors`: what logs give, and what is refused.
+
+mod common;
+
+use common::{Bench, number, robot};
+use serde_json::Value;
+use std::fs;
+
+/// A five-bar with two short runs as logs.
+fn five_bar() -> Bench {
+    let bench = Bench::new();
+    let text = fs::read_to_string(robot("five_bar.toml")).expect("a robot of the library");
+    let short = text.replace("duration = \"10 s\"", "duration = \"2 s\"");
+    bench.write("my.toml", &short);
+    for seed in ["1", "2"] {
+        bench.good(&[
+            "simulate",
+            "my.toml",
+            "--run",
+            "circle-like",
+            "--seed",
+            seed,
+            "-o",
+            &log(seed),
+        ]);
+    }
+    bench
+}
+
+fn log(seed: &str) -> String {
+    format!("log_{seed}.csv")
+}
+
+/// Makes a factor file of each run.
+fn factored(bench: &Bench, more: &[&str]) {
+    for seed in ["1", "2"] {
+        let (log, file) = (log(seed), format!("{seed}.parquet"));
+        let own = [
+            "factor",
+            "my.toml",
+            &log,
+            "--serial",
+            "A7",
+            "--time",
+            "2026-03-02",
+            "-o",
+            &file,
+        ];
+        bench.good(&[&own, more].concat());
+    }
+}
+
+/// The estimates by least squares of a document: for each name of a number its values, in order.
+fn values(document: &Value, key: &str) -> Vec<f64> {
+    let estimates = document["estimates"].as_array().expect("estimates");
+    let own = estimates
+        .iter()
+        .filter(|one| one["estimator"] == "least_squares" || one["estimator"] == "least-squares");
+    own.flat_map(|one| one["parameters"].as_array().expect("parameters"))
+        .map(|parameter| number(&parameter[key]))
+        .collect()
+}
+
+fn assert_same(a: &[f64], b: &[f64], tolerance: f64) {
+    assert!(
+        a.len() > 10 && a.len() == b.len(),
+        "{} and {} numbers",
+        a.len(),
+        b.len()
+    );
+    for (a, b) in a.iter().zip(b) {
+        assert!(
+            (a - b).abs() <= tolerance * a.abs().max(1e-12),
+            "{a} and {b}"
+        );
+    }
+}
+
+#[test]
+fn factor_files_give_what_one_pass_over_the_logs_gives() {
+    let bench = five_bar();
+    let logs = bench.json(&["identify", "my.toml", "--data", "log_1.csv", "log_2.csv"]);
+    factored(&bench, &[]);
+    bench.good(&["merge", "1.parquet", "2.parquet", "-o", "both.parquet"]);
+    let merged = bench.json(&["identify", "my.toml", "--factors", "both.parquet"]);
+    for key in ["value", "standard_deviation"] {
+        assert_same(&values(&logs, key), &values(&merged, key), 1e-12);
+    }
+    assert_eq!(merged["deviations"], "parts");
+    // Of another estimator, but of the same size.
+    let own = values(&logs, "correlated_standard_deviation");
+    let parts = values(&merged, "correlated_standard_deviation");
+    let ratios = own.iter().zip(&parts).map(|(own, parts)| parts / own);
+    assert!(
+        ratios.clone().all(|ratio| (0.2..5.0).contains(&ratio)),
+        "{:?}",
+        ratios.collect::<Vec<_>>()
+    );
+
+    factored(&bench, &["--equations"]);
+    let whole = bench.json(&["identify", "my.toml", "--factors", "1.parquet", "2.parquet"]);
+    assert_eq!(whole["deviations"], "equations");
+    for key in [
+        "value",
+        "standard_deviation",
+        "correlated_standard_deviation",
+    ] {
+        assert_same(&values(&logs, key), &values(&whole, key), 1e-12);
+    }
+}
+
+#[test]
+fn nothing_is_counted_twice_and_nothing_bad_is_counted() {
+    let bench = five_bar();
+    factored(&bench, &[]);
+    let copy = |from: &str, to: &str, edit: &dyn Fn(&mut Vec<u8>)| {
+        let mut bytes = fs::read(bench.path(from)).expect("a factor file");
+        edit(&mut bytes);
+        fs::write(bench.path(to), bytes).expect("a copy");
+    };
+    copy("1.parquet", "late.parquet", &|_| ());
+    copy("2.parquet", "cut.parquet", &|bytes| {
+        bytes.truncate(bytes.len() / 2)
+    });
+    let text = bench.read("my.toml");
+    bench.write(
+        "other.toml",
+        &text.replace("decimation = 12", "decimation = 10"),
+    );
+    bench.good(&["factor", "other.toml", "log_2.csv", "-o", "other.parquet"]);
+
+    let good = bench.json(&["identify", "my.toml", "--factors", "1.parquet", "2.parquet"]);
+    let files = [
+        "1.parquet",
+        "late.parquet",
+        "cut.parquet",
+        "other.parquet",
+        "2.parquet",
+        "my.toml",
+    ];
+    let identify = [&["identify", "my.toml", "--factors"], &files[..]].concat();
+    let refused = bench.run(&identify);
+    assert_eq!(refused.code, Some(1), "{}", refused.err);
+    for word in [
+        "cut.parquet",
+        "other.parquet",
+        "my.toml",
+        "another description",
+        "--skip-bad",
+    ] {
+        assert!(refused.err.contains(word), "{word} in {}", refused.err);
+    }
+    let skipped = bench.json(&[&identify[..], &["--skip-bad"]].concat());
+    assert_eq!(
+        values(&good, "value"),
+        values(&skipped, "value"),
+        "to the last bit"
+    );
+    let left_out = skipped["left_out"].as_array().expect("a list");
+    let reason = |file: &str| {
+        let own = left_out.iter().find(|one| one["file"] == file);
+        own.map(|one| one["reason"].clone())
+    };
+    assert_eq!(left_out.len(), 4, "{left_out:?}");
+    assert_eq!(reason("late.parquet"), Some("twice".into()));
+    assert_eq!(reason("cut.parquet"), Some("unreadable".into()));
+    assert_eq!(reason("other.parquet"), Some("unlike".into()));
+
+    let alone = bench.run(&["merge", "cut.parquet", "--skip-bad", "-o", "none.parquet"]);
+    assert_eq!(alone.code, Some(1));
+    assert!(!bench.path("none.parquet").exists(), "nothing is written");
+    let over = bench.run(&["merge", "1.parquet", "-o", "1.parquet"]);
+    assert_eq!(over.code, Some(2), "an input is not replaced");
+}
+
+#[test]
+fn a_file_in_which_any_byte_is_wrong_gives_no_other_numbers() {
+    let bench = five_bar();
+    bench.good(&["factor", "my.toml", "log_1.csv", "-o", "1.parquet"]);
+    let good = values(
+        &bench.json(&["identify", "my.toml", "--factors", "1.parquet"]),
+        "value",
+    );
+    let bytes = fs::read(bench.path("1.parquet")).expect("a factor file");
+    let mut refused = 0;
+    for part in 1..8 {
+        let mut wrong = bytes.clone();
+        wrong[bytes.len() * part / 8] ^= 0x10;
+        fs::write(bench.path("wrong.parquet"), wrong).expect("a copy");
+        let run = bench.run(&[
+            "--json",
+            "identify",
+            "my.toml",
+            "--factors",
+            "wrong.parquet",
+        ]);
+        match run.code {
+            Some(0) => {
+                let found: Value = serde_json::from_str(&run.out).expect("a document");
+                assert_eq!(values(&found, "value"), good);
+            }
+            code => {
+                assert_eq!(code, Some(1), "{}", run.err);
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > 0);
+}

@@ -1,0 +1,164 @@
+//! Factor files together: like with like, and nothing twice.
+
+use overact::Code;
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use serde::Serialize;
+
+use super::{read::read_factors, run::RunFactors};
+use crate::error::{Error, Problem};
+
+/// Runs of several files, and what was left out of them.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Gathered {
+    /// The runs, in the order of the files.
+    pub runs: Vec<RunFactors>,
+    /// What is not among them.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A run, or a whole file, that was left out.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct LeftOut {
+    /// The file.
+    pub file: String,
+    /// Name of the run; none where it is the whole file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
+    /// Why, in one word.
+    pub reason: Reason,
+    /// Why.
+    pub message: String,
+}
+
+/// Why something is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Reason {
+    /// The file is cut off, or holds no factors.
+    Unreadable,
+    /// The file is of a version of the format that is not known.
+    NewerVersion,
+    /// Numbers that are not those that were written, or not finite.
+    Damaged,
+    /// Another description, or other settings.
+    Unlike,
+    /// The run has been counted already.
+    Twice,
+    /// The run has no factors of a model that other runs have.
+    MissingModel,
+}
+
+impl LeftOut {
+    fn problem(&self) -> Problem {
+        let message = match &self.run {
+            Some(run) => format!("run `{run}`: {}", self.message),
+            None => self.message.clone(),
+        };
+        let help = match self.reason {
+            Reason::Unreadable => "copy or write the file again; `--skip-bad` goes on without it",
+            Reason::NewerVersion => {
+                "use the program that wrote it; `--skip-bad` goes on without it"
+            }
+            Reason::Damaged => "factor the log again; `--skip-bad` goes on without the run",
+            _ => "factor the log with this description; `--skip-bad` goes on without the run",
+        };
+        Problem::new(Code::FACTORS, message)
+            .file(self.file.as_str())
+            .help(help)
+    }
+}
+
+/// Reads factor files. A run that is there twice counts once, which is told; anything else that can't be used is
+/// left out where bad ones are to be skipped. `like` is what the runs must be like, if that is known: else they
+/// must be like most of them, and like the first of these where there are several.
+///
+/// # Errors
+/// What can't be used, all of it together, unless it is to be skipped; no run at all.
+pub fn gather(files: &[PathBuf], like: Option<&str>, skip_bad: bool) -> Result<Gathered, Error> {
+    let mut left_out = Vec::new();
+    let mut found: Vec<(String, RunFactors)> = Vec::new();
+    for path in files {
+        read_into(path, &mut found, &mut left_out);
+    }
+    let like = like.map(str::to_owned).or_else(|| most(&found));
+    let mut seen: BTreeMap<String, String> = BTreeMap::new();
+    let mut runs = Vec::new();
+    for (file, run) in found {
+        let name = Some(run.summary.name.clone());
+        if like.as_ref().is_some_and(|like| *like != run.like) {
+            let message =
+                "it was made with another description, or with other settings of filters and model";
+            let (reason, message) = (Reason::Unlike, message.to_owned());
+            left_out.push(LeftOut {
+                file,
+                run: name,
+                reason,
+                message,
+            });
+            continue;
+        }
+        if let Some(other) = seen.get(&run.content) {
+            let message = format!("it is the same run as {other}, and counts once");
+            let reason = Reason::Twice;
+            left_out.push(LeftOut {
+                file,
+                run: name,
+                reason,
+                message,
+            });
+            continue;
+        }
+        seen.insert(run.content.clone(), format!("`{}` in {file}", run.title()));
+        runs.push(run);
+    }
+    if !skip_bad {
+        let bad = left_out.iter().filter(|one| one.reason != Reason::Twice);
+        Error::check(bad.map(LeftOut::problem).collect())?;
+    }
+    if runs.is_empty() {
+        let mut problems: Vec<Problem> = left_out.iter().map(LeftOut::problem).collect();
+        problems.push(
+            Problem::new(Code::FACTORS, "no run is left in the factor files")
+                .help("give at least one"),
+        );
+        return Err(Error { problems });
+    }
+    Ok(Gathered { runs, left_out })
+}
+
+fn read_into(path: &Path, found: &mut Vec<(String, RunFactors)>, left_out: &mut Vec<LeftOut>) {
+    let file = path.display().to_string();
+    let damaged = match read_factors(path) {
+        Ok(read) => {
+            found.extend(read.runs.into_iter().map(|run| (file.clone(), run)));
+            read.damaged
+        }
+        Err(damaged) => vec![damaged],
+    };
+    left_out.extend(damaged.into_iter().map(|one| LeftOut {
+        file: file.clone(),
+        run: one.run,
+        reason: one.reason,
+        message: one.message,
+    }));
+}
+
+/// What most runs are like; of equally many what comes first.
+fn most(found: &[(String, RunFactors)]) -> Option<String> {
+    let count = |like: &str| found.iter().filter(|(_, run)| run.like == like).count();
+    let mut best: Option<(usize, &str)> = None;
+    for (_, run) in found {
+        let own = count(&run.like);
+        if best.is_none_or(|(most, _)| own > most) {
+            best = Some((own, &run.like));
+        }
+    }
+    best.map(|(_, like)| like.to_owned())
+}

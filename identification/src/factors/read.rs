@@ -1,0 +1,256 @@
+//! Runs out of a Parquet file. What is wrong is told run by run, so that the others of a file can be used.
+
+use std::{fs::File, path::Path};
+
+use parquet::{
+    file::{reader::FileReader, serialized_reader::SerializedFileReader},
+    record::Field,
+};
+
+use super::{
+    content::content,
+    gather::Reason,
+    packed::{from_rows, from_triangle, numbers},
+    run::{ModelFactors, RunFactors},
+    schema::{Place, Row, SCHEMA, VERSION},
+};
+use crate::{
+    regression::{
+        factor::Factor,
+        projection::ModelKind,
+        system::{Part, PartitionCondition, Stretch},
+    },
+    result::RunSummary,
+};
+
+/// What a file holds.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct ReadFactors {
+    /// The runs that can be used.
+    pub runs: Vec<RunFactors>,
+    /// The others.
+    pub damaged: Vec<Damaged>,
+}
+
+/// A run, or a whole file, that can't be used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Damaged {
+    /// Name of the run; none where it is the whole file.
+    pub run: Option<String>,
+    /// What kind of damage it is.
+    pub reason: Reason,
+    /// The damage in words.
+    pub message: String,
+}
+
+impl Damaged {
+    fn file(reason: Reason, message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self {
+            run: None,
+            reason,
+            message,
+        }
+    }
+
+    fn run(run: &str, message: impl Into<String>) -> Self {
+        let (run, message) = (Some(run.to_owned()), message.into());
+        Self {
+            run,
+            reason: Reason::Damaged,
+            message,
+        }
+    }
+}
+
+/// Reads a factor file.
+///
+/// # Errors
+/// A file that can't be read as a whole: cut off, of another kind, of a newer version.
+pub fn read_factors(path: &Path) -> Result<ReadFactors, Damaged> {
+    let unreadable = |error: &dyn std::fmt::Display| {
+        let message = format!("the file can't be read as Parquet: {error}");
+        Damaged::file(Reason::Unreadable, message)
+    };
+    let file = File::open(path).map_err(|error| unreadable(&error))?;
+    let reader = SerializedFileReader::new(file).map_err(|error| unreadable(&error))?;
+    check_columns(&reader)?;
+    let mut rows = Vec::new();
+    for row in reader
+        .get_row_iter(None)
+        .map_err(|error| unreadable(&error))?
+    {
+        let row = row.map_err(|error| unreadable(&error))?;
+        let mut own = Row::default();
+        for (name, field) in row.get_column_iter() {
+            put(&mut own, name, field);
+        }
+        rows.push(own);
+    }
+    let newer = rows.iter().find(|row| row.version > VERSION);
+    if let Some(newer) = newer {
+        let message = format!(
+            "the file has version {} of the format, this program reads version {VERSION}",
+            newer.version
+        );
+        return Err(Damaged::file(Reason::NewerVersion, message));
+    }
+    let mut read = ReadFactors {
+        runs: Vec::new(),
+        damaged: Vec::new(),
+    };
+    for own in
+        rows.chunk_by(|a, b| (&a.content, &a.run, &a.serial) == (&b.content, &b.run, &b.serial))
+    {
+        match of_rows(own) {
+            Ok(run) => read.runs.push(run),
+            Err(damaged) => read.damaged.push(damaged),
+        }
+    }
+    Ok(read)
+}
+
+/// Whether all columns are there. Those that are not known are left alone.
+fn check_columns(reader: &SerializedFileReader<File>) -> Result<(), Damaged> {
+    let schema = reader.metadata().file_metadata().schema_descr();
+    let has = |name: &str| schema.columns().iter().any(|own| own.name() == name);
+    let wanted = SCHEMA
+        .lines()
+        .filter_map(|line| line.split_whitespace().nth(2));
+    let wanted = wanted
+        .map(|name| name.trim_end_matches(';'))
+        .filter(|name| *name != "{");
+    let missing: Vec<&str> = wanted.filter(|name| !has(name)).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let message = format!(
+        "the file holds no factors: there is no column `{}`",
+        missing[0]
+    );
+    Err(Damaged::file(Reason::Unreadable, message))
+}
+
+/// Puts a value into a row; one of another type stays what it was, and the hash tells.
+fn put(row: &mut Row, name: &str, field: &Field) {
+    match (row.place(name), field) {
+        (Some(Place::Whole(to)), Field::Long(from)) => *to = *from,
+        (Some(Place::Whole(to)), Field::Int(from)) => *to = i64::from(*from),
+        (Some(Place::Real(to)), Field::Double(from)) => *to = *from,
+        (Some(Place::Instant(to)), Field::TimestampMicros(from)) => *to = Some(*from),
+        (Some(Place::Text(to)), Field::Str(from)) => to.clone_from(from),
+        (Some(Place::Bytes(to)), Field::Bytes(from)) => *to = from.data().to_vec(),
+        _ => {}
+    }
+}
+
+/// A run of its rows.
+fn of_rows(rows: &[Row]) -> Result<RunFactors, Damaged> {
+    let Some(first) = rows.first() else {
+        return Err(Damaged::file(Reason::Damaged, "a run without rows"));
+    };
+    let names = |text: &str| -> Vec<String> {
+        let all = text.split(',').filter(|one| !one.is_empty());
+        all.map(str::to_owned).collect()
+    };
+    let columns = names(&first.columns);
+    let mut models = Vec::new();
+    for own in rows.chunk_by(|a, b| a.model == b.model) {
+        models.push(of_model(own, columns.len())?);
+    }
+    let count = |text: &String| text.parse().unwrap_or(0);
+    let run = RunFactors {
+        robot: first.robot.clone(),
+        serial: first.serial.clone(),
+        time_us: first.time,
+        like: first.like.clone(),
+        content: first.content.clone(),
+        summary: RunSummary {
+            name: first.run.clone(),
+            samples: usize::try_from(first.samples).unwrap_or(0),
+            sampling_frequency: first.sampling_frequency,
+            payload: first.loaded != 0,
+            payload_name: Some(first.payload.clone()).filter(|name| !name.is_empty()),
+            closure_residual: first.closure_residual,
+            standstill_equations: names(&first.standstill).iter().map(count).collect(),
+        },
+        flags: first.flags.lines().map(str::to_owned).collect(),
+        columns,
+        models,
+    };
+    match content(&run) == run.content {
+        true => Ok(run),
+        false => {
+            let message = "its numbers are not those that were written: their hash is another one";
+            Err(Damaged::run(&first.run, message))
+        }
+    }
+}
+
+/// What a run holds for a model; `columns` is the number of its columns.
+fn of_model(rows: &[Row], columns: usize) -> Result<ModelFactors, Damaged> {
+    let first = &rows[0];
+    let damaged = |message: &str| Damaged::run(&first.run, message);
+    let kinds = [ModelKind::Platform, ModelKind::Actuators, ModelKind::Joints];
+    let kind = kinds.into_iter().find(|kind| kind.name() == first.model);
+    let model = kind.ok_or_else(|| damaged("it has a model that is not known"))?;
+    let (mut parts, mut stretches, mut missing) = (Vec::new(), Vec::new(), None);
+    let groups = rows.chunk_by(|a, b| (&a.kind, a.part) == (&b.kind, b.part));
+    for own in groups {
+        match own[0].kind.as_str() {
+            "factor" => {
+                let lines = own.iter().map(|row| of_factor(row, columns));
+                let lines = lines.collect::<Option<Vec<Factor>>>();
+                let lines = lines.ok_or_else(|| damaged(NOT_NUMBERS))?;
+                parts.push(Part { run: 0, lines });
+            }
+            "equations" => {
+                let lines = own.iter().map(|row| {
+                    let count = usize::try_from(row.equations).ok()?;
+                    let own = from_rows(&row.factor, count, columns + 1)?;
+                    own.iter().all(|value| value.is_finite()).then_some(own)
+                });
+                let lines = lines.collect::<Option<Vec<_>>>();
+                let lines = lines.ok_or_else(|| damaged(NOT_NUMBERS))?;
+                stretches.push(Stretch {
+                    run: 0,
+                    lines,
+                    instruments: Vec::new(),
+                });
+            }
+            _ => missing = Some(own[0].problem.clone()),
+        }
+    }
+    let mut lines: Vec<(i64, &str)> = rows
+        .iter()
+        .map(|row| (row.line, row.line_name.as_str()))
+        .collect();
+    lines.sort_unstable();
+    lines.dedup();
+    Ok(ModelFactors {
+        model,
+        lines: lines.into_iter().map(|(_, name)| name.to_owned()).collect(),
+        parts: missing.map_or(Ok(parts), Err),
+        stretches,
+        partition: (first.condition > 0.0).then(|| PartitionCondition {
+            largest: first.condition,
+            run: first.run.clone(),
+            sample: usize::try_from(first.condition_sample).unwrap_or(0),
+            time: first.condition_time,
+            crossings: usize::try_from(first.crossings).unwrap_or(0),
+        }),
+    })
+}
+
+/// What is said of bytes that are no factor.
+const NOT_NUMBERS: &str = "a factor of it has numbers that are not finite, or too few or too many";
+
+fn of_factor(row: &Row, columns: usize) -> Option<Factor> {
+    let r = from_triangle(&row.factor, columns + 1)?;
+    let sums = numbers(&row.sums, columns + 1)?;
+    let finite = r.iter().chain(&sums).all(|value| value.is_finite());
+    let equations = usize::try_from(row.equations).ok()?;
+    finite.then(|| Factor::of(r, equations, sums))
+}

@@ -1,0 +1,215 @@
+//! The systems of all runs together, from their factors.
+
+use nalgebra::DMatrix;
+use overact::Code;
+use overact::Model;
+
+use super::{
+    gather::{LeftOut, Reason},
+    run::RunFactors,
+};
+use crate::{
+    error::{Error, Problem},
+    estimation::base::{BaseParameters, PayloadUse, base_parameters},
+    identify::Prepared,
+    regression::{
+        columns::{ColumnSet, has_payload},
+        projection::Projection,
+        system::{Observed, Part, Stretch, System},
+    },
+    settings::Settings,
+};
+
+/// Puts the factors of runs together. Of runs that lack a model that others have, this model is an error, or the
+/// runs are left out of it, which is told.
+pub(super) fn restored(
+    model: &dyn Model,
+    runs: &[RunFactors],
+    settings: &Settings,
+    skip_bad: bool,
+) -> Result<(Prepared, Vec<LeftOut>), Error> {
+    let info = model.info();
+    let payload = payload_use(runs)?;
+    if payload != PayloadUse::Absent && !has_payload(&info) {
+        let message = "runs carry a payload, but the description has none";
+        return Err(Problem::new(Code::FACTORS, message)
+            .help("use the description of the factors")
+            .into());
+    }
+    let columns = ColumnSet::new(
+        model,
+        payload != PayloadUse::Absent,
+        settings.asymmetric_friction,
+        settings.seed,
+    )?
+    .with_payloads(&names(runs));
+    Error::check(settings.prior.problems(&columns.named()))?;
+    let base = base_parameters(model, &columns, payload, settings.seed)?;
+    let columns = columns.with_reversals(model, settings)?;
+    let places = places(runs, &columns, &base)?;
+    let projections = Projection::usual(&info, &settings.kept_actuators);
+    let (mut systems, mut left_out) = (Vec::new(), Vec::new());
+    for projection in &projections {
+        let mut system = Ok(System::new(projection.clone(), &info, base.columns.len()));
+        for (number, (run, places)) in runs.iter().zip(&places).enumerate() {
+            let own = run
+                .models
+                .iter()
+                .find(|own| own.model == projection.model());
+            let observed = match own.map(|own| (own, &own.parts)) {
+                Some((own, Ok(parts))) => Ok(places.observed(number, parts, own)),
+                Some((_, Err(why))) => Err(why.clone()),
+                None => Err(format!(
+                    "{}: the file has no factors of this model",
+                    run.title()
+                )),
+            };
+            match (observed, &mut system) {
+                (Ok(observed), Ok(system)) => system.extend(observed),
+                (Err(message), _) if skip_bad => left_out.push(LeftOut {
+                    file: run.summary.name.clone(),
+                    run: Some(run.title()),
+                    reason: Reason::MissingModel,
+                    message: format!("{}: {message}", projection.model().case()),
+                }),
+                (Err(message), Ok(_)) => system = Err(Problem::new(Code::FACTORS, message).into()),
+                (_, Err(_)) => {}
+            }
+        }
+        systems.push(system);
+    }
+    let summaries = runs.iter().map(|run| run.summary.clone()).collect();
+    let prepared =
+        Prepared::of_systems((columns, base, payload), (projections, systems), summaries);
+    Ok((prepared, left_out))
+}
+
+/// How the payload takes part.
+fn payload_use(runs: &[RunFactors]) -> Result<PayloadUse, Error> {
+    let loaded = || runs.iter().filter(|run| run.summary.payload);
+    let unnamed = loaded().find(|run| run.summary.payload_name.is_none());
+    if let (Some(unnamed), false) = (unnamed, names(runs).is_empty()) {
+        let message = "the run carries a payload without a name, others one with a name: they can't be told from each other";
+        let help = "factor the logs anew with the name of each payload";
+        return Err(Problem::new(Code::FACTORS, message)
+            .file(unnamed.title())
+            .help(help)
+            .into());
+    }
+    Ok(match loaded().count() {
+        0 => PayloadUse::Absent,
+        count if count == runs.len() => PayloadUse::Regrouped,
+        _ => PayloadUse::Separate,
+    })
+}
+
+/// Names of the payloads, in the order of the runs.
+fn names(runs: &[RunFactors]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in runs
+        .iter()
+        .filter_map(|run| run.summary.payload_name.as_ref())
+    {
+        if !names.contains(name) {
+            names.push(name.clone());
+        }
+    }
+    names
+}
+
+/// Where the columns of a run stand among those of all: for each base parameter the column of the run, none
+/// where it is zero.
+struct Places {
+    columns: Vec<Option<usize>>,
+    /// Number of the run's own columns.
+    own: usize,
+}
+
+/// Those of all runs.
+fn places(
+    runs: &[RunFactors],
+    columns: &ColumnSet,
+    base: &BaseParameters,
+) -> Result<Vec<Places>, Error> {
+    let all = columns.as_slice();
+    let loads = columns.indices(true);
+    let (mut places, mut problems) = (Vec::new(), Vec::new());
+    for run in runs {
+        let mut own = Vec::new();
+        for column in &base.columns {
+            let Some(wanted) = all.get(*column) else {
+                continue;
+            };
+            let found = run.columns.iter().position(|name| *name == wanted.name);
+            let carried = match (&wanted.load, &run.summary.payload_name) {
+                (Some(load), name) => name.as_ref() == Some(load),
+                (None, _) => run.summary.payload,
+            };
+            own.push(match loads.contains(column) && !carried {
+                true => None,
+                false => found,
+            });
+            if found.is_none() && (carried || !loads.contains(column)) {
+                let message = format!("the factors have no column `{}`", wanted.name);
+                let help = "factor the log anew with this program";
+                problems.push(
+                    Problem::new(Code::FACTORS, message)
+                        .file(run.title())
+                        .help(help),
+                );
+            }
+        }
+        places.push(Places {
+            columns: own,
+            own: run.columns.len(),
+        });
+    }
+    Error::check(problems)?;
+    Ok(places)
+}
+
+impl Places {
+    /// What a run adds to a system.
+    fn observed(&self, number: usize, parts: &[Part], own: &super::run::ModelFactors) -> Observed {
+        let same = self.columns.len() == self.own;
+        let same = same
+            && self
+                .columns
+                .iter()
+                .enumerate()
+                .all(|(at, own)| *own == Some(at));
+        let pick = DMatrix::from_fn(self.own, self.columns.len(), |row, column| {
+            f64::from(u8::from(self.columns[column] == Some(row)))
+        });
+        let part = |part: &Part| Part {
+            run: number,
+            lines: match same {
+                true => part.lines.clone(),
+                false => part.lines.iter().map(|line| line.combined(&pick)).collect(),
+            },
+        };
+        let stretch = |stretch: &Stretch| Stretch {
+            run: number,
+            lines: stretch.lines.iter().map(|rows| self.rows(rows)).collect(),
+            instruments: Vec::new(),
+        };
+        Observed {
+            parts: parts.iter().map(part).collect(),
+            stretches: own.stretches.iter().map(stretch).collect(),
+            partition: own.partition.clone(),
+            ..Observed::default()
+        }
+    }
+
+    /// Equations in the columns of all.
+    fn rows(&self, rows: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut all = DMatrix::zeros(rows.nrows(), self.columns.len() + 1);
+        for (to, from) in self.columns.iter().enumerate() {
+            if let Some(from) = from {
+                all.set_column(to, &rows.column(*from));
+            }
+        }
+        all.set_column(self.columns.len(), &rows.column(self.own));
+        all
+    }
+}

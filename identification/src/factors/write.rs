@@ -1,0 +1,185 @@
+//! Runs into a Parquet file.
+
+use overact::Code;
+use std::sync::Arc;
+
+use parquet::{
+    basic::Compression,
+    data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type},
+    errors::ParquetError,
+    file::{properties::WriterProperties, writer::SerializedFileWriter},
+    schema::parser::parse_message_type,
+};
+
+use super::{
+    packed::{rows, triangle, values},
+    run::{ModelFactors, RunFactors},
+    schema::{Cell, Row, SCHEMA, VERSION},
+};
+use crate::{
+    error::{Error, Problem},
+    regression::factor::Factor,
+};
+
+/// The bytes of a factor file of runs. The same runs give the same bytes.
+///
+/// # Errors
+/// A name that is too long to be written.
+pub fn write_factors(runs: &[RunFactors]) -> Result<Vec<u8>, Error> {
+    let all: Vec<Row> = runs.iter().flat_map(of_run).collect();
+    written(&all).map_err(|error| {
+        Problem::new(
+            Code::OUTPUT,
+            format!("the factors can't be written as Parquet: {error}"),
+        )
+        .into()
+    })
+}
+
+fn written(all: &[Row]) -> Result<Vec<u8>, ParquetError> {
+    let schema = Arc::new(parse_message_type(SCHEMA)?);
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_created_by(String::from("overact"))
+        .build();
+    let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties))?;
+    let cells: Vec<Vec<Cell<'_>>> = all.iter().map(Row::cells).collect();
+    let mut group = writer.next_row_group()?;
+    let mut place = 0;
+    while let Some(mut column) = group.next_column()? {
+        let own = || cells.iter().filter_map(|row| row.get(place));
+        match cells.first().and_then(|row| row.get(place)) {
+            Some(Cell::Whole(_)) => {
+                let whole = |cell: &Cell<'_>| match cell {
+                    Cell::Whole(value) => *value,
+                    _ => 0,
+                };
+                let own: Vec<i64> = own().map(whole).collect();
+                column.typed::<Int64Type>().write_batch(&own, None, None)?;
+            }
+            Some(Cell::Real(_)) => {
+                let real = |cell: &Cell<'_>| match cell {
+                    Cell::Real(value) => *value,
+                    _ => f64::NAN,
+                };
+                let own: Vec<f64> = own().map(real).collect();
+                column.typed::<DoubleType>().write_batch(&own, None, None)?;
+            }
+            Some(Cell::Instant(_)) | None => {
+                let instant = |cell: &Cell<'_>| match cell {
+                    Cell::Instant(value) => *value,
+                    _ => None,
+                };
+                let own: Vec<Option<i64>> = own().map(instant).collect();
+                let levels: Vec<i16> = own.iter().map(|one| i16::from(one.is_some())).collect();
+                let own: Vec<i64> = own.into_iter().flatten().collect();
+                let column = column.typed::<Int64Type>();
+                column.write_batch(&own, Some(&levels), None)?;
+            }
+            Some(Cell::Bytes(_)) => {
+                let bytes = |cell: &Cell<'_>| match cell {
+                    Cell::Bytes(value) => ByteArray::from(value.to_vec()),
+                    _ => ByteArray::new(),
+                };
+                let own: Vec<ByteArray> = own().map(bytes).collect();
+                let column = column.typed::<ByteArrayType>();
+                column.write_batch(&own, None, None)?;
+            }
+        }
+        column.close()?;
+        place += 1;
+    }
+    group.close()?;
+    writer.into_inner()
+}
+
+/// The rows of a run.
+fn of_run(run: &RunFactors) -> Vec<Row> {
+    let summary = &run.summary;
+    let standstill = summary.standstill_equations.iter().map(usize::to_string);
+    let all = Row {
+        version: VERSION,
+        like: run.like.clone(),
+        content: run.content.clone(),
+        robot: run.robot.clone(),
+        serial: run.serial.clone(),
+        time: run.time_us,
+        run: summary.name.clone(),
+        samples: summary.samples as i64,
+        sampling_frequency: summary.sampling_frequency,
+        loaded: i64::from(summary.payload),
+        payload: summary.payload_name.clone().unwrap_or_default(),
+        closure_residual: summary.closure_residual,
+        standstill: standstill.collect::<Vec<_>>().join(","),
+        flags: run.flags.join("\n"),
+        columns: run.columns.join(","),
+        ..Row::default()
+    };
+    run.models
+        .iter()
+        .flat_map(|model| of_model(&all, model))
+        .collect()
+}
+
+/// The rows of a model, for each line of a part, then of a stretch; one that says why there are none.
+fn of_model(run: &Row, model: &ModelFactors) -> Vec<Row> {
+    let partition = model.partition.as_ref();
+    let all = Row {
+        model: model.model.name().to_owned(),
+        condition: partition.map_or(0.0, |own| own.largest),
+        condition_sample: partition.map_or(0, |own| own.sample as i64),
+        condition_time: partition.map_or(0.0, |own| own.time),
+        crossings: partition.map_or(0, |own| own.crossings as i64),
+        ..run.clone()
+    };
+    let parts = match &model.parts {
+        Ok(parts) => parts,
+        Err(why) => {
+            let (kind, problem) = ("missing".to_owned(), why.clone());
+            return vec![Row {
+                kind,
+                problem,
+                ..all
+            }];
+        }
+    };
+    let name = |line: usize| model.lines.get(line).cloned().unwrap_or_default();
+    let mut rows_of_model = Vec::new();
+    for (part, own) in parts.iter().enumerate() {
+        for (line, factor) in own.lines.iter().enumerate() {
+            rows_of_model.push(Row {
+                kind: "factor".to_owned(),
+                part: part as i64,
+                line: line as i64,
+                line_name: name(line),
+                ..of_factor(&all, factor)
+            });
+        }
+    }
+    for (part, own) in model.stretches.iter().enumerate() {
+        for (line, equations) in own.lines.iter().enumerate() {
+            rows_of_model.push(Row {
+                kind: "equations".to_owned(),
+                part: part as i64,
+                line: line as i64,
+                line_name: name(line),
+                equations: equations.nrows() as i64,
+                factor: rows(equations),
+                ..all.clone()
+            });
+        }
+    }
+    rows_of_model
+}
+
+fn of_factor(all: &Row, factor: &Factor) -> Row {
+    let last = factor.parameters();
+    Row {
+        equations: factor.equations() as i64,
+        residual_norm: factor.matrix()[(last, last)].abs(),
+        measured_norm: factor.measured_norm(),
+        factor: triangle(factor.matrix()),
+        sums: values(factor.sums()),
+        ..all.clone()
+    }
+}
