@@ -74,7 +74,9 @@ fn text(found: &FromFactors) -> String {
     text.push_str(match found.deviations {
         Deviations::Equations => "Intervals are those of the logs: the files hold the equations.\n",
         Deviations::Parts => {
-            "Intervals are from the sums of parts of the runs, not from single equations.\n"
+            "Intervals are from the sums of parts of the runs, not from single equations: wider or narrower than\n\
+             those of the logs, and the recommended parameters, which they choose, may be others. Factor the\n\
+             logs with --equations for those of one pass.\n"
         }
     });
     text.push_str(

@@ -3,7 +3,7 @@
 use overact::Model;
 use serde::Serialize;
 
-use super::{gather::LeftOut, restore::restored, run::RunFactors};
+use super::{left_out::LeftOut, restore::restored, run::RunFactors};
 use crate::{
     error::Error,
     identify::{BaseParameter, Progress, estimates_of},

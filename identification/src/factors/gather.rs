@@ -6,9 +6,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use serde::Serialize;
-
-use super::{read::read_factors, run::RunFactors};
+use super::{
+    left_out::{LeftOut, Reason},
+    read::read_factors,
+    run::RunFactors,
+};
 use crate::error::{Error, Problem};
 
 /// Runs of several files, and what was left out of them.
@@ -19,60 +21,6 @@ pub struct Gathered {
     pub runs: Vec<RunFactors>,
     /// What is not among them.
     pub left_out: Vec<LeftOut>,
-}
-
-/// A run, or a whole file, that was left out.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-#[non_exhaustive]
-pub struct LeftOut {
-    /// The file.
-    pub file: String,
-    /// Name of the run; none where it is the whole file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub run: Option<String>,
-    /// Why, in one word.
-    pub reason: Reason,
-    /// Why.
-    pub message: String,
-}
-
-/// Why something is left out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Reason {
-    /// The file is cut off, or holds no factors.
-    Unreadable,
-    /// The file is of a version of the format that is not known.
-    NewerVersion,
-    /// Numbers that are not those that were written, or not finite.
-    Damaged,
-    /// Another description, or other settings.
-    Unlike,
-    /// The run has been counted already.
-    Twice,
-    /// The run has no factors of a model that other runs have.
-    MissingModel,
-}
-
-impl LeftOut {
-    fn problem(&self) -> Problem {
-        let message = match &self.run {
-            Some(run) => format!("run `{run}`: {}", self.message),
-            None => self.message.clone(),
-        };
-        let help = match self.reason {
-            Reason::Unreadable => "copy or write the file again; `--skip-bad` goes on without it",
-            Reason::NewerVersion => {
-                "use the program that wrote it; `--skip-bad` goes on without it"
-            }
-            Reason::Damaged => "factor the log again; `--skip-bad` goes on without the run",
-            _ => "factor the log with this description; `--skip-bad` goes on without the run",
-        };
-        Problem::new(Code::FACTORS, message)
-            .file(self.file.as_str())
-            .help(help)
-    }
 }
 
 /// Reads factor files. A run that is there twice counts once, which is told; anything else that can't be used is

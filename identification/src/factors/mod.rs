@@ -22,12 +22,13 @@
 //! - `run`: what is kept of a run; `packed`: numbers as bytes; `content`: their hash.
 //! - `observe`: from a log.
 //! - `schema`, `write`, `read`: as Parquet, a row for each line of a part.
-//! - `gather`: files together, nothing twice, nothing unlike.
+//! - `left_out`: what can't be used, and why; `gather`: files together, nothing twice, nothing unlike.
 //! - `restore`, `estimate`: back to a system, and its estimates.
 
 mod content;
 mod estimate;
 mod gather;
+mod left_out;
 mod observe;
 mod packed;
 mod read;
@@ -37,7 +38,8 @@ mod schema;
 mod write;
 
 pub use estimate::{Deviations, FromFactors, identify_factors};
-pub use gather::{Gathered, LeftOut, Reason, gather};
+pub use gather::{Gathered, gather};
+pub use left_out::{LeftOut, Reason};
 pub use observe::{Origin, factor_runs, likeness};
 pub use read::{Damaged, ReadFactors, read_factors};
 pub use run::{ModelFactors, RunFactors};

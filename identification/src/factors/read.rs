@@ -9,7 +9,7 @@ use parquet::{
 
 use super::{
     content::content,
-    gather::Reason,
+    left_out::Reason,
     packed::{from_rows, from_triangle, numbers},
     run::{ModelFactors, RunFactors},
     schema::{Place, Row, SCHEMA, VERSION},

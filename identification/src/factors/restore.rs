@@ -5,7 +5,7 @@ use overact::Code;
 use overact::Model;
 
 use super::{
-    gather::{LeftOut, Reason},
+    left_out::{LeftOut, Reason},
     run::RunFactors,
 };
 use crate::{

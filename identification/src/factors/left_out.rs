@@ -1,0 +1,61 @@
+//! What of factor files can't be used, and why.
+
+use overact::Code;
+use serde::Serialize;
+
+use crate::error::Problem;
+
+/// A run, or a whole file, that was left out.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct LeftOut {
+    /// The file.
+    pub file: String,
+    /// Name of the run; none where it is the whole file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
+    /// Why, in one word.
+    pub reason: Reason,
+    /// Why.
+    pub message: String,
+}
+
+/// Why something is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Reason {
+    /// The file is cut off, or holds no factors.
+    Unreadable,
+    /// The file is of a version of the format that is not known.
+    NewerVersion,
+    /// Numbers that are not those that were written, or not finite.
+    Damaged,
+    /// Another description, or other settings.
+    Unlike,
+    /// The run has been counted already.
+    Twice,
+    /// The run has no factors of a model that other runs have.
+    MissingModel,
+}
+
+impl LeftOut {
+    /// It as an error, with a way out.
+    pub(super) fn problem(&self) -> Problem {
+        let message = match &self.run {
+            Some(run) => format!("run `{run}`: {}", self.message),
+            None => self.message.clone(),
+        };
+        let help = match self.reason {
+            Reason::Unreadable => "copy or write the file again; `--skip-bad` goes on without it",
+            Reason::NewerVersion => {
+                "use the program that wrote it; `--skip-bad` goes on without it"
+            }
+            Reason::Damaged => "factor the log again; `--skip-bad` goes on without the run",
+            _ => "factor the log with this description; `--skip-bad` goes on without the run",
+        };
+        Problem::new(Code::FACTORS, message)
+            .file(self.file.as_str())
+            .help(help)
+    }
+}
