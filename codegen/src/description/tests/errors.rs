@@ -21,7 +21,7 @@ fn several_errors_are_shown_at_once() {
         "gamma = \"3 * widht\"\nalhpa = 1\nd = \"15 deg\"",
     );
     let expected = "\
-error: unknown name `widht`
+error[OA106]: unknown name `widht`
  --> my.toml:7:14
   |
 7 | gamma = \"3 * widht\"
@@ -29,7 +29,7 @@ error: unknown name `widht`
   |
   = help: did you mean `width`?
 
-error: unknown key `alhpa`
+error[OA102]: unknown key `alhpa`
  --> my.toml:8:1
   |
 8 | alhpa = 1
@@ -37,7 +37,7 @@ error: unknown key `alhpa`
   |
   = help: did you mean `alpha`?
 
-error: `d`: expected a length (m), found an angle (15 deg)
+error[OA105]: `d`: expected a length (m), found an angle (15 deg)
  --> my.toml:9:5
   |
 9 | d = \"15 deg\"
