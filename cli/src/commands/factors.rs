@@ -75,8 +75,9 @@ fn text(found: &FromFactors) -> String {
         Deviations::Equations => "Intervals are those of the logs: the files hold the equations.\n",
         Deviations::Parts => {
             "Intervals are from the sums of parts of the runs, not from single equations: wider or narrower than\n\
-             those of the logs, and the recommended parameters, which they choose, may be others. Factor the\n\
-             logs with --equations for those of one pass.\n"
+             those of the logs, and the recommended parameters, which they choose, may be others;\n\
+             deviations of smaller models are those of white residuals. Factor the logs with\n\
+             --equations for those of one pass.\n"
         }
     });
     text.push_str(

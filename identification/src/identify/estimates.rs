@@ -313,12 +313,11 @@ impl Context<'_> {
         each.map(|(own, more)| (own * own + more).sqrt()).collect()
     }
 
-    /// Deviations without successive equations: white ones, or those of the base parameters' intervals where these
-    /// are larger. Of a smaller model only the sums of parts say more than white residuals do.
+    /// Deviations without successive equations: white ones, and of all base parameters those of the intervals where
+    /// these are larger. Intervals of smaller models are those of the base parameters all the same.
     fn without_noise(&self, estimation: &Estimation, selected: &[usize]) -> Vec<f64> {
         let white = estimation.standard_deviations.iter();
-        let is_base = selected.len() == self.intervals.deviations().len();
-        if !self.system.stretches.is_empty() || (!is_base && self.system.parts.is_empty()) {
+        if !self.system.stretches.is_empty() || selected.len() < self.intervals.deviations().len() {
             return white.copied().collect();
         }
         let pairs = white.zip(selected);
