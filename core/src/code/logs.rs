@@ -25,7 +25,7 @@ super::codes! {
     LOG_FILES 308 "files of one run do not fit to one another"
         cause "Several files of a run begin, end or step at different times, or one of them has no times."
         cure "Give every file a column of the time of the same name, and say `resample` in [data]."
-    DATA_TABLE 309 "the table [data] does not fit to the robot"
+    DATA_TABLE 309 "the table of data does not fit to the robot"
         cause "[data] has other numbers of positions or torques than the robot has actuators, a factor of zero, or a rate that is no rate."
         cure "Give one entry for each actuator, in the order that `overact inspect` prints."
     PERIODS 310 "the motion does not repeat itself"
