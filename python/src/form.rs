@@ -15,7 +15,7 @@ pub(crate) enum Owner {
     /// The robot, whose usual functions are compiled with it.
     Robot(Arc<Robot>),
     /// A model of this function alone.
-    Own(InterpretedRobot),
+    Own(Box<InterpretedRobot>),
 }
 
 impl Owner {

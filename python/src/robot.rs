@@ -63,10 +63,10 @@ impl Handle {
         }
         let owner = match own.functions.iter().any(|one| one.name == name) {
             true => Owner::Robot(Arc::clone(&self.robot)),
-            false => Owner::Own(
+            false => Owner::Own(Box::new(
                 py.detach(|| self.compiled_alone(name))
                     .map_err(|error| errors::of_robot(py, &error))?,
-            ),
+            )),
         };
         let form = Form::new(owner, name);
         let form = form.ok_or_else(|| {
