@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import controller, identification, ours, pinocchio_peer, report, timing
+from . import blockwise, controller, identification, logs, ours, pinocchio_peer, report, timing
 from .description import load
 from .ours import Function
 from .peers import Model, check, models
@@ -63,6 +63,7 @@ def main():
     parser.add_argument(
         "--identification", action="store_true", help="only the throughput of an identification"
     )
+    parser.add_argument("--logs", action="store_true", help="only the identification from whole logs")
     parser.add_argument(
         "--blocks", action="store_true", help="only the evaluation over blocks beside the compiled function"
     )
@@ -75,7 +76,11 @@ def main():
     parser.add_argument("--rounds", type=int, default=15, help="turns of every program")
     arguments = parser.parse_args()
     if arguments.identification:
-        print(identification.table(*identification.measure(arguments.core)))
+        peers = [identification.Pipeline, blockwise.Blockwise]
+        print(identification.table(*identification.measure(arguments.core, peers)))
+        return
+    if arguments.logs:
+        print(logs.measure())
         return
     if arguments.blocks:
         work = WORKS[0]

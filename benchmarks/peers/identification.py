@@ -82,7 +82,8 @@ class Pipeline:
         algebra = Casadi()
         form = best(self.robot, function.inputs, everything)[0]
         derived = columns(self.robot, algebra, function.inputs, everything, form)
-        self.regressor = vectorised(algebra.function("model", function.inputs, derived, cse=True))
+        self.function = algebra.function("regressor", function.inputs, derived, cse=True)
+        self.regressor = vectorised(self.function)
         self.width, self.inputs = len(everything), [name for name, _ in function.inputs]
         self.rows = function.shape[0]
 
@@ -187,27 +188,32 @@ def check(found, expected):
             raise RuntimeError(f"R factors differ by {error.max():.1e}")
 
 
-def measure(core, rounds=7):
-    """Shortest times of both in turns, and the table."""
+def measure(core, peers, rounds=7):
+    """Shortest times in turns of overact and of the peers' stages."""
     function = ours.function(Work("DualV, base columns", "dualv", "base"))
     values = log(function)
     path = BUILD / "states" / "identification.bin"
     path.parent.mkdir(parents=True, exist_ok=True)
     values.tofile(path)
     os.sched_setaffinity(0, {core})
-    pipeline = Pipeline(function, values)
-    mine, theirs = [], []
+    pipelines = [peer(function, values) for peer in peers]
+    mine, theirs = [], [[] for _ in pipelines]
     for _ in range(rounds):
-        times, factors = pipeline.run()
-        theirs.append(times)
         total, expected = own(function, path, core, BUILD / "states" / "identification.out")
         mine.append(total)
-        check(factors, expected)
-    return min(mine), np.min(theirs, axis=0)
+        for pipeline, measured in zip(pipelines, theirs, strict=True):
+            times, factors = pipeline.run()
+            measured.append(times)
+            check(factors, expected)
+    return min(mine), [np.min(measured, axis=0) for measured in theirs]
 
 
 def table(mine, theirs):
-    """NumPy's and SciPy's stages, and the whole of both; overact's stages take turns block by block."""
-    rows = [[stage, "", f"{time:.0f}", ""] for stage, time in zip(STAGES, theirs, strict=False)]
-    rows.append(["all", f"**{mine:.0f}**", f"{theirs[-1]:.0f}", f"{mine / theirs[-1]:.2f}"])
-    return report.table(["ns per sample", "overact", "NumPy and SciPy", "ratio"], rows)
+    """The peers' stages, and the whole of all; overact's stages take turns block by block."""
+    rows = []
+    for number, stage in enumerate(STAGES):
+        rows.append([stage, "", *(f"{times[number]:.0f}" for times in theirs), ""])
+    totals = [times[-1] for times in theirs]
+    rows.append(["all", f"**{mine:.0f}**", *(f"{total:.0f}" for total in totals), f"{mine / min(totals):.2f}"])
+    head = ["ns per sample", "overact", "NumPy and SciPy", "NumPy with C code, group by group", "ratio to the faster"]
+    return report.table(head, rows)

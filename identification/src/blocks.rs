@@ -4,7 +4,7 @@ use overact::{Function, Input, Model, SampleError};
 use rayon::prelude::*;
 
 /// Samples that are evaluated at once: enough to fill vector units, few enough for the cache.
-pub(crate) const BLOCK: usize = 512;
+pub(crate) const BLOCK: usize = 256;
 
 /// Evaluates `function` at all samples. `inputs` hold one row per sample, except
 /// [`Input::Parameters`] and [`Input::BaseParameters`].

@@ -50,6 +50,7 @@ mod settings;
 mod significant;
 mod thresholds;
 mod validation;
+mod widest;
 
 pub use assessment::{
     check::{About, Check, CheckKind, Detectable, Grade},

@@ -10,6 +10,7 @@ use super::{
     rows,
     samples::Samples,
     source::Files,
+    spill::Spill,
 };
 use crate::error::{Error, Problem};
 
@@ -321,7 +322,10 @@ impl Log {
     pub fn reader(&self) -> Result<Reader<'_>, Error> {
         let rows = match &self.source {
             Source::Memory(all) => Rows::Memory(all.each_ref().map(|own| &**own)),
-            Source::Files(files) => Rows::Files(Box::new(rows::Rows::new(files)?)),
+            Source::Files(files) => match &files.spill {
+                Some(spill) => Rows::Spilled(spill, 0),
+                None => Rows::Files(Box::new(rows::Rows::new(files)?)),
+            },
             Source::Others(log, periods) => {
                 Rows::Others(Box::new(log.reader()?), periods::Others::new(periods))
             }
@@ -368,6 +372,8 @@ pub struct Reader<'a> {
 enum Rows<'a> {
     Memory([&'a [f64]; 3]),
     Files(Box<rows::Rows<'a>>),
+    /// Numbers in a temporary file, and how many samples have been taken.
+    Spilled(&'a Spill, usize),
     Others(Box<Reader<'a>>, periods::Others<'a>),
 }
 
@@ -426,6 +432,17 @@ impl Reader<'_> {
                     }
                 }
                 Ok(block)
+            }
+            Rows::Spilled(spill, taken) => {
+                let block = spill.read(*taken, count);
+                *taken += count;
+                block.map_err(|error| {
+                    let message =
+                        format!("its numbers can't be read from a temporary file: {error}");
+                    Problem::new(Code::UNREADABLE_LOG, message)
+                        .file(self.name)
+                        .into()
+                })
             }
             Rows::Others(reader, others) => {
                 let mut block = reader.next()?.unwrap_or_default();

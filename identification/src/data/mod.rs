@@ -5,8 +5,8 @@
 //! Text, MATLAB's `.mat` files up to version 7, NumPy's files and Parquet are read, told apart by their first bytes.
 //! Text may separate its columns by commas, semicolons, tabs or blanks, have decimal commas, a header, names in a
 //! comment or none. Readers report every missing column, every cell that is not a number (up to twenty)
-//! and the first step of a time that is not uniform. A large text or Parquet file stays on the disk and is read block
-//! by block whenever its run is gone through.
+//! and the first step of a time that is not uniform. A large file stays on the disk and is read block by block
+//! whenever its run is gone through; the numbers of a text are kept in a temporary file for that.
 
 mod archive;
 mod arrays;
@@ -33,6 +33,7 @@ mod rows;
 mod samples;
 mod signals;
 mod source;
+mod spill;
 mod stored;
 mod structures;
 mod summary;
@@ -118,7 +119,7 @@ pub fn read_arrays(
 
 /// The run of files that are open.
 fn looked_through(
-    files: Files,
+    mut files: Files,
     mapping: &Mapping,
     payload: bool,
     advance: &dyn Fn(u64),
@@ -133,7 +134,10 @@ fn looked_through(
             Log::new(name, frequency, actuators, positions, torques, payload)?
                 .with_velocities(samples.velocities)
         }
-        None => Log::in_files(files, frequency, count, payload),
+        None => {
+            files.spill = summary.spill;
+            Log::in_files(files, frequency, count, payload)
+        }
     };
     Ok(log
         .with_note(note)

@@ -62,6 +62,7 @@ impl Files {
             clocks: Vec::new(),
             transmission: Transmission::new(&mapping.transmission, mapping.positions.len())?,
             resample: None,
+            spill: None,
         };
         files.clocks = files.differing_clocks()?;
         if let Some(rate) = mapping.resample {

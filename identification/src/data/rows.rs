@@ -98,6 +98,12 @@ impl<'a> Joined<'a> {
     /// Every cell of the row that is no finite number, a file that can't be read on or that ends before
     /// the others.
     fn advance(&mut self, values: &mut [f64], given: Option<f64>) -> Result<Step, Error> {
+        if let ([part], None, []) = (&mut self.parts[..], given, &self.files.clocks[..])
+            && part.resampled.is_none()
+            && part.columns > 0
+        {
+            return self.alone(values);
+        }
         let (mut problems, mut goes_on, mut ended) = (Vec::new(), None, None);
         let (mut place, mut time) = (Place::Inside, given);
         let clock = self.files.clocks.first();
@@ -154,6 +160,25 @@ impl<'a> Joined<'a> {
             Ok(Step::Row)
         } else {
             Ok(Step::Outside)
+        }
+    }
+
+    /// Reads the next row of the only file.
+    fn alone(&mut self, values: &mut [f64]) -> Result<Step, Error> {
+        let rows = &mut self.parts[0].rows;
+        match rows.next(values) {
+            Ok(true) => {
+                self.count += 1;
+                Ok(Step::Row)
+            }
+            Ok(false) => {
+                self.has_ended = true;
+                Ok(Step::End)
+            }
+            Err(error) => {
+                self.has_ended |= rows.is_broken();
+                Err(error)
+            }
         }
     }
 

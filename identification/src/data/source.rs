@@ -1,7 +1,7 @@
 //! The files of a run: their tables, what is read of them, and at which times.
 
 use super::{
-    expression::Expression, resampling::Resampled, signals::Signals, table::Table,
+    expression::Expression, resampling::Resampled, signals::Signals, spill::Spill, table::Table,
     transmission::Transmission,
 };
 
@@ -21,6 +21,8 @@ pub(super) struct Files {
     pub(super) transmission: Option<Transmission>,
     /// The rate of uniform times at which the run is resampled, Hz, and the usual step before, s.
     pub(super) resample: Option<(f64, f64)>,
+    /// The numbers of the run, where it is large and its files are slow to read.
+    pub(super) spill: Option<Spill>,
 }
 
 impl Files {

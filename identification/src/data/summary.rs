@@ -2,12 +2,15 @@
 
 use super::{
     clock::Clock, mapping::Time, problems::LARGEST_NUMBER_OF_PROBLEMS, rows::Rows,
-    samples::Samples, source::Files, table::Table,
+    samples::Samples, source::Files, spill::Spill, table::Table,
 };
 use crate::error::Error;
 
 /// Numbers of one run that are kept in memory (8 MB); arrays are in memory anyhow.
 const LARGEST_IN_MEMORY: usize = 1 << 20;
+
+/// Numbers of positions that are put into a temporary file at once (256 kB).
+const SPILLED: usize = 1 << 15;
 
 /// Bytes after which progress is told.
 const STEP: u64 = 1 << 18;
@@ -19,6 +22,8 @@ pub(super) struct Summary {
     pub(super) count: usize,
     /// All samples, where they are few enough to be kept.
     pub(super) samples: Option<Samples>,
+    /// All samples in a temporary file, where they are not kept and their files are slow to read.
+    pub(super) spill: Option<Spill>,
     /// Samples of the first file at which another one, which is joined by time, has none.
     pub(super) left_out: usize,
 }
@@ -38,7 +43,7 @@ impl Files {
         let mut clock = Clock::default();
         let mut samples = Samples::default();
         let mut problems = Vec::new();
-        let (mut fits, mut told, mut last) = (true, 0, None);
+        let (mut fits, mut spill, mut told, mut last) = (true, None, 0, None);
         let in_memory = self.tables.iter().all(Table::in_memory);
         loop {
             let bytes = rows.bytes();
@@ -61,11 +66,16 @@ impl Files {
             if rows.has_ended() || problems.len() >= LARGEST_NUMBER_OF_PROBLEMS {
                 break;
             }
-            fits &= in_memory || 2 * samples.positions.len() <= LARGEST_IN_MEMORY;
-            if !fits {
+            if fits && !in_memory && 2 * samples.positions.len() > LARGEST_IN_MEMORY {
+                fits = false;
+                spill = self.spilled();
+            }
+            if !fits && samples.positions.len() >= SPILLED {
+                spill = spill.filter(|own| own.write(&samples));
                 samples.clear();
             }
         }
+        spill = spill.filter(|own| own.write(&samples));
         if problems.is_empty() {
             problems.extend(rows.apart());
         }
@@ -80,7 +90,15 @@ impl Files {
             frequency,
             count: rows.samples,
             samples: fits.then_some(samples),
+            spill,
             left_out: rows.left_out,
         })
+    }
+
+    /// A temporary file for a run that is read from text.
+    fn spilled(&self) -> Option<Spill> {
+        let is_text = self.tables.iter().any(Table::is_text);
+        let new = || Spill::new(self.actuators(), self.has_velocities());
+        is_text.then(new).flatten()
     }
 }

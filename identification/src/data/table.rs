@@ -102,6 +102,11 @@ impl Table {
         matches!(self, Self::Arrays(_))
     }
 
+    /// Whether each number has to be read digit by digit.
+    pub(super) const fn is_text(&self) -> bool {
+        matches!(self, Self::Text(_))
+    }
+
     /// Number of columns that can be called by number.
     pub(super) fn columns(&self) -> usize {
         match self {

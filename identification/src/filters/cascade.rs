@@ -34,17 +34,7 @@ impl Cascade {
         }
     }
 
-    /// A filter in given states: for each section, s1 of all `width` signals, then s2 of all.
-    pub(super) fn with_states(filter: &LowPass, width: usize, states: Vec<f64>) -> Self {
-        debug_assert_eq!(states.len(), 2 * filter.sections().len() * width);
-        Self {
-            sections: filter.sections().to_vec(),
-            states,
-            width,
-        }
-    }
-
-    /// The states as they are now.
+    /// The states as they are now: for each section, s1 of all signals, then s2 of all.
     pub(super) fn into_states(self) -> Vec<f64> {
         self.states
     }

@@ -5,17 +5,9 @@
 //! with polynomials and lowers the order where these lose their digits; sections never need that.
 //!
 //! Of the filtered signal one sample in n_d is wanted, so neither pass is run sample by sample. A
-//! group are the n_d samples from a kept one on. With the row x of the forward pass's states at its
-//! start and its samples u, everything is linear: the states at its end, the states that the
-//! backward pass gains in it, and the group's share of the kept value,
-//!
-//! ```text
-//! [x', b, y] = [x, u] M,        [s, y'] = s' T,   s <- s + b,   kept value = y + y',
-//! ```
-//!
-//! where s' are the backward pass's states behind the group. M and T come from the sections
-//! themselves, by passing unit states and unit samples. This is a matrix product over all signals at
-//! once, and what waits for the backward pass is n_d times shorter than the signal.
+//! group are the n_d samples from a kept one on; what it adds to the modes of the low-pass ([`modes`](super::modes))
+//! is a product with fixed weights ([`groups`](super::groups)), all signals at once, and what waits for the backward
+//! pass is n_d times shorter than the signal. Both ends are passed sample by sample.
 //!
 //! Where all samples are kept, another low-pass can take the place of the decimation's, so that both sides
 //! of the equations are filtered alike.
@@ -23,11 +15,11 @@
 use overact::Code;
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DMatrixView};
-
 use super::{
     cascade::{Cascade, reflected, settling, started},
     design::{LowPass, chebyshev1},
+    groups::{Groups, PARTS},
+    modes::{Mode, Modes},
     zero_phase::{TRANSIENT, ZeroPhase, check_length},
 };
 use crate::error::{Error, Problem};
@@ -40,9 +32,6 @@ pub const DECIMATION_PADDING: usize = 3 * DECIMATION_ORDER;
 
 /// Ripple of the Chebyshev low-pass in its pass band, dB.
 const RIPPLE_DB: f64 = 0.05;
-
-/// States of the low-pass: two for each section.
-const STATES: usize = DECIMATION_ORDER;
 
 /// Groups that are finished at once, at least; twice the overlap where that is more.
 const SMALLEST_HOP: usize = 256;
@@ -60,11 +49,7 @@ pub struct Decimator {
 #[derive(Debug, PartialEq)]
 struct GroupFilter {
     low_pass: LowPass,
-    /// M, (states + n_d) x (2 states + 1), split by rows: states, samples.
-    from_states: DMatrix<f64>,
-    from_samples: DMatrix<f64>,
-    /// T, states x (states + 1).
-    backwards: DMatrix<f64>,
+    groups: Groups,
     /// Groups after which the backward pass has forgotten its start.
     overlap: usize,
 }
@@ -72,39 +57,8 @@ struct GroupFilter {
 impl GroupFilter {
     fn new(factor: usize) -> Result<Self, Error> {
         let low_pass = chebyshev1(DECIMATION_ORDER, RIPPLE_DB, 0.8 / factor as f64)?;
-        // One signal for each unit state, then one for each sample of the group.
-        let width = STATES + factor;
-        let mut states = vec![0.0; STATES * width];
-        for state in 0..STATES {
-            states[state * width + state] = 1.0;
-        }
-        let mut rows = vec![0.0; factor * width];
-        for sample in 0..factor {
-            rows[sample * width + STATES + sample] = 1.0;
-        }
-        let mut forward = Cascade::with_states(&low_pass, width, states);
-        forward.pass(&mut rows);
-        let mut backward = Cascade::with_states(&low_pass, width, vec![0.0; STATES * width]);
-        backward.pass_backwards(&mut rows);
-        let columns = [
-            forward.into_states(),
-            backward.into_states(),
-            rows[..width].to_vec(),
-        ];
-        let all = DMatrix::from_vec(width, 2 * STATES + 1, columns.concat());
-
-        let mut unit = Cascade::with_states(
-            &low_pass,
-            STATES,
-            DMatrix::<f64>::identity(STATES, STATES).as_slice().to_vec(),
-        );
-        let mut rows = vec![0.0; factor * STATES];
-        unit.pass_backwards(&mut rows);
-        let columns = [unit.into_states(), rows[..STATES].to_vec()];
         Ok(Self {
-            from_states: all.rows(0, STATES).clone_owned(),
-            from_samples: all.rows(STATES, factor).clone_owned(),
-            backwards: DMatrix::from_vec(STATES, STATES + 1, columns.concat()),
+            groups: Groups::new(Modes::new(&low_pass), factor),
             overlap: settling(&low_pass, TRANSIENT).div_ceil(factor),
             low_pass,
         })
@@ -175,19 +129,18 @@ impl Decimator {
     }
 
     /// What groups the samples, where not all of them are kept.
-    fn groups(&self, width: usize, samples: usize) -> Result<Option<Groups>, Error> {
+    fn groups(&self, width: usize, samples: usize) -> Result<Option<Grouped>, Error> {
         let Some(filter) = &self.filter else {
             return Ok(None);
         };
         check_length(&filter.low_pass, samples)?;
-        Ok(Some(Groups {
+        Ok(Some(Grouped {
             filter: Arc::clone(filter),
             width: width.max(1),
-            factor: self.factor,
             left: samples,
             skipped: self.first(samples),
             gathered: Vec::new(),
-            states: None,
+            before: None,
             pending: Vec::new(),
             hop: SMALLEST_HOP.max(2 * filter.overlap),
             last: Vec::new(),
@@ -218,7 +171,7 @@ pub fn decimate(signal: &[f64], factor: usize) -> Result<Vec<f64>, Error> {
 #[derive(Debug, Clone)]
 pub struct Decimation {
     first: Option<ZeroPhase>,
-    groups: Option<Groups>,
+    groups: Option<Grouped>,
 }
 
 impl Decimation {
@@ -240,27 +193,25 @@ impl Decimation {
 
 /// A decimation that is under way.
 #[derive(Debug, Clone)]
-struct Groups {
+struct Grouped {
     filter: Arc<GroupFilter>,
     width: usize,
-    factor: usize,
     /// Samples that are still to come.
     left: usize,
     /// Samples before the first group that have not come yet.
     skipped: usize,
     /// Rows that make no whole group yet.
     gathered: Vec<f64>,
-    /// The forward pass's states at the start of the gathered rows, width x states, once enough rows
-    /// for its reflection have come.
-    states: Option<DMatrix<f64>>,
-    /// For each group that waits for the backward pass, [b, y] of all signals, width x (states + 1).
+    /// X of all signals at the start of the gathered rows, once enough rows for its reflection have come.
+    before: Option<Vec<f64>>,
+    /// For each group that waits for the backward pass, F and the kept values as far as they are known.
     pending: Vec<f64>,
     hop: usize,
     /// The last rows, for the reflection at the end.
     last: Vec<f64>,
 }
 
-impl Groups {
+impl Grouped {
     fn push(&mut self, rows: &[f64], kept: &mut Vec<f64>) {
         let rows = rows.get(..self.left * self.width).unwrap_or(rows);
         if rows.is_empty() {
@@ -273,11 +224,16 @@ impl Groups {
         let excess = self.last.len().saturating_sub(reach);
         self.last.drain(..excess);
 
-        self.gathered.extend_from_slice(rows);
-        if self.states.is_none() && !self.start() {
-            return;
+        if self.before.is_some() {
+            self.take(rows, kept);
+        } else {
+            self.gathered.extend_from_slice(rows);
+            if !self.start() {
+                return;
+            }
+            let gathered = std::mem::take(&mut self.gathered);
+            self.take(&gathered, kept);
         }
-        self.take_groups(kept);
         if self.left == 0 {
             self.finish(kept);
         }
@@ -293,80 +249,128 @@ impl Groups {
         let before = self.skipped * self.width;
         forward.pass(&mut self.gathered[..before]);
         self.gathered.drain(..before);
-        self.states = Some(DMatrix::from_vec(self.width, STATES, forward.into_states()));
+        let states = forward.into_states();
+        let modes = &self.filter.groups.modes;
+        let mut all = vec![0.0; PARTS * self.width];
+        for signal in 0..self.width {
+            let past = modes.past(&sections(&states, self.width, signal));
+            put(&mut all, self.width, signal, &past);
+        }
+        self.before = Some(all);
         true
     }
 
     /// Passes whole groups forwards. The last sample is a kept one that begins no whole group: it
     /// stays gathered.
-    fn take_groups(&mut self, kept: &mut Vec<f64>) {
-        let Some(mut states) = self.states.take() else {
+    fn take(&mut self, mut rows: &[f64], kept: &mut Vec<f64>) {
+        let size = self.filter.groups.length * self.width;
+        if !self.gathered.is_empty() {
+            let room = (size - self.gathered.len()).min(rows.len());
+            let (now, later) = rows.split_at(room);
+            self.gathered.extend_from_slice(now);
+            rows = later;
+            if self.gathered.len() < size {
+                return;
+            }
+            let gathered = std::mem::take(&mut self.gathered);
+            self.take_groups(&gathered, kept);
+        }
+        let whole = rows.len() / size * size;
+        self.take_groups(&rows[..whole], kept);
+        self.gathered.extend_from_slice(&rows[whole..]);
+    }
+
+    /// Passes groups forwards.
+    fn take_groups(&mut self, rows: &[f64], kept: &mut Vec<f64>) {
+        let Some(mut before) = self.before.take() else {
             return;
         };
         let filter = Arc::clone(&self.filter);
-        let size = self.factor * self.width;
-        let full = (self.hop + filter.overlap) * (STATES + 1) * self.width;
-        let mut result = DMatrix::zeros(self.width, 2 * STATES + 1);
-        let gathered = std::mem::take(&mut self.gathered);
-        let mut groups = gathered.chunks_exact(size);
-        for group in &mut groups {
+        let size = (PARTS + 1) * self.width;
+        let full = (self.hop + filter.overlap) * size;
+        let mut after = vec![0.0; before.len()];
+        for group in rows.chunks_exact(filter.groups.length * self.width) {
             if self.pending.len() == full {
                 self.pass_backwards(self.hop, None, kept);
             }
-            let samples = DMatrixView::from_slice(group, self.width, self.factor);
-            result.gemm(1.0, &samples, &filter.from_samples, 0.0);
-            result.gemm(1.0, &states, &filter.from_states, 1.0);
-            states.copy_from(&result.columns(0, STATES));
-            self.pending
-                .extend_from_slice(&result.as_slice()[STATES * self.width..]);
+            let start = self.pending.len();
+            self.pending.resize(start + size, 0.0);
+            let told = &mut self.pending[start..];
+            let group = (group, self.width);
+            filter.groups.pass(group, (&before, &mut after), told);
+            std::mem::swap(&mut before, &mut after);
         }
-        self.gathered = groups.remainder().to_vec();
-        self.states = Some(states);
+        self.before = Some(before);
     }
 
     /// Gives out what the reflection behind the last row allows: all.
     fn finish(&mut self, kept: &mut Vec<f64>) {
-        let Some(states) = self.states.take() else {
+        let Some(before) = self.before.take() else {
             return;
         };
-        let low_pass = &self.filter.low_pass;
-        let reflection = reflected(self.last.rchunks_exact(self.width), low_pass.padding());
+        let (filter, width) = (Arc::clone(&self.filter), self.width);
+        let modes = &filter.groups.modes;
+        let padding = filter.low_pass.padding();
+        let reflection = reflected(self.last.rchunks_exact(width), padding);
         // The last sample and the reflection behind it.
         let mut rows = [std::mem::take(&mut self.gathered), reflection].concat();
-        Cascade::with_states(low_pass, self.width, states.as_slice().to_vec()).pass(&mut rows);
-        let end = &rows[rows.len() - self.width..];
-        let mut backward = Cascade::settled(low_pass, end);
+        for signal in 0..width {
+            let own = rows[signal..].iter().step_by(width);
+            let mut own: Vec<f64> = own.copied().collect();
+            modes.pass(&get(&before, width, signal), &mut own);
+            let places = rows[signal..].iter_mut().step_by(width);
+            places.zip(own).for_each(|(to, from)| *to = from);
+        }
+        let end = &rows[rows.len() - width..];
+        let mut backward = Cascade::settled(&filter.low_pass, end);
         backward.pass_backwards(&mut rows);
-        let behind = DMatrix::from_vec(self.width, STATES, backward.into_states());
-        let groups = self.pending.len() / ((STATES + 1) * self.width);
+        let states = backward.into_states();
+        let mut behind = vec![0.0; before.len()];
+        for signal in 0..width {
+            let past = get(&before, width, signal);
+            let future = modes.future(&sections(&states, width, signal), &past);
+            put(&mut behind, width, signal, &future);
+        }
+        let groups = self.pending.len() / ((PARTS + 1) * width);
         self.pass_backwards(groups, Some(behind), kept);
-        kept.extend_from_slice(&rows[..self.width]);
+        kept.extend_from_slice(&rows[..width]);
     }
 
-    /// Runs backwards over all pending groups from the states `behind` the last of them, and gives out
+    /// Runs backwards over all pending groups from B `behind` the last of them, and gives out
     /// the kept samples of the first `finished` ones, which are pending no more.
-    fn pass_backwards(
-        &mut self,
-        finished: usize,
-        behind: Option<DMatrix<f64>>,
-        kept: &mut Vec<f64>,
-    ) {
+    fn pass_backwards(&mut self, finished: usize, behind: Option<Vec<f64>>, kept: &mut Vec<f64>) {
         let width = self.width;
-        let size = (STATES + 1) * width;
-        let mut states = behind.unwrap_or_else(|| DMatrix::zeros(width, STATES));
+        let size = (PARTS + 1) * width;
+        let mut behind = behind.unwrap_or_else(|| vec![0.0; PARTS * width]);
         let start = kept.len();
         kept.resize(start + finished * width, 0.0);
-        // A copy: groups behind the finished ones are passed again, from a better start.
-        let mut group = DMatrix::zeros(width, STATES + 1);
         for (index, waiting) in self.pending.chunks_exact(size).enumerate().rev() {
-            group.copy_from_slice(waiting);
-            group.gemm(1.0, &states, &self.filter.backwards, 1.0);
-            states.copy_from(&group.columns(0, STATES));
-            if index < finished {
-                let place = start + index * width;
-                kept[place..place + width].copy_from_slice(&group.as_slice()[STATES * width..]);
-            }
+            // Groups behind the finished ones are passed again, from a better start.
+            let place = start + index * width;
+            let own = (index < finished).then(|| &mut kept[place..place + width]);
+            self.filter.groups.pass_backwards(waiting, &mut behind, own);
         }
         self.pending.drain(..finished * size);
+    }
+}
+
+/// The states of a signal in those of all.
+fn sections(states: &[f64], width: usize, signal: usize) -> Vec<[f64; 2]> {
+    let all = states.chunks_exact(2 * width);
+    all.map(|own| [own[signal], own[width + signal]]).collect()
+}
+
+/// The modes of a signal among those of all.
+fn get(all: &[f64], width: usize, signal: usize) -> Vec<Mode> {
+    let modes = all.chunks_exact(2 * width);
+    modes
+        .map(|own| Mode::new(own[signal], own[width + signal]))
+        .collect()
+}
+
+/// Puts the modes of a signal to those of all.
+fn put(all: &mut [f64], width: usize, signal: usize, own: &[Mode]) {
+    for (place, mode) in all.chunks_exact_mut(2 * width).zip(own) {
+        (place[signal], place[width + signal]) = (mode.re, mode.im);
     }
 }

@@ -12,6 +12,8 @@ mod cascade;
 mod decimation;
 mod design;
 mod differences;
+mod groups;
+mod modes;
 mod zero_phase;
 
 pub(crate) use cascade::settling;

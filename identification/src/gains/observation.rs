@@ -107,9 +107,9 @@ impl Observer<'_> {
         let plan = Plan::new(decimator.kept(samples), budget / (r * width).max(1));
         let sink = |line: usize| {
             let limit = self.settings.standstill_velocity.get(line).copied();
-            let stream = decimator.stream(width + usize::from(limit.is_some()), samples)?;
+            let stream = |width| decimator.stream(width, samples);
             let columns = (self.columns(), false);
-            Ok(LineSink::new(&plan, stream, columns, limit))
+            LineSink::new(&plan, stream, columns, limit)
         };
         let mut sinks: Vec<LineSink> = (0..r).map(sink).collect::<Result<_, Error>>()?;
         while let Some(motion) = motions.next()? {

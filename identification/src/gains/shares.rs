@@ -68,14 +68,15 @@ fn run(
     let width = observer.base.len() + n;
     let sink = |place: usize| {
         let limit = settings.standstill_velocity.get(place % r).copied();
-        let stream = decimator.stream(width + usize::from(limit.is_some()), samples)?;
-        Ok(LineSink::new(&plan, stream, (width - 1, false), limit))
+        let stream = |width| decimator.stream(width, samples);
+        LineSink::new(&plan, stream, (width - 1, false), limit)
     };
     let sinks = (0..r * systems.len()).map(sink);
     let mut sinks = sinks.collect::<Result<Vec<LineSink>, Error>>()?;
     let mut failed: Vec<Option<Error>> = systems.iter().map(|_| None).collect();
     while let Some(motion) = motions.next()? {
-        let chunks = observer.chunks(&motion, &mut failed)?;
+        let blocks = motion.samples.div_ceil(BLOCK);
+        let chunks = observer.chunks(&motion, 0..blocks, &mut failed)?;
         for (place, chunk) in chunks.iter().enumerate() {
             let drives = drives(observer, &motion, place * BLOCK)?;
             for (index, sink) in sinks.iter_mut().enumerate() {
@@ -141,8 +142,8 @@ fn drives(
         Projection::Platform => platform.clone(),
         _ => {
             let kept = projection.kept(&info).unwrap_or_else(|| (0..n).collect());
-            let mut choice = KeptActuators::new(kept, &scales);
-            projected(&platform, &mut choice, &jacobians, n * r).0
+            let choice = KeptActuators::new(kept, &scales);
+            projected(&platform, &choice, &jacobians, n * r).0
         }
     };
     Ok(observer.projections.iter().map(lines).collect())

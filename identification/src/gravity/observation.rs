@@ -97,14 +97,15 @@ impl Observer<'_> {
         let plan = Plan::new(decimator.kept(samples), budget / values.max(1));
         let sink = |place: usize| {
             let limit = self.settings.standstill_velocity.get(place % r).copied();
-            let stream = decimator.stream(columns + 1 + usize::from(limit.is_some()), samples)?;
-            Ok(LineSink::new(&plan, stream, (columns, false), limit))
+            let stream = |width| decimator.stream(width, samples);
+            LineSink::new(&plan, stream, (columns, false), limit)
         };
         let sinks = (0..r * systems.len()).map(sink);
         let mut sinks = sinks.collect::<Result<Vec<LineSink>, Error>>()?;
         let mut failed: Vec<Option<Error>> = systems.iter().map(|_| None).collect();
         while let Some(motion) = motions.next()? {
-            let chunks = observer.chunks(&motion, &mut failed)?;
+            let blocks = motion.samples.div_ceil(BLOCK);
+            let chunks = observer.chunks(&motion, 0..blocks, &mut failed)?;
             let fields: Vec<FieldRows> = (0..chunks.len())
                 .into_par_iter()
                 .map(|place| self.field_rows(observer, &motion, place * BLOCK))
@@ -183,8 +184,8 @@ impl Observer<'_> {
             Projection::Platform => lines.clone(),
             _ => {
                 let kept = projection.kept(&info).unwrap_or_else(|| (0..n).collect());
-                let mut choice = KeptActuators::new(kept, &scales);
-                projected(&lines, &mut choice, &jacobians, n * r).0
+                let choice = KeptActuators::new(kept, &scales);
+                projected(&lines, &choice, &jacobians, n * r).0
             }
         };
         Ok(observer.projections.iter().map(of).collect())

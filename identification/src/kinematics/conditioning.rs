@@ -6,8 +6,10 @@
 //! between two samples.
 
 use overact::{Function, Model};
+use pulp::NullaryFnOnce;
 
-use super::dense::{eliminated, invert, orthogonalised};
+use super::dense::{LANES, Lanes, eliminated, invert, orthogonalised};
+use crate::widest::widest;
 
 /// Inverse norms of the columns of J_p^inv at home, which make metres and radians comparable; ones
 /// where the model has no value at home.
@@ -47,26 +49,19 @@ impl Condition {
     };
 }
 
-/// A choice of actuators, with memory for its matrices.
+/// A choice of actuators.
 #[derive(Debug, Clone)]
 pub(crate) struct KeptActuators {
     kept: Vec<usize>,
     scales: Vec<f64>,
-    /// Columns of the kept rows, scaled.
-    columns: Vec<f64>,
-    /// J_a, then its factors; J_a^-1 beside it.
-    work: Vec<f64>,
 }
 
 impl KeptActuators {
     /// The actuators `kept`, with the `scales` of the platform's coordinates.
     pub(crate) fn new(kept: Vec<usize>, scales: &[f64]) -> Self {
-        let (n, r) = (kept.len(), scales.len());
         Self {
             kept,
             scales: scales.to_vec(),
-            columns: vec![0.0; n * r],
-            work: vec![0.0; 2 * r * r],
         }
     }
 
@@ -82,54 +77,152 @@ impl KeptActuators {
             })
     }
 
-    /// Condition and determinant of the kept rows of J_p^inv (n x r, row-major).
-    pub(crate) fn condition(&mut self, jacobian: &[f64]) -> Condition {
-        let (n, r) = (self.kept.len(), self.scales.len());
-        for (i, actuator) in self.kept.iter().enumerate() {
-            let row = &jacobian[actuator * r..(actuator + 1) * r];
-            for (j, (value, scale)) in row.iter().zip(&self.scales).enumerate() {
-                self.columns[j * n + i] = value * scale;
+    /// Conditions and determinants of the kept rows of J_p^inv, of `size` numbers each, n x r and row-major.
+    pub(crate) fn conditions(&self, jacobians: &[f64], size: usize) -> Vec<Condition> {
+        let samples = jacobians.len() / size;
+        let mut found = vec![Condition::PERFECT; samples];
+        widest(Conditions {
+            choice: self,
+            jacobians,
+            size,
+            found: &mut found,
+        });
+        found
+    }
+
+    /// J_a^-1 (r x r, row-major) of successive samples, and the first of them at which it is singular.
+    pub(crate) fn inverses(&self, jacobians: &[f64], size: usize) -> (Vec<f64>, Option<usize>) {
+        let r = self.scales.len();
+        let mut inverses = vec![0.0; jacobians.len() / size * r * r];
+        let singular = widest(Inverses {
+            choice: self,
+            jacobians,
+            size,
+            inverses: &mut inverses,
+        });
+        (inverses, singular)
+    }
+}
+
+/// Samples side by side, filled up with the last one.
+#[inline(always)]
+fn lanes(rows: &[f64], size: usize, of: impl Fn(&[f64]) -> f64) -> Lanes {
+    let last = rows.len() / size - 1;
+    let mut values = [0.0; LANES];
+    for (lane, value) in values.iter_mut().enumerate() {
+        let first = lane.min(last) * size;
+        *value = of(&rows[first..first + size]);
+    }
+    values
+}
+
+/// The conditions of some actuators along the way.
+struct Conditions<'a> {
+    choice: &'a KeptActuators,
+    jacobians: &'a [f64],
+    size: usize,
+    found: &'a mut [Condition],
+}
+
+impl NullaryFnOnce for Conditions<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let KeptActuators { kept, scales } = self.choice;
+        let (n, r) = (kept.len(), scales.len());
+        let mut columns = vec![[0.0; LANES]; n * r];
+        let mut matrix = vec![[0.0; LANES]; if n == r { r * r } else { 0 }];
+        let groups = self.jacobians.chunks(LANES * self.size);
+        for (rows, found) in groups.zip(self.found.chunks_mut(LANES)) {
+            for (j, scale) in scales.iter().enumerate() {
+                for (i, actuator) in kept.iter().enumerate() {
+                    let entry = |jacobian: &[f64]| jacobian[actuator * r + j] * scale;
+                    columns[j * n + i] = lanes(rows, self.size, entry);
+                }
+            }
+            let mut determinants = [0.0; LANES];
+            if n == r {
+                matrix.copy_from_slice(&columns);
+                determinants = scaled_determinants(&mut matrix, r);
+            }
+            let numbers = orthogonalised(&mut columns, n);
+            let jacobians = rows.chunks_exact(self.size);
+            for ((lane, found), jacobian) in found.iter_mut().enumerate().zip(jacobians) {
+                if !self.choice.is_identity(jacobian) {
+                    *found = Condition {
+                        number: numbers[lane],
+                        determinant: determinants[lane],
+                    };
+                }
             }
         }
-        let determinant = if n == r {
-            self.scaled_determinant()
+    }
+}
+
+/// Determinants of matrices of `r` columns, divided by the products of their rows' norms.
+#[inline(always)]
+fn scaled_determinants(matrix: &mut [Lanes], r: usize) -> Lanes {
+    let mut norms = [1.0; LANES];
+    for row in 0..r {
+        let mut squares = [0.0; LANES];
+        for j in 0..r {
+            for lane in 0..LANES {
+                squares[lane] += matrix[j * r + row][lane] * matrix[j * r + row][lane];
+            }
+        }
+        for lane in 0..LANES {
+            norms[lane] *= squares[lane].sqrt();
+        }
+    }
+    let mut determinants = eliminated(matrix, r);
+    for lane in 0..LANES {
+        determinants[lane] = if norms[lane] > 0.0 {
+            determinants[lane] / norms[lane]
         } else {
             0.0
         };
-        Condition {
-            number: orthogonalised(&mut self.columns, n),
-            determinant,
-        }
     }
+    determinants
+}
 
-    /// Determinant of the scaled rows, divided by the product of their norms.
-    fn scaled_determinant(&mut self) -> f64 {
-        let r = self.scales.len();
-        let matrix = &mut self.work[..r * r];
-        matrix.copy_from_slice(&self.columns);
-        let norm = |row: usize| {
-            let squares = (0..r).map(|j| self.columns[j * r + row].powi(2));
-            squares.sum::<f64>().sqrt()
-        };
-        let product: f64 = (0..r).map(norm).product();
-        let determinant = eliminated(matrix, r);
-        if product > 0.0 {
-            determinant / product
-        } else {
-            0.0
-        }
-    }
+/// The inverses of the kept rows along the way.
+struct Inverses<'a> {
+    choice: &'a KeptActuators,
+    jacobians: &'a [f64],
+    size: usize,
+    inverses: &'a mut [f64],
+}
 
-    /// J_a^-1 (r x r, row-major), or `None` where J_a is singular.
-    pub(crate) fn inverse(&mut self, jacobian: &[f64]) -> Option<&[f64]> {
-        let r = self.scales.len();
-        let (matrix, inverse) = self.work.split_at_mut(r * r);
-        for (i, actuator) in self.kept.iter().enumerate() {
-            matrix[i * r..(i + 1) * r].copy_from_slice(&jacobian[actuator * r..(actuator + 1) * r]);
+impl NullaryFnOnce for Inverses<'_> {
+    type Output = Option<usize>;
+
+    #[inline(always)]
+    fn call(self) -> Option<usize> {
+        let KeptActuators { kept, scales } = self.choice;
+        let r = scales.len();
+        let mut matrix = vec![[0.0; LANES]; r * r];
+        let mut inverse = matrix.clone();
+        let groups = self.jacobians.chunks(LANES * self.size).enumerate();
+        for ((group, rows), inverses) in groups.zip(self.inverses.chunks_mut(LANES * r * r)) {
+            for (i, actuator) in kept.iter().enumerate() {
+                for j in 0..r {
+                    let entry = |jacobian: &[f64]| jacobian[actuator * r + j];
+                    matrix[i * r + j] = lanes(rows, self.size, entry);
+                    inverse[i * r + j] = [f64::from(u8::from(i == j)); LANES];
+                }
+            }
+            let is_regular = invert(&mut matrix, &mut inverse, r);
+            for (lane, own) in inverses.chunks_exact_mut(r * r).enumerate() {
+                if !is_regular[lane] {
+                    return Some(group * LANES + lane);
+                }
+                for (to, from) in own.iter_mut().zip(&inverse) {
+                    *to = from[lane];
+                }
+            }
         }
-        inverse.fill(0.0);
-        inverse.iter_mut().step_by(r + 1).for_each(|one| *one = 1.0);
-        invert(matrix, inverse, r).then_some(inverse)
+        None
     }
 }
 
@@ -160,29 +253,46 @@ mod tests {
                 let jacobian: Vec<f64> = (0..n * r).map(|_| random()).collect();
                 let scales: Vec<f64> = (0..r).map(|_| 1.0 + random()).collect();
                 let scaled = DMatrix::from_fn(n, r, |i, j| jacobian[i * r + j] * scales[j]);
-                let whole = KeptActuators::new((0..n).collect(), &scales).condition(&jacobian);
+                let whole = KeptActuators::new((0..n).collect(), &scales);
+                let whole = whole.conditions(&jacobian, n * r)[0];
                 let values = scaled.singular_values();
                 assert!((whole.number * values.min() / values.max() - 1.0).abs() < 1e-12);
 
                 let kept: Vec<usize> = (n - r..n).rev().collect();
                 let rows = scaled.select_rows(&kept);
-                let mut choice = KeptActuators::new(kept.clone(), &scales);
-                let found = choice.condition(&jacobian);
+                let choice = KeptActuators::new(kept.clone(), &scales);
+                let found = choice.conditions(&jacobian, n * r)[0];
                 let values = rows.singular_values();
                 assert!((found.number * values.min() / values.max() - 1.0).abs() < 1e-10);
                 let norms: f64 = rows.row_iter().map(|row| row.norm()).product();
                 assert!((found.determinant - rows.determinant() / norms).abs() < 1e-12);
 
                 let plain = DMatrix::from_fn(r, r, |i, j| jacobian[kept[i] * r + j]);
-                let inverse = choice.inverse(&jacobian).expect("regular");
-                let product = plain * DMatrix::from_row_slice(r, r, inverse);
+                let (inverse, singular) = choice.inverses(&jacobian, n * r);
+                assert_eq!(singular, None);
+                let product = plain * DMatrix::from_row_slice(r, r, &inverse);
                 assert!((product - DMatrix::identity(r, r)).norm() < 1e-9);
             }
         }
-        let mut singular = KeptActuators::new(vec![0, 1], &[1.0, 1.0]);
-        let jacobian = [1.0, 2.0, 2.0, 4.0];
-        assert!(singular.condition(&jacobian).number > 1e15);
-        assert!(singular.condition(&jacobian).determinant.abs() < 1e-15);
-        assert!(singular.inverse(&jacobian).is_none());
+        let singular = KeptActuators::new(vec![0, 1], &[1.0, 1.0]);
+        // Behind a regular one: neighbours do not matter.
+        let jacobians = [[1.0, 0.5, 2.0, 4.0], [1.0, 2.0, 2.0, 4.0]].concat();
+        let conditions = singular.conditions(&jacobians, 4);
+        assert!(conditions[0].number < 10.0);
+        assert!(conditions[1].number > 1e15);
+        assert!(conditions[1].determinant.abs() < 1e-15);
+        assert_eq!(singular.inverses(&jacobians, 4).1, Some(1));
+    }
+
+    #[test]
+    fn a_sample_has_the_same_condition_in_any_company() {
+        let jacobians: Vec<f64> = (0..21 * 12)
+            .map(|k| (0.37 * f64::from(k * k)).sin())
+            .collect();
+        let choice = KeptActuators::new(vec![3, 0, 2], &[1.0, 0.7, 2.0]);
+        let together = choice.conditions(&jacobians, 12);
+        for (jacobian, found) in jacobians.chunks_exact(12).zip(&together) {
+            assert_eq!(choice.conditions(jacobian, 12)[0], *found);
+        }
     }
 }

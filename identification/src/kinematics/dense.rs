@@ -1,4 +1,12 @@
-//! Small dense matrices in slices, row by row, without allocation.
+//! Small dense matrices of several samples side by side, row by row, without allocation: each entry is a
+//! vector of the samples' numbers. What one sample needs alone is done by all of them, and taken by that one,
+//! so a sample's result does not depend on its neighbours.
+
+/// Samples side by side.
+pub(super) const LANES: usize = 8;
+
+/// A number of each sample.
+pub(super) type Lanes = [f64; LANES];
 
 /// Sweeps after which the singular values of a small matrix have converged to rounding.
 const SWEEPS: usize = 30;
@@ -8,153 +16,226 @@ const ORTHOGONAL: f64 = 1e-15;
 
 /// Ratio of the largest to the smallest singular value of a matrix of columns of `n` values, by
 /// one-sided Jacobi rotations, which make the columns orthogonal.
-pub(super) fn orthogonalised(columns: &mut [f64], n: usize) -> f64 {
+#[inline(always)]
+pub(super) fn orthogonalised(columns: &mut [Lanes], n: usize) -> Lanes {
     let r = columns.len() / n.max(1);
-    let product = |columns: &[f64], p: usize, q: usize| -> f64 {
-        let pair = columns[p * n..(p + 1) * n]
-            .iter()
-            .zip(&columns[q * n..(q + 1) * n]);
-        pair.map(|(a, b)| a * b).sum()
-    };
     for _ in 0..SWEEPS {
         let mut turned = false;
         for p in 0..r {
             for q in p + 1..r {
-                let (a, b) = (product(columns, p, p), product(columns, q, q));
-                let c = product(columns, p, q);
-                if c.abs() <= ORTHOGONAL * (a * b).sqrt() || c == 0.0 {
-                    continue;
-                }
-                turned = true;
-                let zeta = (b - a) / (2.0 * c);
-                // Where the square overflows the rotation is none, as it should be.
-                let t = zeta.signum() / (zeta.abs() + (zeta * zeta + 1.0).sqrt());
-                let cosine = 1.0 / (t * t + 1.0).sqrt();
-                let sine = cosine * t;
                 let (left, right) = columns.split_at_mut(q * n);
-                for (x, y) in left[p * n..(p + 1) * n].iter_mut().zip(&mut right[..n]) {
-                    (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
-                }
+                turned |= turn(&mut left[p * n..(p + 1) * n], &mut right[..n]);
             }
         }
         if !turned {
             break;
         }
     }
-    let squares = (0..r).map(|p| product(columns, p, p));
-    let (least, largest) = squares.fold((f64::INFINITY, 0.0_f64), |(low, high), s| {
-        (f64::min(low, s), f64::max(high, s))
-    });
+    let (mut least, mut largest) = ([f64::INFINITY; LANES], [0.0; LANES]);
+    for column in columns.chunks_exact(n.max(1)) {
+        let square = product(column, column);
+        for lane in 0..LANES {
+            least[lane] = f64::min(least[lane], square[lane]);
+            largest[lane] = f64::max(largest[lane], square[lane]);
+        }
+    }
     // A matrix that is not finite has no condition number either.
-    if least > 0.0 && largest.is_finite() {
-        (largest / least).sqrt()
-    } else {
-        f64::INFINITY
-    }
+    std::array::from_fn(|lane| {
+        if least[lane] > 0.0 && largest[lane].is_finite() {
+            (largest[lane] / least[lane]).sqrt()
+        } else {
+            f64::INFINITY
+        }
+    })
 }
 
-/// Determinant by elimination with pivots, in place.
-pub(super) fn eliminated(matrix: &mut [f64], r: usize) -> f64 {
-    let mut determinant = 1.0;
-    for k in 0..r {
-        let pivot = pivot(matrix, r, k);
-        if pivot != k {
-            swap_rows(matrix, r, k, pivot);
-            determinant = -determinant;
-        }
-        let diagonal = matrix[k * r + k];
-        determinant *= diagonal;
-        if diagonal == 0.0 {
-            return 0.0;
-        }
-        for i in k + 1..r {
-            let factor = matrix[i * r + k] / diagonal;
-            for j in k + 1..r {
-                matrix[i * r + j] -= factor * matrix[k * r + j];
-            }
-        }
+/// Turns two columns until they are orthogonal; `false` where they are for all samples.
+#[inline(always)]
+fn turn(x: &mut [Lanes], y: &mut [Lanes]) -> bool {
+    let (a, b, c) = (product(x, x), product(y, y), product(x, y));
+    let (mut cosine, mut sine) = ([1.0; LANES], [0.0; LANES]);
+    let mut turning = 0.0;
+    for lane in 0..LANES {
+        let (a, b, c) = (a[lane], b[lane], c[lane]);
+        let rests = c.abs() <= ORTHOGONAL * (a * b).sqrt() || c == 0.0;
+        let zeta = (b - a) / (2.0 * c);
+        // Where the square overflows the rotation is none, as it should be.
+        let t = 1.0_f64.copysign(zeta) / (zeta.abs() + (zeta * zeta + 1.0).sqrt());
+        let own = 1.0 / (t * t + 1.0).sqrt();
+        cosine[lane] = if rests { 1.0 } else { own };
+        sine[lane] = if rests { 0.0 } else { own * t };
+        turning += if rests { 0.0 } else { 1.0 };
     }
-    determinant
-}
-
-/// Turns the identity in `inverse` into the inverse of `matrix`, which is overwritten; `false` where
-/// it is singular.
-pub(super) fn invert(matrix: &mut [f64], inverse: &mut [f64], r: usize) -> bool {
-    for k in 0..r {
-        let pivot = pivot(matrix, r, k);
-        swap_rows(matrix, r, k, pivot);
-        swap_rows(inverse, r, k, pivot);
-        let diagonal = matrix[k * r + k];
-        if diagonal == 0.0 || !diagonal.is_finite() {
-            return false;
-        }
-        for j in 0..r {
-            matrix[k * r + j] /= diagonal;
-            inverse[k * r + j] /= diagonal;
-        }
-        for i in (0..r).filter(|i| *i != k) {
-            let factor = matrix[i * r + k];
-            for j in 0..r {
-                matrix[i * r + j] -= factor * matrix[k * r + j];
-                inverse[i * r + j] -= factor * inverse[k * r + j];
-            }
+    if turning == 0.0 {
+        return false;
+    }
+    for (x, y) in x.iter_mut().zip(y) {
+        for lane in 0..LANES {
+            let (a, b) = (x[lane], y[lane]);
+            x[lane] = cosine[lane] * a - sine[lane] * b;
+            y[lane] = sine[lane] * a + cosine[lane] * b;
         }
     }
     true
 }
 
-/// The row from `k` on that has the largest value in column `k`.
-fn pivot(matrix: &[f64], r: usize, k: usize) -> usize {
-    (k..r)
-        .max_by(|a, b| matrix[a * r + k].abs().total_cmp(&matrix[b * r + k].abs()))
-        .unwrap_or(k)
+/// The scalar product.
+#[inline(always)]
+fn product(a: &[Lanes], b: &[Lanes]) -> Lanes {
+    let mut sum = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..LANES {
+            sum[lane] += a[lane] * b[lane];
+        }
+    }
+    sum
 }
 
-/// Exchanges two rows.
-fn swap_rows(matrix: &mut [f64], r: usize, a: usize, b: usize) {
-    if a != b {
-        for j in 0..r {
-            matrix.swap(a * r + j, b * r + j);
+/// Determinant by elimination with pivots, in place.
+#[inline(always)]
+pub(super) fn eliminated(matrix: &mut [Lanes], r: usize) -> Lanes {
+    let (mut determinant, mut is_zero) = ([1.0; LANES], [false; LANES]);
+    for k in 0..r {
+        for i in k + 1..r {
+            let larger = larger(matrix, r, (k, i));
+            exchange(matrix, r, (k, i), &larger);
+            for lane in 0..LANES {
+                let own = determinant[lane];
+                determinant[lane] = if larger[lane] { -own } else { own };
+            }
+        }
+        let diagonal = matrix[k * r + k];
+        for lane in 0..LANES {
+            determinant[lane] *= diagonal[lane];
+            is_zero[lane] |= diagonal[lane] == 0.0;
+        }
+        for i in k + 1..r {
+            let column = matrix[i * r + k];
+            for j in k + 1..r {
+                let above = matrix[k * r + j];
+                for lane in 0..LANES {
+                    matrix[i * r + j][lane] -= column[lane] / diagonal[lane] * above[lane];
+                }
+            }
+        }
+    }
+    std::array::from_fn(|lane| {
+        if is_zero[lane] {
+            0.0
+        } else {
+            determinant[lane]
+        }
+    })
+}
+
+/// Turns the identity in `inverse` into the inverse of `matrix`, which is overwritten; `false` where
+/// it is singular.
+#[inline(always)]
+pub(super) fn invert<const LANES: usize>(
+    matrix: &mut [[f64; LANES]],
+    inverse: &mut [[f64; LANES]],
+    r: usize,
+) -> [bool; LANES] {
+    let mut is_regular = [true; LANES];
+    for k in 0..r {
+        for i in k + 1..r {
+            let larger = larger(matrix, r, (k, i));
+            exchange(matrix, r, (k, i), &larger);
+            exchange(inverse, r, (k, i), &larger);
+        }
+        let diagonal = matrix[k * r + k];
+        for lane in 0..LANES {
+            is_regular[lane] &= diagonal[lane] != 0.0 && diagonal[lane].is_finite();
+        }
+        for own in [&mut *matrix, &mut *inverse] {
+            for value in &mut own[k * r..(k + 1) * r] {
+                for lane in 0..LANES {
+                    value[lane] /= diagonal[lane];
+                }
+            }
+        }
+        for i in (0..r).filter(|i| *i != k) {
+            let factor = matrix[i * r + k];
+            for own in [&mut *matrix, &mut *inverse] {
+                for j in 0..r {
+                    let above = own[k * r + j];
+                    for lane in 0..LANES {
+                        own[i * r + j][lane] -= factor[lane] * above[lane];
+                    }
+                }
+            }
+        }
+    }
+    is_regular
+}
+
+/// Where the entry of column `k` is larger in row `i` than in row `k`.
+#[inline(always)]
+fn larger<const LANES: usize>(
+    matrix: &[[f64; LANES]],
+    r: usize,
+    (k, i): (usize, usize),
+) -> [bool; LANES] {
+    let (above, below) = (&matrix[k * r + k], &matrix[i * r + k]);
+    std::array::from_fn(|lane| below[lane].abs() > above[lane].abs())
+}
+
+/// Exchanges two rows where that is wanted.
+#[inline(always)]
+fn exchange<const LANES: usize>(
+    matrix: &mut [[f64; LANES]],
+    r: usize,
+    (a, b): (usize, usize),
+    wanted: &[bool; LANES],
+) {
+    for j in 0..r {
+        let (above, below) = (matrix[a * r + j], matrix[b * r + j]);
+        for lane in 0..LANES {
+            let wanted = wanted[lane];
+            matrix[a * r + j][lane] = if wanted { below[lane] } else { above[lane] };
+            matrix[b * r + j][lane] = if wanted { above[lane] } else { below[lane] };
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{eliminated, invert};
+    use super::{LANES, Lanes, eliminated, invert};
     use nalgebra::DMatrix;
 
-    /// Row by row; without pivots, the digits of each are lost, or its first step divides by zero.
-    const NEEDS_PIVOTS: [[f64; 9]; 5] = [
+    /// Row by row; without pivots, the digits of each are lost, or its first step divides by zero. The last one
+    /// is singular.
+    const NEEDS_PIVOTS: [[f64; 9]; LANES] = [
         [0.0, 2.0, 1.0, 1.0, 0.0, 3.0, 4.0, 1.0, 0.0],
         [1e-17, 1.0, 2.0, 1.0, 1.0, 1.0, 2.0, -1.0, 1.0],
         [1e-17, 1.0, 2.0, 1.0, 0.0, 0.0, 2.0, -1.0, 1.0],
         [1.0, 2.0, 3.0, 1.0, 2.0, -1.0, 0.5, 3.0, 1.0],
         [3.0, 1.0, -2.0, 3.0, 1.0 + 1e-17, 4.0, 1.0, 5.0, 9.0],
+        [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0],
+        [1.0, 2.0, 0.0, 2.0, 4.0, 0.0, 0.0, 0.0, 1.0],
     ];
 
-    #[test]
-    fn rows_are_exchanged_where_a_diagonal_is_small() {
-        for rows in NEEDS_PIVOTS {
-            let matrix = DMatrix::from_row_slice(3, 3, &rows);
-            let determinant = eliminated(&mut rows.clone(), 3);
-            let expected = matrix.determinant();
-            assert!(
-                (determinant / expected - 1.0).abs() < 1e-14,
-                "{determinant}"
-            );
-            let mut inverse = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-            assert!(invert(&mut rows.clone(), &mut inverse, 3));
-            let product = matrix * DMatrix::from_row_slice(3, 3, &inverse);
-            let miss = (product - DMatrix::identity(3, 3)).abs().max();
-            assert!(miss < 1e-14, "{rows:?}: {miss:e}");
-        }
+    fn side_by_side(rows: &[[f64; 9]; LANES]) -> [Lanes; 9] {
+        std::array::from_fn(|entry| std::array::from_fn(|lane| rows[lane][entry]))
     }
 
     #[test]
-    fn a_singular_matrix_has_no_inverse() {
-        let rows = [1.0, 2.0, 2.0, 4.0];
-        assert_eq!(eliminated(&mut rows.clone(), 2), 0.0);
-        assert!(!invert(&mut rows.clone(), &mut [1.0, 0.0, 0.0, 1.0], 2));
+    fn rows_are_exchanged_where_a_diagonal_is_small() {
+        let determinants = eliminated(&mut side_by_side(&NEEDS_PIVOTS), 3);
+        let mut inverses = side_by_side(&[[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]; LANES]);
+        let is_regular = invert(&mut side_by_side(&NEEDS_PIVOTS), &mut inverses, 3);
+        for (lane, rows) in NEEDS_PIVOTS.iter().enumerate() {
+            let matrix = DMatrix::from_row_slice(3, 3, rows);
+            let expected = matrix.determinant();
+            let miss = (determinants[lane] - expected).abs();
+            assert!(miss <= 1e-14 * expected.abs(), "{miss:e}");
+            assert_eq!(is_regular[lane], lane + 1 < LANES, "{rows:?}");
+            if is_regular[lane] {
+                let inverse = DMatrix::from_fn(3, 3, |i, j| inverses[3 * i + j][lane]);
+                let miss = (matrix * inverse - DMatrix::identity(3, 3)).abs().max();
+                assert!(miss < 1e-14, "{rows:?}: {miss:e}");
+            }
+        }
     }
 }

@@ -49,7 +49,8 @@ fn distribution(jacobian: &[f64], weighted: &[f64], r: usize) -> Option<Vec<f64>
     }
     let mut inverse = vec![0.0; r * r];
     inverse.iter_mut().step_by(r + 1).for_each(|one| *one = 1.0);
-    if !invert(&mut normal, &mut inverse, r) {
+    let [one, other] = [&mut normal, &mut inverse].map(|own| own.as_chunks_mut().0);
+    if invert(one, other, r) != [true] {
         return None;
     }
     let mut product = vec![0.0; jacobian.len()];

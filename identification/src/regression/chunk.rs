@@ -1,12 +1,17 @@
 //! Some successive samples as equations: conditions of the kept actuators, and rows projected on them.
 
-use crate::kinematics::conditioning::{Condition, KeptActuators};
+use pulp::NullaryFnOnce;
+
+use crate::{
+    kinematics::conditioning::{Condition, KeptActuators},
+    widest::widest,
+};
 
 /// Some successive samples, evaluated: for each projection and line samples x (columns + 1), Y last.
 pub(crate) struct Chunk {
     pub(crate) lines: Vec<Vec<Vec<f64>>>,
     /// For each projection, the conditions of its kept actuators.
-    pub(super) conditions: Vec<Vec<Condition>>,
+    pub(crate) conditions: Vec<Vec<Condition>>,
 }
 
 impl Chunk {
@@ -16,26 +21,11 @@ impl Chunk {
     }
 }
 
-/// The conditions of a choice of actuators sample by sample.
-pub(super) fn conditions(
-    choice: &mut KeptActuators,
-    jacobians: &[f64],
-    size: usize,
-) -> Vec<Condition> {
-    let one = |jacobian: &[f64]| {
-        if choice.is_identity(jacobian) {
-            Condition::PERFECT
-        } else {
-            choice.condition(jacobian)
-        }
-    };
-    jacobians.chunks_exact(size).map(one).collect()
-}
-
-/// Rows of Γ² = J_a^-T Γ¹ from rows of Γ¹, line by line, and the first sample at which J_a is singular.
+/// Rows of Γ² = J_a^-T Γ¹ from rows of Γ¹, line by line, and the first sample at which J_a is singular: the rows
+/// from there on are not valid.
 pub(crate) fn projected(
     platform: &[Vec<f64>],
-    choice: &mut KeptActuators,
+    choice: &KeptActuators,
     jacobians: &[f64],
     size: usize,
 ) -> (Vec<Vec<f64>>, Option<usize>) {
@@ -45,29 +35,62 @@ pub(crate) fn projected(
         .first()
         .map_or(0, |rows| rows.len() / samples.max(1));
     let mut lines = vec![vec![0.0; samples * width]; r];
+    let (inverses, singular) = choice.inverses(jacobians, size);
+    for (line, rows) in lines.iter_mut().enumerate() {
+        widest(Combined {
+            platform,
+            inverses: &inverses,
+            line,
+            width,
+            rows,
+        });
+    }
     for (sample, jacobian) in jacobians.chunks_exact(size).enumerate() {
-        let range = sample * width..(sample + 1) * width;
+        // Numbers that are not changed at all keep all of their digits and signs.
         if choice.is_identity(jacobian) {
+            let range = sample * width..(sample + 1) * width;
             for (line, rows) in lines.iter_mut().zip(platform) {
                 line[range.clone()].copy_from_slice(&rows[range.clone()]);
             }
-            continue;
         }
-        let Some(inverse) = choice.inverse(jacobian) else {
-            return (lines, Some(sample));
-        };
-        for (line, target) in lines.iter_mut().enumerate() {
-            let target = &mut target[range.clone()];
-            for (j, rows) in platform.iter().enumerate() {
-                // Entry (line, j) of the transposed inverse.
-                let factor = inverse[j * r + line];
-                let rows = &rows[range.clone()];
-                target
-                    .iter_mut()
-                    .zip(rows)
-                    .for_each(|(to, from)| *to += factor * from);
+    }
+    (lines, singular)
+}
+
+/// A line of Γ²: at each sample, the sum of the lines of Γ¹ by the entries of a column of the inverse.
+struct Combined<'a> {
+    platform: &'a [Vec<f64>],
+    /// r x r for each sample.
+    inverses: &'a [f64],
+    line: usize,
+    width: usize,
+    rows: &'a mut [f64],
+}
+
+impl NullaryFnOnce for Combined<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (r, width) = (self.platform.len(), self.width);
+        let rows = self.rows.chunks_exact_mut(width.max(1));
+        for (sample, (inverse, target)) in self.inverses.chunks_exact(r * r).zip(rows).enumerate() {
+            let range = sample * width..(sample + 1) * width;
+            let factor = |j: usize| inverse[j * r + self.line];
+            if let [a, b, c] = self.platform {
+                let [a, b, c] = [a, b, c].map(|rows| &rows[range.clone()]);
+                let (f, g, h) = (factor(0), factor(1), factor(2));
+                for (k, to) in target.iter_mut().enumerate() {
+                    *to = f * a[k] + g * b[k] + h * c[k];
+                }
+                continue;
+            }
+            for (j, rows) in self.platform.iter().enumerate() {
+                let (factor, rows) = (factor(j), &rows[range.clone()]);
+                for (k, to) in target.iter_mut().enumerate() {
+                    *to += factor * rows[k];
+                }
             }
         }
     }
-    (lines, None)
 }

@@ -18,7 +18,10 @@
 
 use overact::{Body, Columns, Function, Info, Model, Parameter, SampleError, StandardParameter};
 
-use super::friction::{Rate, friction_rates};
+use super::{
+    friction::{Rate, friction_rates},
+    gathering::gathered,
+};
 use crate::{data::Load, error::Error, settings::Settings};
 use StandardParameter as P;
 
@@ -399,7 +402,6 @@ impl ColumnSet {
         let velocities = ask(Function::JointVelocities, split)?;
         let accelerations = ask(Function::JointAccelerations, averaged)?;
         let width = picked.len() + more;
-        let mut lines = vec![vec![0.0; samples * width]; sizes.dof];
         // Where the numbers of a row come from: places of the robot's columns, then the payload's.
         let (mut own, mut load) = (Vec::new(), Vec::new());
         for (to, column) in columns().enumerate() {
@@ -414,21 +416,12 @@ impl ColumnSet {
             }
         }
         let sources = [
-            (&robot, sizes.parameters, own),
-            (&payload, sizes.payload_parameters, load),
+            (&robot[..], sizes.parameters, own),
+            (&payload[..], sizes.payload_parameters, load),
         ];
-        for (values, count, places) in &sources {
-            if values.is_empty() {
-                continue;
-            }
-            for (row, from) in values.chunks_exact(*count).enumerate() {
-                let start = row / sizes.dof * width;
-                let to = &mut lines[row % sizes.dof][start..start + width];
-                for &(place, index) in places {
-                    to[place] += from[index];
-                }
-            }
-        }
+        let mut lines: Vec<Vec<f64>> = (0..sizes.dof)
+            .map(|line| gathered(&sources, (line, sizes.dof), (samples, width)))
+            .collect();
         for (place, column) in columns().enumerate() {
             let Some(rate) = &column.rate else {
                 continue;

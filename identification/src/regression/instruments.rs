@@ -1,7 +1,8 @@
 //! The motion of the instruments, gone through in step with that of a run.
 
-use overact::Code;
-use overact::Model;
+use std::ops::Range;
+
+use overact::{Code, Model};
 
 use super::{chunk::Chunk, observation::Observer};
 use crate::{
@@ -15,6 +16,8 @@ use crate::{
 /// their errors. Its torques are not used.
 pub(crate) struct Companion<'a> {
     motions: Motions<'a>,
+    /// Its motion at the samples of the run that are gone through.
+    motion: Option<Motion>,
     /// Why it can't be used.
     failed: Option<Error>,
 }
@@ -43,23 +46,40 @@ impl<'a> Companion<'a> {
         let motions = Motions::new(model, log, settings)?;
         Ok(Self {
             motions,
+            motion: None,
             failed: None,
         })
     }
 
-    /// The equations at the samples of a block of the run. Without any where they can't be had, which
-    /// is noted.
-    pub(crate) fn chunks(&mut self, observer: &Observer<'_>, motion: &Motion) -> Vec<Chunk> {
-        if self.failed.is_some() {
-            return Vec::new();
+    /// Goes to the samples of a motion of the run.
+    pub(crate) fn advance(&mut self, motion: &Motion) {
+        self.motion = None;
+        if self.failed.is_none() {
+            match self.next(motion) {
+                Ok(own) => self.motion = Some(own),
+                Err(error) => self.failed = Some(error),
+            }
         }
-        self.next(observer, motion).unwrap_or_else(|error| {
-            self.failed = Some(error);
-            Vec::new()
-        })
     }
 
-    fn next(&mut self, observer: &Observer<'_>, motion: &Motion) -> Result<Vec<Chunk>, Error> {
+    /// The equations at the samples of some blocks. Without any where they can't be had, which is noted.
+    pub(crate) fn chunks(&mut self, observer: &Observer<'_>, blocks: Range<usize>) -> Vec<Chunk> {
+        let Some(motion) = self.motion.as_ref().filter(|_| self.failed.is_none()) else {
+            return Vec::new();
+        };
+        let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
+        let chunks = observer.chunks(motion, blocks, &mut failed);
+        let error = failed.into_iter().flatten().next();
+        match (chunks, error) {
+            (Ok(chunks), None) => chunks,
+            (Err(error), _) | (_, Some(error)) => {
+                self.failed = Some(error);
+                Vec::new()
+            }
+        }
+    }
+
+    fn next(&mut self, motion: &Motion) -> Result<Motion, Error> {
         let next = self.motions.next()?;
         let own = next
             .filter(|own| (own.first_sample, own.samples) == (motion.first_sample, motion.samples));
@@ -69,12 +89,7 @@ impl<'a> Companion<'a> {
                 "the instruments are not in step with the run",
             )
         })?;
-        let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
-        let chunks = observer.chunks(&own, &mut failed)?;
-        match failed.into_iter().flatten().next() {
-            Some(error) => Err(error),
-            None => Ok(chunks),
-        }
+        Ok(own)
     }
 
     /// Why it could not be used.

@@ -2,6 +2,7 @@
 //!
 //! - `columns`: the columns of the model: standard parameters, payload, split friction;
 //! - `friction`, `states`: which joint a friction parameter belongs to, and states to find it out by;
+//! - `gathering`: numbers of the model in rows;
 //! - `chunk`, `observation`: successive samples as equations; the pass over a run;
 //! - `instruments`: the same equations at the motion of the instruments, in step with the run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
@@ -16,6 +17,7 @@ pub(crate) mod columns;
 pub(crate) mod elimination;
 pub(crate) mod factor;
 mod friction;
+mod gathering;
 mod instruments;
 pub(crate) mod observation;
 pub(crate) mod points;

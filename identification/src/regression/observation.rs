@@ -4,16 +4,18 @@
 //! Evaluation goes in parallel over the samples of a block, decimation and factorisation over the
 //! lines of all projections.
 
+use std::ops::Range;
+
 use overact::{Function, Model};
 use rayon::prelude::*;
 
 use super::{
-    chunk::{Chunk, conditions, projected},
+    chunk::{Chunk, projected},
     columns::ColumnSet,
     instruments::Companion,
     points::Points,
     projection::Projection,
-    sink::{LineSink, Plan, observed, row_width},
+    sink::{LineSink, Plan, observed},
     system::{Observed, singular},
 };
 use crate::{
@@ -81,7 +83,8 @@ impl Observer<'_> {
             .settings
             .decimator(self.settings.decimation, log.sampling_frequency())?;
         let (lines, n) = (info.sizes.dof, info.sizes.actuators);
-        let width = row_width(self.base.len(), companion.is_some());
+        // Columns and Y, and the instruments where there are some.
+        let width = self.base.len() * if companion.is_some() { 2 } else { 1 } + 1;
         let equations = decimator.kept(samples);
         let plan = Plan::new(
             equations,
@@ -101,24 +104,36 @@ impl Observer<'_> {
         let mut closure_residual = 0.0_f64;
         while let Some(motion) = motions.next()? {
             closure_residual = closure_residual.max(motion.closure_residual);
-            let chunks = self.chunks(&motion, &mut failed)?;
-            let own = companion.as_mut().map(|own| own.chunks(self, &motion));
-            let beside = own.unwrap_or_default();
-            sinks.par_iter_mut().enumerate().for_each(|(index, sink)| {
-                let (projection, line) = (index / lines, index % lines);
-                if failed[projection].is_none() {
+            if let Some(own) = &mut companion {
+                own.advance(&motion);
+            }
+            let (blocks, mut conditions) = (motion.samples.div_ceil(BLOCK), Vec::new());
+            // Rows are decimated while they are in the caches.
+            let together = rayon::current_num_threads().max(1);
+            for first in (0..blocks).step_by(together) {
+                let range = first..(first + together).min(blocks);
+                let chunks = self.chunks(&motion, range.clone(), &mut failed)?;
+                let own = companion.as_mut().map(|own| own.chunks(self, range));
+                let beside = own.unwrap_or_default();
+                sinks.par_iter_mut().enumerate().for_each(|(index, sink)| {
+                    let (projection, line) = (index / lines, index % lines);
+                    if failed[projection].is_some() {
+                        return;
+                    }
                     for (place, chunk) in chunks.iter().enumerate() {
                         let instruments = beside.get(place);
                         let instruments = instruments.map(|own| &own.lines[projection][line][..]);
                         let velocities = motion.velocities.iter().copied();
-                        let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
+                        let before = (first + place) * BLOCK * n;
+                        let velocities = velocities.skip(before + line).step_by(n);
                         let rows = &chunk.lines[projection][line];
                         sink.push(&plan, (rows, instruments), velocities);
                     }
-                }
-            });
+                });
+                conditions.extend(chunks.into_iter().map(|chunk| chunk.conditions));
+            }
             torques.push(&motion.torques, &mut decimated_torques);
-            points.take(&motion, &chunks);
+            points.take(&motion, &conditions);
             progress(motions.done(), log.samples());
         }
         progress(log.samples(), log.samples());
@@ -159,19 +174,13 @@ impl Observer<'_> {
         let limits = &self.settings.standstill_velocity;
         let sink = |number: usize| {
             let limit = limits.get(number % lines).copied();
-            let width = row_width(parameters, instruments) + usize::from(limit.is_some());
-            let stream = decimator.stream(width, samples)?;
-            Ok(LineSink::new(
-                plan,
-                stream,
-                (parameters, instruments),
-                limit,
-            ))
+            let stream = |width| decimator.stream(width, samples);
+            LineSink::new(plan, stream, (parameters, instruments), limit)
         };
         (0..lines * self.projections.len()).map(sink).collect()
     }
 
-    /// Evaluates a block in parallel. Projections whose kept actuators are singular at a sample are
+    /// Evaluates some blocks of a motion in parallel. Projections whose kept actuators are singular at a sample are
     /// noted in `failed`.
     ///
     /// # Errors
@@ -179,11 +188,12 @@ impl Observer<'_> {
     pub(crate) fn chunks(
         &self,
         motion: &Motion,
+        blocks: Range<usize>,
         failed: &mut [Option<Error>],
     ) -> Result<Vec<Chunk>, Error> {
         let scales = home_scales(self.model);
         let wanted: Vec<bool> = failed.iter().map(Option::is_none).collect();
-        let chunks: Vec<(Chunk, Vec<Option<usize>>)> = (0..motion.samples.div_ceil(BLOCK))
+        let chunks: Vec<(Chunk, Vec<Option<usize>>)> = blocks
             .into_par_iter()
             .map(|index| self.chunk(motion, index * BLOCK, &scales, &wanted))
             .collect::<Result<_, _>>()?;
@@ -225,15 +235,13 @@ impl Observer<'_> {
         for (projection, wanted) in self.projections.iter().zip(wanted) {
             let all = || (0..n).collect();
             let kept = projection.kept(&info).unwrap_or_else(all);
-            let mut choice = KeptActuators::new(kept, scales);
-            chunk
-                .conditions
-                .push(conditions(&mut choice, &jacobians, n * r));
+            let choice = KeptActuators::new(kept, scales);
+            chunk.conditions.push(choice.conditions(&jacobians, n * r));
             if *projection == Projection::Platform {
                 chunk.lines.push(platform.clone());
                 singular.push(None);
             } else if *wanted {
-                let (lines, failed) = projected(&platform, &mut choice, &jacobians, n * r);
+                let (lines, failed) = projected(&platform, &choice, &jacobians, n * r);
                 chunk.lines.push(lines);
                 singular.push(failed.map(|sample| first + sample));
             } else {

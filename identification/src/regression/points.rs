@@ -2,7 +2,7 @@
 
 use overact::Model;
 
-use super::{chunk::Chunk, projection::Projection, sink::Plan, system::PartitionCondition};
+use super::{projection::Projection, sink::Plan, system::PartitionCondition};
 use crate::{
     blocks::BLOCK,
     data::Log,
@@ -78,8 +78,8 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Takes the next samples.
-    pub(crate) fn take(&mut self, motion: &Motion, chunks: &[Chunk]) {
+    /// Takes the next samples, with the conditions of each projection block by block.
+    pub(crate) fn take(&mut self, motion: &Motion, blocks: &[Vec<Vec<Condition>>]) {
         let poses = motion.pose.chunks_exact(self.figures.pose.len().max(1));
         let start = motion.first_sample - self.settings.skip_start;
         for (index, pose) in poses.enumerate() {
@@ -92,9 +92,9 @@ impl<'a> Points<'a> {
             }
         }
         for (projection, track) in self.tracks.iter_mut().enumerate() {
-            let conditions = chunks.iter().enumerate().flat_map(|(index, chunk)| {
+            let conditions = blocks.iter().enumerate().flat_map(|(index, block)| {
                 let first = start + index * BLOCK;
-                (first..).zip(&chunk.conditions[projection])
+                (first..).zip(&block[projection])
             });
             for (sample, condition) in conditions {
                 let point = sample.saturating_sub(self.first) / self.stride;

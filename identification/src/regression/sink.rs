@@ -9,7 +9,7 @@ use super::{
     factor::Factor,
     system::{Observed, Part, PartitionCondition, Stretch},
 };
-use crate::{filters::Decimation, series::LARGEST_SERIES};
+use crate::{error::Error, filters::Decimation, series::LARGEST_SERIES};
 
 /// Parts of a run, of which each can be held out.
 const PARTS: usize = 5;
@@ -96,11 +96,11 @@ pub(crate) struct LineSink {
     standstill: Option<Standstill>,
 }
 
-/// What is left out of a line because its joint stands still. The velocity goes through the decimation
-/// behind the other values of a row. In stretches, which are of successive equations, zeros take the
-/// place of what is left out.
+/// What is left out of a line because its joint stands still. The velocity goes through a decimation as the
+/// other values do. In stretches, which are of successive equations, zeros take the place of what is left out.
 #[derive(Debug)]
 struct Standstill {
+    decimation: Decimation,
     /// Velocity (rad/s, m/s) below which the joint stands still.
     limit: f64,
     /// Equations that were left out.
@@ -110,24 +110,17 @@ struct Standstill {
 /// What is kept of the instruments of a line's equations.
 #[derive(Debug)]
 struct InstrumentSink {
+    decimation: Decimation,
     /// Columns, instruments and Y of equations that are in no factor yet.
     rows: Vec<f64>,
     factor: Factor,
     stretches: Vec<Vec<f64>>,
 }
 
-/// Values of a row that is decimated: columns and Y, then the instruments where there are some.
-pub(crate) const fn row_width(parameters: usize, instruments: bool) -> usize {
-    if instruments {
-        2 * parameters + 1
-    } else {
-        parameters + 1
-    }
-}
-
 impl InstrumentSink {
-    fn new(plan: &Plan, parameters: usize) -> Self {
+    fn new(plan: &Plan, decimation: Decimation, parameters: usize) -> Self {
         Self {
+            decimation,
             rows: Vec::new(),
             factor: Factor::new(2 * parameters),
             stretches: vec![Vec::new(); plan.stretches.len()],
@@ -158,26 +151,40 @@ impl InstrumentSink {
 }
 
 impl LineSink {
-    /// A sink for equations in `parameters` unknowns that are decimated first, by a decimation for rows
-    /// of [`row_width`]; one more with a limit below which the joint's velocity leaves its equation out.
+    /// A sink for equations in `parameters` unknowns, beside those of instruments if there are some, that are
+    /// decimated first, by what `stream` gives for rows of so many values; with a limit below which the joint's
+    /// velocity leaves its equation out, that is decimated, too.
     pub(crate) fn new(
         plan: &Plan,
-        decimation: Decimation,
+        stream: impl Fn(usize) -> Result<Decimation, Error>,
         (parameters, instruments): (usize, bool),
         standstill: Option<f64>,
-    ) -> Self {
-        Self {
-            decimation,
-            width: parameters + 1,
-            instruments: instruments.then(|| InstrumentSink::new(plan, parameters)),
+    ) -> Result<Self, Error> {
+        let width = parameters + 1;
+        let instruments = match instruments {
+            true => Some(InstrumentSink::new(plan, stream(width)?, parameters)),
+            false => None,
+        };
+        let standstill = match standstill {
+            Some(limit) => Some(Standstill {
+                decimation: stream(1)?,
+                limit,
+                left_out: 0,
+            }),
+            None => None,
+        };
+        Ok(Self {
+            decimation: stream(width)?,
+            width,
+            instruments,
             taken: 0,
             rows: Vec::new(),
             factor: Factor::new(parameters),
             parts: Vec::new(),
             stretches: vec![Vec::new(); plan.stretches.len()],
             points: Vec::new(),
-            standstill: standstill.map(|limit| Standstill { limit, left_out: 0 }),
-        }
+            standstill,
+        })
     }
 
     /// Equations that were left out at standstill, where some are to be.
@@ -193,29 +200,28 @@ impl LineSink {
         (rows, instruments): (&[f64], Option<&[f64]>),
         velocities: impl Iterator<Item = f64>,
     ) {
-        let mut kept = Vec::new();
-        let mut whole = row_width(self.width - 1, self.instruments.is_some());
-        let with_instruments;
-        let mut rows = rows;
-        if self.instruments.is_some() {
-            with_instruments = joined(rows, instruments, self.width);
-            rows = &with_instruments;
+        let (width, mut kept) = (self.width, Vec::new());
+        self.decimation.push(rows, &mut kept);
+        let (mut beside, mut speeds) = (Vec::new(), Vec::new());
+        if let Some(sink) = &mut self.instruments {
+            match instruments.filter(|own| own.len() == rows.len()) {
+                Some(own) => sink.decimation.push(own, &mut beside),
+                // Those of a run whose instruments can't be used are not used.
+                None => sink.decimation.push(&vec![0.0; rows.len()], &mut beside),
+            }
         }
-        if self.standstill.is_some() {
-            let with_velocities = beside(rows, whole, velocities);
-            self.decimation.push(&with_velocities, &mut kept);
-            whole += 1;
-        } else {
-            self.decimation.push(rows, &mut kept);
+        if let Some(own) = &mut self.standstill {
+            let velocities: Vec<f64> = velocities.take(rows.len() / width).collect();
+            own.decimation.push(&velocities, &mut speeds);
         }
-        for row in kept.chunks_exact(whole) {
-            let (row, instruments) = row.split_at(self.width);
-            if self.stands_still(instruments.last()) {
+        for (place, row) in kept.chunks_exact(width).enumerate() {
+            if self.stands_still(speeds.get(place)) {
                 self.leave_out(plan, row);
                 continue;
             }
             if let Some(sink) = &mut self.instruments {
-                sink.push(plan, self.taken, (row, &instruments[..self.width - 1]));
+                let own = beside.get(place * width..(place + 1) * width - 1);
+                sink.push(plan, self.taken, (row, own.unwrap_or_default()));
             }
             if self.taken.is_multiple_of(plan.stride) {
                 self.points.extend_from_slice(row);
@@ -273,30 +279,6 @@ impl LineSink {
         }
         self.advance(plan);
     }
-}
-
-/// Rows with one value more behind each.
-fn beside(rows: &[f64], width: usize, values: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut all = Vec::with_capacity(rows.len() / width * (width + 1));
-    for (row, value) in rows.chunks_exact(width).zip(values) {
-        all.extend_from_slice(row);
-        all.push(value);
-    }
-    all
-}
-
-/// Rows of columns and Y with the instruments behind them; zeros where these are missing.
-fn joined(rows: &[f64], instruments: Option<&[f64]>, width: usize) -> Vec<f64> {
-    let count = width - 1;
-    let mut both = Vec::with_capacity(2 * rows.len());
-    for (index, row) in rows.chunks_exact(width).enumerate() {
-        both.extend_from_slice(row);
-        match instruments.and_then(|all| all.get(index * width..index * width + count)) {
-            Some(own) => both.extend_from_slice(own),
-            None => both.resize(both.len() + count, 0.0),
-        }
-    }
-    both
 }
 
 /// What the sinks of all lines hold of run number `run`.

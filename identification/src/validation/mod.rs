@@ -143,7 +143,8 @@ pub(crate) fn validate(
     let mut counted = observer.settings.validation_samples;
     while let Some(motion) = motions.next()? {
         closure_residual = closure_residual.max(motion.closure_residual);
-        let chunks = observer.chunks(&motion, &mut failed)?;
+        let blocks = motion.samples.div_ceil(BLOCK);
+        let chunks = observer.chunks(&motion, 0..blocks, &mut failed)?;
         let row = |(index, chunk)| {
             let place = (index * BLOCK, chunk);
             rows(observer, &layout, &motion, place, candidates, &failed)
@@ -157,7 +158,8 @@ pub(crate) fn validate(
             *left -= kept.len() / layout.width();
         }
         sums.take(&kept);
-        points.take(&motion, &chunks);
+        let conditions: Vec<_> = chunks.into_iter().map(|chunk| chunk.conditions).collect();
+        points.take(&motion, &conditions);
         progress(motions.done(), log.samples());
     }
     progress(log.samples(), log.samples());

@@ -396,7 +396,7 @@ impl Pass<'_> {
             ModelKind::Joints => (0..sizes.actuators).collect(),
             ModelKind::Actuators => self.settings.kept_actuators.clone(),
         };
-        let mut choice = KeptActuators::new(kept, &home_scales(self.model));
-        projected(&lines, &mut choice, jacobians, sizes.actuators * sizes.dof).0
+        let choice = KeptActuators::new(kept, &home_scales(self.model));
+        projected(&lines, &choice, jacobians, sizes.actuators * sizes.dof).0
     }
 }

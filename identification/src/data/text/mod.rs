@@ -4,23 +4,23 @@
 //! are counted and the frequency is told. A small one is in memory then; a large one is read again,
 //! row by row, whenever its run is gone through.
 
+mod cells;
 mod dialect;
+mod lines;
+mod rows;
 mod squeeze;
 
 use overact::Code;
 use std::{
+    fmt::Display,
     fs::File,
     io::{Read, Seek, SeekFrom},
     path::{Path, PathBuf},
 };
 
-use csv::{ByteRecord, Trim};
-
-use self::{
-    dialect::{BEGINNING, Dialect},
-    squeeze::Squeeze,
-};
-use super::problems::{Existing, only, shown, unreadable};
+use self::dialect::{BEGINNING, Dialect};
+pub(super) use self::rows::Rows;
+use super::problems::{Existing, only, unreadable};
 use crate::error::{Error, Problem};
 
 /// Bytes that are read at once.
@@ -89,156 +89,29 @@ impl Text {
     /// # Errors
     /// A file that can't be read any more.
     pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
-        let dialect = &self.dialect;
         let input = self
             .data()
             .map_err(|error| unreadable(&self.file, &error))?;
-        let mut rows = Rows {
-            text: self,
-            wanted: wanted.to_vec(),
-            reader: Dialect::builder(dialect.separator, dialect.comment)
-                // Only cells that are read are trimmed.
-                .trim(Trim::None)
-                .buffer_capacity(BUFFER)
-                .from_reader(input),
-            record: ByteRecord::new(),
-            line: 0,
-            is_broken: false,
-        };
-        if dialect.has_header {
-            rows.advance()?;
-        }
-        Ok(rows)
+        Rows::new(self, wanted, input)
     }
 
-    /// The file behind the mark of its encoding, if it has one.
-    fn data(&self) -> std::io::Result<Input> {
+    /// The file behind the mark of its encoding, if it has one, and the length of that.
+    fn data(&self) -> std::io::Result<(File, u64)> {
         let mut file = File::open(&self.path)?;
         let mut start = Vec::new();
         file.by_ref().take(3).read_to_end(&mut start)?;
         let mark = start.len() - dialect::without_mark(&start).len();
         file.seek(SeekFrom::Start(mark as u64))?;
-        Ok(match self.dialect.separator {
-            b' ' => Input::Blanks(Squeeze::new(file, BUFFER)),
-            _ => Input::Plain(file),
-        })
+        Ok((file, mark as u64))
     }
 
-    /// A text that is not one.
-    fn broken(&self, error: &csv::Error) -> Problem {
-        let line = error.position().map(|position| position.line() as usize);
+    /// A text that is not one, from a line on where that is known.
+    fn broken(&self, error: &dyn Display, line: Option<usize>) -> Problem {
         let message = format!("the text can't be read: {error}");
         let problem = Problem::new(Code::LOG_FORMAT, message).file(self.file.as_str());
         match line {
             Some(line) => problem.line(line),
             None => problem,
         }
-    }
-}
-
-/// Where a text comes from.
-#[derive(Debug)]
-enum Input {
-    Plain(File),
-    Blanks(Squeeze<File>),
-}
-
-impl Read for Input {
-    fn read(&mut self, output: &mut [u8]) -> std::io::Result<usize> {
-        match self {
-            Self::Plain(file) => file.read(output),
-            Self::Blanks(squeezed) => squeezed.read(output),
-        }
-    }
-}
-
-/// The rows of a text that is being read.
-#[derive(Debug)]
-pub(super) struct Rows<'a> {
-    text: &'a Text,
-    /// Places and names of the columns that are read.
-    wanted: Vec<(usize, &'a str)>,
-    reader: csv::Reader<Input>,
-    record: ByteRecord,
-    /// Line of the last row in the file.
-    line: usize,
-    /// Whether nothing more can be read.
-    is_broken: bool,
-}
-
-impl Rows<'_> {
-    /// Line of the last row.
-    pub(super) const fn line(&self) -> usize {
-        self.line
-    }
-
-    /// Whether nothing more can be read.
-    pub(super) const fn is_broken(&self) -> bool {
-        self.is_broken
-    }
-
-    /// Bytes that have been read.
-    pub(super) fn bytes(&self) -> u64 {
-        self.reader.position().byte()
-    }
-
-    /// Goes to the next record; `false` at the end.
-    fn advance(&mut self) -> Result<bool, Error> {
-        match self.reader.read_byte_record(&mut self.record) {
-            Ok(true) => {}
-            Ok(false) => return Ok(false),
-            Err(error) => {
-                self.is_broken = true;
-                return Err(self.text.broken(&error).into());
-            }
-        }
-        // The record's own position is before comments and empty lines that precede it; the
-        // reader's is behind its line break, if it has one.
-        let before = self.record.position().map_or(0, csv::Position::line);
-        let behind = self.reader.position().line().saturating_sub(1);
-        self.line = before.max(behind) as usize;
-        Ok(true)
-    }
-
-    /// Puts the numbers of the next row into `values`; `false` at the end.
-    ///
-    /// # Errors
-    /// Every cell of the row that is no finite number, or a file that can't be read on.
-    pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
-        if !self.advance()? {
-            return Ok(false);
-        }
-        let decimal_comma = self.text.dialect.decimal_comma;
-        let mut problems = Vec::new();
-        for (&(place, name), value) in self.wanted.iter().zip(values) {
-            match number(self.record.get(place), decimal_comma) {
-                Ok(found) => *value = found,
-                Err(message) => {
-                    *value = f64::NAN;
-                    problems.push(
-                        Problem::new(Code::NOT_A_NUMBER, format!("column `{name}`: {message}"))
-                            .file(self.text.file.as_str())
-                            .line(self.line)
-                            .column(name),
-                    );
-                }
-            }
-        }
-        Error::check(problems)?;
-        Ok(true)
-    }
-}
-
-/// A cell as a finite number, or what is wrong with it.
-fn number(cell: Option<&[u8]>, decimal_comma: bool) -> Result<f64, String> {
-    let Some(cell) = cell else {
-        return Err(String::from("the line ends before this column"));
-    };
-    let text = String::from_utf8_lossy(cell.trim_ascii());
-    match dialect::parse(&text, decimal_comma) {
-        Some(value) if value.is_finite() => Ok(value),
-        Some(_) => Err(format!("`{}` is not a finite number", shown(&text))),
-        None if text.is_empty() => Err(String::from("the cell is empty")),
-        None => Err(format!("`{}` is not a number", shown(&text))),
     }
 }

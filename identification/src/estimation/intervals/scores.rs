@@ -151,9 +151,9 @@ struct Sections {
     variances: DMatrix<f64>,
     /// Σ_t (M s_t)_i⁴ of the stretch.
     fourths: Vec<f64>,
-    /// The rows of G Mᵀ that belong to columns, p² x sections.
+    /// The rows of G that belong to columns, without what lies below the diagonal.
     fitted: DMatrix<f64>,
-    /// The rows of V Mᵀ that belong to columns, p² x sections.
+    /// The rows of V that belong to columns, likewise.
     noisy: DMatrix<f64>,
 }
 
@@ -240,29 +240,31 @@ impl<'a> Context<'a> {
     fn sections(&self, stretch: &Stretch, sections: usize) -> Sections {
         let turned = self.influence().transpose();
         let (q, p) = turned.shape();
+        let entries = q * p - p * p.saturating_sub(1) / 2;
         let mut told = Sections {
             scores: DMatrix::zeros(q, sections),
             variances: DMatrix::zeros(p, sections),
             fourths: vec![0.0; p],
-            fitted: DMatrix::zeros(p * p, sections),
-            noisy: DMatrix::zeros(p * p, sections),
+            fitted: DMatrix::zeros(entries, sections),
+            noisy: DMatrix::zeros(entries, sections),
         };
         for section in 0..sections {
             let range = range(stretch, section, sections);
             let Section { scores, gram } = self.section(stretch, range, true);
             told.scores.set_column(section, &scores.row_sum_tr());
             let noise = square(&scores);
-            let (product, noise) = (gram * &turned, noise * &turned);
             let own = scores * &turned;
             for (i, column) in own.column_iter().enumerate() {
                 told.variances[(i, section)] = column.norm_squared();
                 told.fourths[i] += column.iter().map(|value| value.powi(4)).sum::<f64>();
             }
-            for (to, from) in [(&mut told.fitted, &product), (&mut told.noisy, &noise)] {
+            for (to, from) in [(&mut told.fitted, &gram), (&mut told.noisy, &noise)] {
                 let mut place = to.column_mut(section);
-                let columns = from.rows(0, p);
-                let values = place.iter_mut().zip(columns.iter());
-                values.for_each(|(to, from)| *to = *from);
+                let upper = (0..q).flat_map(|j| &from.as_slice()[j * q..j * q + p.min(j + 1)]);
+                place
+                    .iter_mut()
+                    .zip(upper)
+                    .for_each(|(to, from)| *to = *from);
             }
         }
         told
@@ -313,14 +315,26 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// R^-T (Σ φ_b X) of each cosine, for X of each section.
+    /// R^-T (Σ φ_b X) Mᵀ of each cosine, for the rows X of columns of each section, of which `sections` hold what
+    /// does not lie below the diagonal.
     fn turned(&self, sections: &DMatrix<f64>, waves: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
-        let p = self.selected.len();
+        let (p, q) = self.influence().shape();
         let sums = sections * waves;
         let turned = self.estimation.inverse.transpose();
+        let influence = self.influence().transpose();
+        let mut whole = DMatrix::zeros(p, q);
         let sums = sums.column_iter().map(|sum| {
-            let sum = nalgebra::DMatrixView::from_slice(sum.as_slice(), p, p);
-            &turned * sum
+            let mut values = sum.iter();
+            for j in 0..q {
+                for i in 0..p.min(j + 1) {
+                    let value = values.next().copied().unwrap_or_default();
+                    whole[(i, j)] = value;
+                    if j < p {
+                        whole[(j, i)] = value;
+                    }
+                }
+            }
+            &turned * (&whole * &influence)
         });
         sums.collect()
     }
@@ -330,16 +344,13 @@ impl<'a> Context<'a> {
         let (sections, cosines) = waves.shape();
         let fitted = self.turned(&told.fitted, waves);
         let noisy = self.turned(&told.noisy, waves);
+        // φ_b φ_b' are cosines of the difference and of the sum.
+        let both = DMatrix::from_fn(sections, 2 * cosines + 1, |k, m| cosine(m, k, sections));
+        let spectra = &told.variances * both;
         (0..p)
             .map(|i| {
                 let own = told.variances.row(i);
-                // φ_b φ_b' are cosines of the difference and of the sum.
-                let spectrum: Vec<f64> = (0..=2 * cosines)
-                    .map(|m| {
-                        let terms = own.iter().enumerate();
-                        terms.map(|(k, a)| a * cosine(m, k, sections)).sum()
-                    })
-                    .collect();
+                let spectrum = spectra.row(i);
                 let z = DMatrix::from_fn(p, cosines, |row, b| fitted[b][(row, i)]);
                 let y = DMatrix::from_fn(p, cosines, |row, b| noisy[b][(row, i)]);
                 let turned = z.transpose();

@@ -1,0 +1,297 @@
+//! The rows of a text: numbers of the columns that are read, line by line where lines are plain, else record by
+//! record with all that quotation marks allow.
+
+use csv::{ByteRecord, Trim};
+use overact::Code;
+use std::{
+    fs::File,
+    io::{Read, Result as IoResult},
+};
+
+use super::{
+    BUFFER, Text, cells,
+    dialect::{self, Dialect},
+    lines::{Lines, Next, Rest},
+    squeeze::Squeeze,
+};
+use crate::{
+    data::problems::shown,
+    error::{Error, Problem},
+};
+
+/// The rows of a text that is being read.
+#[derive(Debug)]
+pub(in crate::data) struct Rows<'a> {
+    text: &'a Text,
+    /// Places and names of the columns that are read.
+    wanted: Vec<(usize, &'a str)>,
+    /// The same places in rising order, each with its number among those wanted.
+    order: Vec<(usize, usize)>,
+    source: Source,
+    /// Line of the last row in the file.
+    line: usize,
+    /// Whether nothing more can be read.
+    is_broken: bool,
+}
+
+/// Where rows come from.
+#[derive(Debug)]
+enum Source {
+    Lines(Lines),
+    Records(Box<Records>),
+}
+
+impl<'a> Rows<'a> {
+    /// The rows of a file from its position on, which is number `bytes` of it, behind the header if there is one.
+    pub(super) fn new(
+        text: &'a Text,
+        wanted: &[(usize, &'a str)],
+        (input, bytes): (File, u64),
+    ) -> Result<Self, Error> {
+        let places = wanted.iter().zip(0..);
+        let mut order: Vec<(usize, usize)> =
+            places.map(|((own, _), place)| (*own, place)).collect();
+        order.sort_unstable();
+        let mut rows = Self {
+            text,
+            wanted: wanted.to_vec(),
+            order,
+            source: Source::Lines(Lines::new(input, bytes)),
+            line: 0,
+            is_broken: false,
+        };
+        if text.dialect.has_header {
+            rows.pass_header()?;
+        }
+        Ok(rows)
+    }
+
+    /// Line of the last row.
+    pub(in crate::data) const fn line(&self) -> usize {
+        self.line
+    }
+
+    /// Whether nothing more can be read.
+    pub(in crate::data) const fn is_broken(&self) -> bool {
+        self.is_broken
+    }
+
+    /// Bytes that have been read.
+    pub(in crate::data) fn bytes(&self) -> u64 {
+        match &self.source {
+            Source::Lines(lines) => lines.bytes(),
+            Source::Records(records) => records.bytes(),
+        }
+    }
+
+    /// Puts the numbers of the next row into `values`; `false` at the end.
+    ///
+    /// # Errors
+    /// Every cell of the row that is no finite number, or a file that can't be read on.
+    pub(in crate::data) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
+        let Dialect {
+            separator,
+            comment,
+            decimal_comma,
+            ..
+        } = self.text.dialect;
+        while let Source::Lines(lines) = &mut self.source {
+            let line = match lines.next() {
+                Ok(Next::Line(line)) => lines.line(line),
+                Ok(Next::End) => return Ok(false),
+                Ok(Next::Unusual) => {
+                    self.leave_lines()?;
+                    break;
+                }
+                Err(error) => return Err(self.broken(&error)),
+            };
+            let line = inside(line, separator);
+            if line.first().is_none_or(|first| *first == comment) {
+                continue;
+            }
+            self.line = lines.passed();
+            if !decimal_comma && cells::read(line, separator, &self.order, values) {
+                return Ok(true);
+            }
+            let cells = cells::split(line, separator);
+            let place = (self.text, self.line);
+            return taken(place, &self.wanted, |cell| cells.get(cell).copied(), values);
+        }
+        if !self.advance()? {
+            return Ok(false);
+        }
+        let Source::Records(records) = &self.source else {
+            return Ok(false);
+        };
+        let place = (self.text, self.line);
+        taken(place, &self.wanted, |cell| records.record.get(cell), values)
+    }
+
+    /// Passes the names of the columns.
+    fn pass_header(&mut self) -> Result<(), Error> {
+        let Dialect {
+            separator, comment, ..
+        } = self.text.dialect;
+        while let Source::Lines(lines) = &mut self.source {
+            match lines.pass_header() {
+                Ok(Some(line)) => {
+                    let line = inside(lines.line(line), separator);
+                    if line.first().is_some_and(|first| *first != comment) {
+                        return Ok(());
+                    }
+                }
+                Ok(None) => self.leave_lines()?,
+                Err(error) => return Err(self.broken(&error)),
+            }
+        }
+        self.advance().map(|_| ())
+    }
+
+    /// Goes on record by record.
+    fn leave_lines(&mut self) -> Result<(), Error> {
+        if let Source::Lines(lines) = &self.source {
+            let rest = lines.rest();
+            let (lines, bytes, rest) = rest.map_err(|error| self.broken(&error))?;
+            let records = Records::new(&self.text.dialect, (lines, bytes), rest);
+            self.source = Source::Records(Box::new(records));
+        }
+        Ok(())
+    }
+
+    /// Goes to the next record; `false` at the end.
+    fn advance(&mut self) -> Result<bool, Error> {
+        let Source::Records(records) = &mut self.source else {
+            return Ok(false);
+        };
+        match records.next() {
+            Ok(Some(line)) => {
+                self.line = line;
+                Ok(true)
+            }
+            Ok(None) => Ok(false),
+            Err(error) => {
+                let line = error.position().map(csv::Position::line);
+                let line = line.map(|line| records.lines + line as usize);
+                self.is_broken = true;
+                Err(self.text.broken(&error, line).into())
+            }
+        }
+    }
+
+    /// A file that can't be read on.
+    fn broken(&mut self, error: &std::io::Error) -> Error {
+        self.is_broken = true;
+        self.text.broken(error, None).into()
+    }
+}
+
+/// Takes the numbers of a row, in a line of the text, from its cells.
+fn taken<'c>(
+    (text, line): (&Text, usize),
+    wanted: &[(usize, &str)],
+    cell: impl Fn(usize) -> Option<&'c [u8]>,
+    values: &mut [f64],
+) -> Result<bool, Error> {
+    let mut problems = Vec::new();
+    for (&(place, name), value) in wanted.iter().zip(values) {
+        match number(cell(place), text.dialect.decimal_comma) {
+            Ok(found) => *value = found,
+            Err(message) => {
+                *value = f64::NAN;
+                problems.push(
+                    Problem::new(Code::NOT_A_NUMBER, format!("column `{name}`: {message}"))
+                        .file(text.file.as_str())
+                        .line(line)
+                        .column(name),
+                );
+            }
+        }
+    }
+    Error::check(problems)?;
+    Ok(true)
+}
+
+/// A line without the blanks around it, where blanks separate columns.
+fn inside(line: &[u8], separator: u8) -> &[u8] {
+    if separator == b' ' {
+        line.trim_ascii()
+    } else {
+        line
+    }
+}
+
+/// Where records come from.
+#[derive(Debug)]
+enum Input {
+    Plain(Rest),
+    Blanks(Squeeze<Rest>),
+}
+
+impl Read for Input {
+    fn read(&mut self, output: &mut [u8]) -> IoResult<usize> {
+        match self {
+            Self::Plain(file) => file.read(output),
+            Self::Blanks(squeezed) => squeezed.read(output),
+        }
+    }
+}
+
+/// Records from a line on.
+#[derive(Debug)]
+struct Records {
+    reader: csv::Reader<Input>,
+    record: ByteRecord,
+    /// Lines before them, and their bytes.
+    lines: usize,
+    passed: u64,
+}
+
+impl Records {
+    fn new(dialect: &Dialect, (lines, passed): (usize, u64), rest: Rest) -> Self {
+        let input = match dialect.separator {
+            b' ' => Input::Blanks(Squeeze::new(rest, BUFFER)),
+            _ => Input::Plain(rest),
+        };
+        Self {
+            reader: Dialect::builder(dialect.separator, dialect.comment)
+                // Only cells that are read are trimmed.
+                .trim(Trim::None)
+                .buffer_capacity(BUFFER)
+                .from_reader(input),
+            record: ByteRecord::new(),
+            lines,
+            passed,
+        }
+    }
+
+    /// Bytes of the file that have been read.
+    fn bytes(&self) -> u64 {
+        self.passed + self.reader.position().byte()
+    }
+
+    /// Goes to the next record and tells its line in the file; none at the end.
+    fn next(&mut self) -> csv::Result<Option<usize>> {
+        if !self.reader.read_byte_record(&mut self.record)? {
+            return Ok(None);
+        }
+        // The record's own position is before comments and empty lines that precede it; the
+        // reader's is behind its line break, if it has one.
+        let before = self.record.position().map_or(0, csv::Position::line);
+        let behind = self.reader.position().line().saturating_sub(1);
+        Ok(Some(self.lines + before.max(behind) as usize))
+    }
+}
+
+/// A cell as a finite number, or what is wrong with it.
+fn number(cell: Option<&[u8]>, decimal_comma: bool) -> Result<f64, String> {
+    let Some(cell) = cell else {
+        return Err(String::from("the line ends before this column"));
+    };
+    let text = String::from_utf8_lossy(cell.trim_ascii());
+    match dialect::parse(&text, decimal_comma) {
+        Some(value) if value.is_finite() => Ok(value),
+        Some(_) => Err(format!("`{}` is not a finite number", shown(&text))),
+        None if text.is_empty() => Err(String::from("the cell is empty")),
+        None => Err(format!("`{}` is not a number", shown(&text))),
+    }
+}

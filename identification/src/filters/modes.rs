@@ -1,0 +1,154 @@
+//! A low-pass run forwards and backwards, as sums over its modes.
+//!
+//! With the poles p_i of H, of which one of each conjugate pair is taken, the response of both passes is a sum
+//! of a causal and an anticausal part of each mode,
+//!
+//! ```text
+//! H(z) H(1/z) = c + 2 Re Σ r_i (1/(1 - p_i z^-1) + p_i z/(1 - p_i z)),
+//! y[n] = c u[n] + 2 Re Σ r_i (X_i + B_i),   X_i = Σ_(m<n) p_i^(n-m) u[m],   B_i = Σ_(m≥n) p_i^(m-n) u[m].
+//! ```
+//!
+//! The poles of a Chebyshev low-pass lie apart by about its bandwidth, so the sums cancel hardly, however narrow
+//! the band: |r_i| is about 1 - |p_i|. What stands at either end of a signal is known as states of the sections;
+//! what they say about the modes follows from the transforms of the sections' responses at the poles, where
+//! everything is a product of differences of poles.
+
+use nalgebra::Complex;
+
+use super::design::{LowPass, Section};
+
+/// A number of a mode.
+pub(super) type Mode = Complex<f64>;
+
+/// The modes of a low-pass of even order.
+#[derive(Debug, PartialEq)]
+pub(super) struct Modes {
+    sections: Vec<Section>,
+    /// p_i, a pole of each section.
+    pub(super) poles: Vec<Mode>,
+    /// r_i.
+    pub(super) shares: Vec<Mode>,
+    /// c.
+    pub(super) direct: f64,
+    /// ρ_i and the constant of the forward pass alone: H(z) = h + 2 Re Σ ρ_i/(1 - p_i z^-1).
+    forward: (Vec<Mode>, f64),
+    /// H(1/p_i).
+    mirrored: Vec<Mode>,
+}
+
+impl Modes {
+    pub(super) fn new(low_pass: &LowPass) -> Self {
+        let sections = low_pass.sections().to_vec();
+        let pole = |section: &Section| {
+            let [_, a, b] = section.a;
+            let half = -0.5 * a;
+            // One rounding: what is left of the difference has all of its digits.
+            Complex::new(half, (-half).mul_add(half, b).max(0.0).sqrt())
+        };
+        let poles: Vec<Mode> = sections.iter().map(pole).collect();
+        let own = |p: Mode| {
+            let all = sections.iter().zip(&poles);
+            let factors = all.map(|(section, other)| numerator(section, p) / mirrored(*other, p));
+            factors.product::<Mode>()
+        };
+        let mirror: Vec<Mode> = poles.iter().map(|p| own(*p)).collect();
+        let residue = |(number, p): (usize, &Mode)| {
+            let inverse = p.inv();
+            let all = sections.iter().zip(&poles).enumerate();
+            all.fold(
+                Complex::new(1.0, 0.0),
+                |product, (place, (section, other))| {
+                    let below = if place == number {
+                        Complex::new(1.0, 0.0) - p.conj() * inverse
+                    } else {
+                        denominator(*other, inverse)
+                    };
+                    product * numerator(section, inverse) / below
+                },
+            )
+        };
+        let forward: Vec<Mode> = poles.iter().enumerate().map(residue).collect();
+        let first: f64 = sections.iter().map(|own| own.b[0]).product();
+        let last: f64 = sections.iter().map(|own| own.b[2] / own.a[2]).product();
+        Self {
+            shares: forward
+                .iter()
+                .zip(&mirror)
+                .map(|(own, h)| own * h)
+                .collect(),
+            direct: first * last,
+            forward: (forward, last),
+            mirrored: mirror,
+            sections,
+            poles,
+        }
+    }
+
+    /// X_i before a sample, of the states of the sections there: s1 and s2 of each.
+    pub(super) fn past(&self, states: &[[f64; 2]]) -> Vec<Mode> {
+        let of = |p: &Mode| {
+            let inverse = p.inv();
+            let (mut sum, mut factor) = (Complex::ZERO, Complex::new(1.0, 0.0));
+            let all = self.sections.iter().zip(&self.poles);
+            for ((section, other), [first, second]) in all.zip(states) {
+                factor /= numerator(section, inverse);
+                sum += factor * (first + second * inverse);
+                factor *= denominator(*other, inverse);
+            }
+            sum
+        };
+        self.poles.iter().map(of).collect()
+    }
+
+    /// The forward pass over the samples of a signal behind `past`, in place.
+    pub(super) fn pass(&self, past: &[Mode], signal: &mut [f64]) {
+        let (shares, direct) = &self.forward;
+        let mut modes = past.to_vec();
+        for value in signal {
+            let own = *value;
+            let mut sum = direct * own;
+            for ((mode, pole), share) in modes.iter_mut().zip(&self.poles).zip(shares) {
+                *mode += own;
+                sum += 2.0 * (share * *mode).re;
+                *mode *= pole;
+            }
+            *value = sum;
+        }
+    }
+
+    /// B_i from a sample on, of the states of the backward pass behind the sample and of `past` before it.
+    pub(super) fn future(&self, states: &[[f64; 2]], past: &[Mode]) -> Vec<Mode> {
+        let behind = self.past(states);
+        let all = self.poles.iter().zip(&behind).zip(&self.mirrored);
+        all.map(|((p, behind), mirrored)| {
+            // What the forward pass goes on with is no input.
+            let modes = self.poles.iter().zip(past).zip(&self.forward.0);
+            let decay = modes.map(|((other, past), share)| {
+                let own = past * share;
+                let one = Complex::new(1.0, 0.0);
+                own / (one - p * other) + own.conj() / (one - p * other.conj())
+            });
+            (behind / p - decay.sum::<Mode>()) / mirrored
+        })
+        .collect()
+    }
+}
+
+/// b_0 + b_1 z^-1 + b_2 z^-2 of a section.
+fn numerator(section: &Section, inverse: Mode) -> Mode {
+    let [first, second, third] = section.b;
+    first + inverse * (second + inverse * third)
+}
+
+/// (1 - p z^-1)(1 - p̄ z^-1).
+fn denominator(pole: Mode, inverse: Mode) -> Mode {
+    // Differences first, which are exact.
+    let z = inverse.inv();
+    (z - pole) * (z - pole.conj()) * inverse * inverse
+}
+
+/// The same at z = 1/`point`.
+fn mirrored(pole: Mode, point: Mode) -> Mode {
+    let one = Complex::new(1.0, 0.0);
+    (one - pole * point) * (one - pole.conj() * point)
+}
