@@ -8,11 +8,7 @@ mod dialect;
 mod squeeze;
 
 use overact::Code;
-use std::{
-    fs::File,
-    io::{Read, Seek, SeekFrom},
-    path::{Path, PathBuf},
-};
+use std::io::{Read, Seek, SeekFrom};
 
 use csv::{ByteRecord, Trim};
 
@@ -20,7 +16,10 @@ use self::{
     dialect::{BEGINNING, Dialect},
     squeeze::Squeeze,
 };
-use super::problems::{Existing, only, shown, unreadable};
+use super::{
+    medium::{Medium, Opened},
+    problems::{Existing, only, shown, unreadable},
+};
 use crate::error::{Error, Problem};
 
 /// Bytes that are read at once.
@@ -31,7 +30,7 @@ const BUFFER: usize = 1 << 18;
 pub(super) struct Text {
     /// The file as the caller named it.
     file: String,
-    path: PathBuf,
+    medium: Medium,
     dialect: Dialect,
 }
 
@@ -40,8 +39,8 @@ impl Text {
     ///
     /// # Errors
     /// A file that can't be read, or that can be read in more than one way.
-    pub(super) fn open(file: String, path: &Path) -> Result<Self, Error> {
-        let input = File::open(path).map_err(|error| unreadable(&file, &error))?;
+    pub(super) fn open(file: String, medium: &Medium) -> Result<Self, Error> {
+        let input = medium.open().map_err(|error| unreadable(&file, &error))?;
         let mut beginning = Vec::new();
         input
             .take(BEGINNING as u64)
@@ -50,7 +49,7 @@ impl Text {
         let dialect = Dialect::of(&file, &beginning, beginning.len() < BEGINNING)?;
         Ok(Self {
             file,
-            path: path.to_owned(),
+            medium: medium.clone(),
             dialect,
         })
     }
@@ -113,7 +112,7 @@ impl Text {
 
     /// The file behind the mark of its encoding, if it has one.
     fn data(&self) -> std::io::Result<Input> {
-        let mut file = File::open(&self.path)?;
+        let mut file = self.medium.open()?;
         let mut start = Vec::new();
         file.by_ref().take(3).read_to_end(&mut start)?;
         let mark = start.len() - dialect::without_mark(&start).len();
@@ -139,8 +138,8 @@ impl Text {
 /// Where a text comes from.
 #[derive(Debug)]
 enum Input {
-    Plain(File),
-    Blanks(Squeeze<File>),
+    Plain(Opened),
+    Blanks(Squeeze<Opened>),
 }
 
 impl Read for Input {
