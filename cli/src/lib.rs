@@ -6,7 +6,6 @@
 //! - [`failure`]: what went wrong, as text for people or as JSON for machines, with the exit code;
 //! - `output`: results go to stdout or, whole or not at all, to a file;
 //! - `progress`: long work shows a bar on a terminal and nothing in a pipe;
-//! - [`drawing`]: a robot as SVG;
 //! - `guarded`: a defect of the program is told as such;
 //! - `effort`: how hard the generator searches;
 //! - `functions`: which functions are generated;
@@ -18,7 +17,6 @@
 //! - `states`: states of a robot from JSON or CSV.
 
 mod commands;
-pub mod drawing;
 mod effort;
 pub mod failure;
 mod functions;

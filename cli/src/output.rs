@@ -3,6 +3,7 @@
 mod files;
 
 pub(crate) use files::{check, check_distinct, write};
+pub(crate) use overact_robot::counted;
 
 use crate::{
     failure::{Failure, Problem},
@@ -83,11 +84,6 @@ pub(crate) fn json(document: &impl Serialize) -> Result<String, Failure> {
         )
         .into()
     })
-}
-
-/// `1 leg`, `2 legs`.
-pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { many })
 }
 
 /// Rows in columns as wide as their widest cell; `left` tells which columns are aligned to the left.

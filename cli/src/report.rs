@@ -2,17 +2,14 @@
 //! results to show beside the own ones.
 
 use crate::{
-    drawing,
     failure::{Failure, Problem},
     names::file_stem,
-    output,
 };
 use overact::Info;
 use overact_codegen::diagnostic::Code;
-use overact_identification::{Figures, Identification};
-use overact_report::{Attachment, Contents, Published, Units, numbers, page};
-use overact_robot::Robot;
-use serde::Serialize;
+use overact_identification::Identification;
+use overact_report::{About, Published, Units, numbers, whole_page};
+use overact_robot::{Robot, drawing};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -52,14 +49,6 @@ pub(crate) struct Asked {
 pub(crate) struct Reports {
     files: Vec<(PathBuf, Format)>,
     published: Option<Published>,
-}
-
-/// The document of a report: the result with what is plotted.
-#[derive(Serialize)]
-struct Document<'a> {
-    #[serde(flatten)]
-    identification: &'a Identification,
-    figures: &'a Figures,
 }
 
 impl Arguments {
@@ -141,10 +130,7 @@ impl Reports {
 /// # Errors
 /// A result that is no JSON, which does not happen.
 pub fn document(result: &Identification) -> Result<String, Failure> {
-    output::json(&Document {
-        identification: result,
-        figures: &result.figures,
-    })
+    Ok(overact_report::document_with_figures(result)?)
 }
 
 /// What the extension asks for.
@@ -171,40 +157,15 @@ pub fn html(
     result: &Identification,
     published: Option<&Published>,
 ) -> Result<String, Failure> {
-    let name = file_stem(&result.robot);
-    let (csv_name, json_name) = (format!("{name}.csv"), format!("{name}.json"));
-    let (csv, json) = (numbers(result)?, output::json(result)?);
-    let attachment = |name, media_type, what, text| Attachment {
-        name,
-        media_type,
-        what,
-        text,
-    };
-    let attachments = [
-        attachment(
-            &csv_name,
-            "text/csv",
-            "all numbers, one a row",
-            csv.as_str(),
-        ),
-        attachment(
-            &json_name,
-            "application/json",
-            "the same as a document, with settings and warnings",
-            json.as_str(),
-        ),
-    ];
     let description = robot.description();
-    let drawing = drawing::svg(&robot.model().model().mechanism);
-    Ok(page(&Contents {
-        identification: result,
+    let about = About {
         units: &Units::new(info),
-        summary: Some(description.summary.as_str()).filter(|text| !text.is_empty()),
-        source: Some(description.source.as_str()).filter(|text| !text.is_empty()),
-        drawing: Some(&drawing),
+        summary: &description.summary,
+        source: &description.source,
+        drawing: &drawing::svg(&robot.model().model().mechanism),
         published,
-        attachments: &attachments,
-    }))
+    };
+    Ok(whole_page(result, &about, &file_stem(&result.robot))?)
 }
 
 /// The file of published results that lies beside a description.

@@ -238,7 +238,7 @@ impl Handle {
 
     /// A drawing of the robot at its home configuration, SVG.
     fn drawing(&self) -> String {
-        overact_cli::drawing::svg(&self.robot.model().model().mechanism)
+        overact_robot::drawing::svg(&self.robot.model().model().mechanism)
     }
 
     /// Makes the virtual experiment.

@@ -20,6 +20,7 @@ pub mod summary;
 pub mod terminal;
 mod text;
 pub mod units;
+mod whole;
 
 pub use beside::beside;
 pub use numbers::numbers;
@@ -30,3 +31,4 @@ pub use sheet::{Plot, sheet};
 pub use summary::summary;
 pub use terminal::{base_parameters, coefficient, cross_validation, estimate, tables};
 pub use units::Units;
+pub use whole::{About, document, document_with_figures, whole_page};

@@ -40,7 +40,21 @@ pub struct CheckedFile {
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
 pub fn check(path: &Path) -> Result<CheckedFile, Error> {
-    let source = read(path)?;
+    check_text(read(path)?)
+}
+
+/// Checks a description in memory.
+///
+/// ```
+/// use overact_codegen::Source;
+///
+/// let error = overact_robot::check_text(Source::new("empty.toml", "")).unwrap_err();
+/// assert!(error.problems().iter().all(|problem| problem.help.is_some()));
+/// ```
+///
+/// # Errors
+/// Everything that is wrong with the description.
+pub fn check_text(source: Source) -> Result<CheckedFile, Error> {
     match checked(&source) {
         Ok(checked) => Ok(CheckedFile {
             file: source.name,

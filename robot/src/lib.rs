@@ -20,12 +20,16 @@
 //!
 //! Modules, from the bottom up:
 //!
+//! - `counted`: numbers of things in sentences;
+//! - [`drawing`]: a mechanism as SVG;
 //! - `error`: what is wrong;
 //! - `body`: where the bodies of standard parameters are;
 //! - `interpreted`: a model served as [`overact::Model`] without a compiler at hand;
+//! - `named`: functions called by their names;
 //! - `compiled_file`: a description read and compiled with what is asked for;
 //! - `robot`: the running robot; `settings`, `experiment`: its tables as inputs of identification and
 //!   simulation; `runs`: logs and virtual runs;
+//! - [`inspection`]: what a model consists of and what it costs;
 //! - `check`: everything that is wrong with a description, found without its model;
 //! - `excitation`: runs that determine the parameters best inside limits;
 //! - `gravity`: the direction of gravity from runs, and the robot in another one;
@@ -45,16 +49,20 @@ mod body;
 mod calibration;
 mod check;
 mod compiled_file;
+mod counted;
+pub mod drawing;
 mod error;
 mod excitation;
 mod experiment;
 mod factors;
 mod gravity;
 mod identifier;
+pub mod inspection;
 mod instruments;
 mod interpreted;
 mod kept;
 mod motors;
+mod named;
 mod parameters;
 mod partitions;
 mod physical;
@@ -65,17 +73,20 @@ mod settings;
 mod tracking;
 mod variants;
 
-pub use check::{CheckedFile, check};
+pub use check::{CheckedFile, check, check_text};
 pub use compiled_file::CompiledFile;
+pub use counted::counted;
 pub use error::{Column, Error, Problem};
 pub use excitation::{
     CaseOfRuns, Excitation, ExcitationEffort, JudgedRuns, Limit, LimitKind, Origin,
 };
 pub use experiment::VirtualExperiment;
 pub use identifier::Identifier;
+pub use inspection::Inspection;
 pub use instruments::beside_simulated;
 pub use interpreted::InterpretedRobot;
 pub use kept::kept_actuators;
+pub use named::{function_of_model, values};
 pub use parameters::{GivenParameters, read_parameters};
 pub use partitions::partitions;
 pub use robot::Robot;

@@ -7,7 +7,7 @@ use overact_identification::{
     data::{self, Array},
 };
 use overact_simulation::Record;
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 /// Runs to identify from and runs to validate with.
 #[derive(Debug, Clone, Default)]
@@ -77,6 +77,21 @@ impl Robot {
             None => Ok(log),
             Some(mapping) => {
                 Ok(log.with_instruments(data::read_arrays(name, arrays, &mapping, payload)?))
+            }
+        }
+    }
+
+    /// A log of the bytes of a file in memory, whatever its format; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// As [`read_logs`](Self::read_logs).
+    pub fn log_of_bytes(&self, name: &str, bytes: Arc<[u8]>, payload: bool) -> Result<Log, Error> {
+        let mapping = self.mapping();
+        let log = data::read_bytes(name, &bytes, &mapping, payload)?;
+        match self.references(&mapping) {
+            None => Ok(log),
+            Some(mapping) => {
+                Ok(log.with_instruments(data::read_bytes(name, &bytes, &mapping, payload)?))
             }
         }
     }

@@ -9,6 +9,7 @@
 //! thread.
 
 use std::{
+    cell::Cell,
     num::NonZero,
     sync::{
         atomic::{AtomicUsize, Ordering},
@@ -72,11 +73,45 @@ pub fn simulate(
     }
     let runs = &experiment.runs;
     let total: usize = runs.iter().map(|run| experiment.samples(run)).sum();
-    let mut results: Vec<Option<Result<Record, RunError>>> = runs.iter().map(|_| None).collect();
-    let next = AtomicUsize::new(0);
     let workers = thread::available_parallelism()
         .map_or(1, NonZero::get)
         .min(runs.len());
+    let done = Cell::new(0);
+    let tell = |index: usize, samples: usize| {
+        done.set(done.get() + samples);
+        progress(done.get() as f64 / total as f64, &runs[index].name);
+    };
+    let results = match workers {
+        // Where there is one core alone there may be no threads at all, as in a browser.
+        1 => (runs.iter().enumerate())
+            .map(|(index, run)| simulate_run(model, experiment, run, &|n| tell(index, n)))
+            .collect(),
+        _ => in_threads(model, experiment, workers, &tell),
+    };
+    let (mut records, mut errors) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(record) => records.push(record),
+            Err(error) => errors.push(error),
+        }
+    }
+    if errors.is_empty() {
+        Ok(records)
+    } else {
+        Err(Error::Runs(errors))
+    }
+}
+
+/// Makes the runs in several threads; `tell` hears on this one which run has advanced by how many samples.
+fn in_threads(
+    model: &dyn Model,
+    experiment: &Experiment,
+    workers: usize,
+    tell: &dyn Fn(usize, usize),
+) -> Vec<Result<Record, RunError>> {
+    let runs = &experiment.runs;
+    let mut results: Vec<Option<Result<Record, RunError>>> = runs.iter().map(|_| None).collect();
+    let next = AtomicUsize::new(0);
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
         for _ in 0..workers {
@@ -95,29 +130,14 @@ pub fn simulate(
             });
         }
         drop(sender);
-        let mut done = 0;
         for (index, news) in receiver {
             match news {
-                News::Samples(samples) => {
-                    done += samples;
-                    progress(done as f64 / total as f64, &runs[index].name);
-                }
+                News::Samples(samples) => tell(index, samples),
                 News::Finished(result) => results[index] = Some(result),
             }
         }
     });
-    let (mut records, mut errors) = (Vec::new(), Vec::new());
-    for result in results.into_iter().flatten() {
-        match result {
-            Ok(record) => records.push(record),
-            Err(error) => errors.push(error),
-        }
-    }
-    if errors.is_empty() {
-        Ok(records)
-    } else {
-        Err(Error::Runs(errors))
-    }
+    results.into_iter().flatten().collect()
 }
 
 /// Makes one run with a controller of the caller's in the place of the simulation's own. Of the experiment's

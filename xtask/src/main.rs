@@ -11,6 +11,7 @@ mod links;
 mod manifest;
 mod measure;
 mod metadata;
+mod page;
 mod release;
 mod robots;
 mod times;
@@ -28,6 +29,8 @@ cargo xtask measure EFFORT FILE what generation makes of a description, in numbe
 cargo xtask book                write docs/errors.md, and the book to target/book for mdbook
 cargo xtask links               fail unless every link of the documentation leads somewhere and errors.md is fresh
 cargo xtask package [OPTION]... archives of all published packages, built as they will be (cargo package)
+cargo xtask page                build the page for browsers into target/page; skipped without a Rust for them
+cargo xtask page test           build it and test it in a browser
 cargo xtask release             versions, licences, Rust versions and registry keys of all packages
 cargo xtask tests               all test binaries, one for each processor at a time
 cargo xtask times [SECONDS]     processor time of each test binary; fail if all take more";
@@ -43,6 +46,8 @@ fn main() -> ExitCode {
         ["book"] => book::write_all(),
         ["links"] => links::check().and_then(|()| book::check()),
         ["package", ref options @ ..] => release::package(options),
+        ["page"] => page::build(),
+        ["page", "test"] => page::test(),
         ["release"] => release::check(),
         ["tests"] => at_once::run(),
         ["times"] => times::table(None),

@@ -1,11 +1,9 @@
 //! `overact inspect`: what a robot's model consists of, what it costs, and how the robot looks.
 
-mod conditioning;
-mod document;
 mod table;
 
-use crate::{drawing, effort, failure::Failure, input, note::tell_note, output};
-use document::Document;
+use crate::{effort, failure::Failure, input, note::tell_note, output};
+use overact_robot::{Inspection, drawing};
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -38,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let text = drawing::svg(&robot.model.mechanism);
         (file, text.into_bytes())
     });
-    let document = Document::new(robot);
+    let document = Inspection::new(robot);
     let text = if as_json {
         output::json(&document)?
     } else {

@@ -1,9 +1,9 @@
 //! What kind of file a log is: told from its first bytes, never from its name.
 
 use overact::Code;
-use std::{fs::File, io::Read, path::Path};
+use std::io::Read;
 
-use super::problems::unreadable;
+use super::{medium::Medium, problems::unreadable};
 use crate::error::{Error, Problem};
 
 /// Bytes that tell the format.
@@ -103,9 +103,10 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
 ///
 /// # Errors
 /// A file that can't be read, or one that is named and not read.
-pub(super) fn recognise(file: &str, path: &Path) -> Result<Format, Error> {
+pub(super) fn recognise(file: &str, medium: &Medium) -> Result<Format, Error> {
     let mut beginning = Vec::new();
-    File::open(path)
+    medium
+        .open()
         .and_then(|input| input.take(BEGINNING as u64).read_to_end(&mut beginning))
         .map_err(|error| unreadable(file, &error))?;
     of(&beginning).map_err(|problem| problem.file(file).into())

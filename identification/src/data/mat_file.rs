@@ -1,19 +1,18 @@
 //! MATLAB's `.mat` files up to version 7: numeric vectors, matrices, fields of structures, and scalars for gains.
 
 use overact::Code;
-use std::path::Path;
 
 use matfile::{Array, MatFile, NumericData};
 
-use super::{arrays::Arrays, problems::unreadable, structures};
+use super::{arrays::Arrays, medium::Medium, problems::unreadable, structures};
 use crate::error::{Error, Problem};
 
 /// Reads all arrays of a file.
 ///
 /// # Errors
 /// A file that can't be read.
-pub(super) fn open(file: String, path: &Path) -> Result<Arrays, Error> {
-    let bytes = std::fs::read(path).map_err(|error| unreadable(&file, &error))?;
+pub(super) fn open(file: String, medium: &Medium) -> Result<Arrays, Error> {
+    let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let mat = MatFile::parse(bytes.as_slice()).map_err(|error| {
         Problem::new(
             Code::LOG_FORMAT,

@@ -23,6 +23,7 @@ mod mapping;
 mod mat_file;
 #[cfg(feature = "mcap")]
 mod mcap_file;
+mod medium;
 mod numpy;
 mod opening;
 mod parquet_file;
@@ -43,7 +44,10 @@ mod transmission;
 
 use std::{
     path::Path,
-    sync::atomic::{AtomicU64, Ordering},
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
 };
 
 pub use arrays::Array;
@@ -57,6 +61,8 @@ pub use samples::Samples;
 
 use crate::error::Error;
 use arrays::Arrays;
+use medium::Medium;
+use problems::display_name;
 use source::Files;
 use table::Table;
 
@@ -94,7 +100,9 @@ fn read_telling(
     payload: bool,
     advance: &dyn Fn(u64),
 ) -> Result<Log, Error> {
-    let files = Files::new(path, &parts(path), mapping)?;
+    let part = |path: &Path| (display_name(path), Medium::at(path));
+    let files: Vec<_> = parts(path).into_iter().map(part).collect();
+    let files = Files::new(display_name(path), &files, mapping)?;
     looked_through(files, mapping, payload, advance)
 }
 
@@ -114,6 +122,21 @@ pub fn read_arrays(
     }
     let tables = (vec![Table::Arrays(table)], vec![1]);
     let files = Files::of_tables(name.to_owned(), tables, mapping)?;
+    looked_through(files, mapping, payload, &|_| {})
+}
+
+/// Reads a run from the bytes of a file, whatever its format: `name` is what messages call it.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes(
+    name: &str,
+    bytes: &Arc<[u8]>,
+    mapping: &Mapping,
+    payload: bool,
+) -> Result<Log, Error> {
+    let files = [(name.to_owned(), Medium::Memory(Arc::clone(bytes)))];
+    let files = Files::new(name.to_owned(), &files, mapping)?;
     looked_through(files, mapping, payload, &|_| {})
 }
 

@@ -7,11 +7,11 @@
 use super::{
     archive,
     arrays::Arrays,
+    medium::Medium,
     problems::{shown, unreadable},
 };
 use crate::error::{Error, Problem};
 use overact::Code;
-use std::path::Path;
 
 /// What a `.npy` file starts with.
 const MAGIC: &[u8] = b"\x93NUMPY";
@@ -20,8 +20,8 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 ///
 /// # Errors
 /// A file that can't be read or is broken, or an array that is not of numbers.
-pub(super) fn open_array(file: String, path: &Path) -> Result<Arrays, Error> {
-    let bytes = std::fs::read(path).map_err(|error| unreadable(&file, &error))?;
+pub(super) fn open_array(file: String, medium: &Medium) -> Result<Arrays, Error> {
+    let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let mut arrays = Arrays::new(file.clone());
     push(&mut arrays, "array", &bytes).map_err(|why| {
         let problem =
@@ -36,8 +36,8 @@ pub(super) fn open_array(file: String, path: &Path) -> Result<Arrays, Error> {
 /// # Errors
 /// A file that can't be read, is broken, or has nothing that NumPy wrote. Arrays that are not of numbers
 /// are left out.
-pub(super) fn open_archive(file: String, path: &Path) -> Result<Arrays, Error> {
-    let bytes = std::fs::read(path).map_err(|error| unreadable(&file, &error))?;
+pub(super) fn open_archive(file: String, medium: &Medium) -> Result<Arrays, Error> {
+    let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let broken = |why: String| -> Error {
         let problem = Problem::new(
             Code::LOG_FORMAT,

@@ -2,30 +2,27 @@
 //! or the run is resampled.
 
 use overact::Code;
-use std::path::Path;
 
 use super::{
-    mapping::Mapping,
-    problems::{display_name, shown},
-    resampling,
-    rows::Joined,
-    signals::Signals,
-    source::Files,
-    table::Table,
-    transmission::Transmission,
+    mapping::Mapping, medium::Medium, problems::shown, resampling, rows::Joined, signals::Signals,
+    source::Files, table::Table, transmission::Transmission,
 };
 use crate::error::{Error, Problem};
 
 impl Files {
-    /// Opens the files of the run `path` and finds their columns.
+    /// Opens the files of the run `name`, each with its own name, and finds their columns.
     ///
     /// # Errors
     /// A mapping that is not right, files that can't be read, missing columns.
-    pub(super) fn new(path: &Path, files: &[&Path], mapping: &Mapping) -> Result<Self, Error> {
+    pub(super) fn new(
+        name: String,
+        files: &[(String, Medium)],
+        mapping: &Mapping,
+    ) -> Result<Self, Error> {
         mapping.check()?;
         let (mut tables, mut numbers, mut problems) = (Vec::new(), Vec::new(), Vec::new());
-        for (file, number) in files.iter().zip(1..) {
-            match Table::open(file) {
+        for ((file, medium), number) in files.iter().zip(1..) {
+            match Table::open(file.clone(), medium) {
                 Ok(parts) => {
                     numbers.resize(numbers.len() + parts.len(), number);
                     tables.extend(parts);
@@ -34,7 +31,7 @@ impl Files {
             }
         }
         Error::check(problems)?;
-        Self::of_tables(display_name(path), (tables, numbers), mapping)
+        Self::of_tables(name, (tables, numbers), mapping)
     }
 
     /// The run `name` of tables, each with the number of its file.

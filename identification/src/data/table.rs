@@ -1,6 +1,6 @@
 //! One file as a table of columns, whatever its format.
 
-use std::{path::Path, sync::Arc};
+use std::sync::Arc;
 
 #[cfg(feature = "hdf5")]
 use super::hdf5_file;
@@ -9,9 +9,11 @@ use super::mcap_file;
 use super::{
     arrays::{self, Arrays},
     format::{self, Format},
-    mat_file, numpy,
+    mat_file,
+    medium::Medium,
+    numpy,
     parquet_file::Parquet,
-    problems::{Existing, display_name},
+    problems::Existing,
     stored::{Stored, StoredRows},
     text::{self, Text},
 };
@@ -48,19 +50,21 @@ impl Table {
     ///
     /// # Errors
     /// A file that can't be read, or whose format isn't.
-    pub(super) fn open(path: &Path) -> Result<Vec<Self>, Error> {
-        let file = display_name(path);
-        let one = match format::recognise(&file, path)? {
-            Format::Text => Self::Text(Text::open(file, path)?),
-            Format::Mat => Self::Arrays(mat_file::open(file, path)?),
-            Format::Parquet => Self::Stored(Arc::new(Parquet::open(file, path)?)),
-            Format::Array => Self::Arrays(numpy::open_array(file, path)?),
-            Format::Archive => Self::Arrays(numpy::open_archive(file, path)?),
+    pub(super) fn open(file: String, medium: &Medium) -> Result<Vec<Self>, Error> {
+        let one = match format::recognise(&file, medium)? {
+            Format::Text => Self::Text(Text::open(file, medium)?),
+            Format::Mat => Self::Arrays(mat_file::open(file, medium)?),
+            Format::Parquet => Self::Stored(Arc::new(Parquet::open(file, medium)?)),
+            Format::Array => Self::Arrays(numpy::open_array(file, medium)?),
+            Format::Archive => Self::Arrays(numpy::open_archive(file, medium)?),
             #[cfg(feature = "hdf5")]
-            Format::Hdf5 => Self::Stored(Arc::new(hdf5_file::Hdf5::open(file, path)?)),
+            Format::Hdf5 => {
+                let path = on_disk(&file, medium)?;
+                Self::Stored(Arc::new(hdf5_file::Hdf5::open(file, path)?))
+            }
             #[cfg(feature = "mcap")]
             Format::Mcap => {
-                let topics = mcap_file::open(&file, path)?.into_iter();
+                let topics = mcap_file::open(&file, on_disk(&file, medium)?)?.into_iter();
                 return Ok(topics.map(|own| Self::Stored(Arc::new(own))).collect());
             }
         };
@@ -213,6 +217,18 @@ impl Table {
             Self::Arrays(arrays) => Rows::Arrays(arrays.rows(wanted)?),
         })
     }
+}
+
+/// The path of a file whose format is read from a disk alone.
+#[cfg(any(feature = "hdf5", feature = "mcap"))]
+fn on_disk<'m>(file: &str, medium: &'m Medium) -> Result<&'m std::path::Path, Error> {
+    medium.path().ok_or_else(|| {
+        let message = "files of this format are read from a disk, not from memory";
+        Problem::new(overact::Code::LOG_FORMAT, message)
+            .file(file)
+            .help("export CSV")
+            .into()
+    })
 }
 
 /// The rest of a table.

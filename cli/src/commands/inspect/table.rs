@@ -1,12 +1,12 @@
 //! What `inspect` tells, for people.
 
-use super::document::{Base, Document};
 use crate::output::{counted, table};
 use overact_identification::significant;
 use overact_report::coefficient;
+use overact_robot::{Inspection, inspection};
 use std::fmt::Write;
 
-pub(super) fn text(document: &Document) -> String {
+pub(super) fn text(document: &Inspection) -> String {
     let mut text = heading(document);
     text += "\nBodies\n";
     text += &bodies(document);
@@ -26,7 +26,7 @@ pub(super) fn text(document: &Document) -> String {
     text
 }
 
-fn heading(document: &Document) -> String {
+fn heading(document: &Inspection) -> String {
     let mut text = format!("{} ({})\n", document.robot, document.file);
     if !document.summary.is_empty() {
         let _ = writeln!(text, "{}", document.summary);
@@ -55,8 +55,8 @@ fn heading(document: &Document) -> String {
     text
 }
 
-fn bodies(document: &Document) -> String {
-    let row = |body: &super::document::Body| {
+fn bodies(document: &Inspection) -> String {
+    let row = |body: &inspection::Body| {
         let motor = match &body.actuator {
             Some(name) => format!("motor {name}"),
             None => String::new(),
@@ -71,7 +71,7 @@ fn bodies(document: &Document) -> String {
     table(&rows, &[true; 4])
 }
 
-fn base_parameters(all: &[Base]) -> String {
+fn base_parameters(all: &[inspection::Base]) -> String {
     let mut text = String::new();
     let mut alone = Vec::new();
     for base in all {
@@ -100,7 +100,7 @@ fn base_parameters(all: &[Base]) -> String {
     text
 }
 
-fn functions(document: &Document) -> String {
+fn functions(document: &Inspection) -> String {
     let header = [
         "function",
         "shape",
@@ -147,7 +147,7 @@ fn functions(document: &Document) -> String {
 }
 
 /// What a function that calls an iteration takes for each of its steps.
-fn iterations(function: &super::document::Function) -> String {
+fn iterations(function: &inspection::Function) -> String {
     let told = function.cost.iterations.iter().map(|one| {
         let runs = match (one.within, one.runs) {
             (Some(_), 1) => " inside".to_owned(),
@@ -159,7 +159,7 @@ fn iterations(function: &super::document::Function) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-fn conditioning(document: &Document) -> String {
+fn conditioning(document: &Inspection) -> String {
     let number = |value: Option<f64>| {
         value.map_or_else(|| "singular".to_owned(), |value| significant(value, 5))
     };

@@ -11,11 +11,7 @@ mod pages;
 mod rows;
 
 use overact::Code;
-use std::{
-    fs::File,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::sync::Arc;
 
 use parquet::{
     basic::Type,
@@ -28,6 +24,7 @@ use self::{
     rows::{Rows, Wanted},
 };
 use super::{
+    medium::Medium,
     problems::{Existing, legible, only, shown, unreadable},
     stored::{Stored, StoredRows},
 };
@@ -38,7 +35,7 @@ use crate::error::{Error, Problem};
 pub(super) struct Parquet {
     /// The file as the caller named it.
     file: String,
-    path: PathBuf,
+    medium: Medium,
     metadata: Arc<ParquetMetaData>,
     columns: Vec<Column>,
     /// What instants are counted from, s since 1970; none where there are no instants.
@@ -60,14 +57,14 @@ impl Parquet {
     ///
     /// # Errors
     /// A file that can't be read, or that is cut off or broken.
-    pub(super) fn open(file: String, path: &Path) -> Result<Self, Error> {
-        let input = File::open(path).map_err(|error| unreadable(&file, &error))?;
+    pub(super) fn open(file: String, medium: &Medium) -> Result<Self, Error> {
+        let input = medium.open().map_err(|error| unreadable(&file, &error))?;
         let metadata = ParquetMetaDataReader::new().parse_and_finish(&input);
         let metadata = metadata.map_err(|error| broken(&file, &error.to_string()))?;
         let columns = columns(metadata.file_metadata());
         let mut opened = Self {
             file,
-            path: path.to_owned(),
+            medium: medium.clone(),
             metadata: Arc::new(metadata),
             columns,
             origin: None,
@@ -137,7 +134,10 @@ impl Stored for Parquet {
     }
 
     fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn StoredRows + 'a>, Error> {
-        let input = File::open(&self.path).map_err(|error| unreadable(&self.file, &error))?;
+        let input = self
+            .medium
+            .open()
+            .map_err(|error| unreadable(&self.file, &error))?;
         let wanted = wanted.iter().filter_map(|&(place, name)| {
             let Column { leaf, kind, .. } = self.columns.get(place)?;
             let kind = *kind.as_ref().ok()?;

@@ -1,6 +1,6 @@
 //! The pages of a column, unpacked and checked for what the library takes for granted.
 
-use std::{fs::File, sync::Arc};
+use std::sync::Arc;
 
 use parquet::{
     basic::{Compression, Encoding},
@@ -10,10 +10,11 @@ use parquet::{
 };
 
 use super::packed::Packing;
+use crate::data::medium::Opened;
 
 /// The pages of a column within a row group.
 pub(super) struct Pages {
-    pages: SerializedPageReader<File>,
+    pages: SerializedPageReader<Opened>,
     packing: Option<Packing>,
     has_dictionary: bool,
 }
@@ -23,7 +24,11 @@ impl Pages {
     ///
     /// # Errors
     /// A compression that the library does not know.
-    pub(super) fn new(input: &Arc<File>, chunk: &ColumnChunkMetaData, rows: usize) -> Result<Self> {
+    pub(super) fn new(
+        input: &Arc<Opened>,
+        chunk: &ColumnChunkMetaData,
+        rows: usize,
+    ) -> Result<Self> {
         let packing = Packing::of(chunk);
         let mut chunk = chunk.clone();
         if packing.is_some() {

@@ -2,7 +2,7 @@
 //! with the file or with its row groups.
 
 use overact::Code;
-use std::{fmt, fs::File, sync::Arc};
+use std::{fmt, sync::Arc};
 
 use parquet::{
     basic::Compression,
@@ -18,6 +18,7 @@ use parquet::{
 use super::{kind::Kind, pages::Pages};
 use crate::{
     data::{
+        medium::Opened,
         problems::{legible, shown},
         stored::StoredRows,
     },
@@ -40,7 +41,7 @@ pub(super) struct Wanted<'a> {
 pub(super) struct Rows<'a> {
     /// The file as the caller named it.
     file: &'a str,
-    input: Arc<File>,
+    input: Arc<Opened>,
     metadata: &'a ParquetMetaData,
     /// What instants are counted from, s since 1970.
     origin: i64,
@@ -61,7 +62,7 @@ impl<'a> Rows<'a> {
     /// Goes to the first row of a file that has been opened.
     pub(super) fn new(
         file: &'a str,
-        input: File,
+        input: Opened,
         metadata: &'a ParquetMetaData,
         wanted: impl Iterator<Item = Wanted<'a>>,
         origin: i64,
@@ -195,7 +196,7 @@ const NOT_READ: &str = "which is not read";
 
 /// Begins a column of a row group.
 fn open(
-    input: &Arc<File>,
+    input: &Arc<Opened>,
     chunk: &ColumnChunkMetaData,
     rows: usize,
 ) -> Result<ColumnReader, String> {

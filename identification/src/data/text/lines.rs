@@ -2,20 +2,20 @@
 //! end lines by themselves, the rest is left to a reader that knows these.
 
 use std::{
-    fs::File,
     io::{Chain, Cursor, ErrorKind, Read, Result},
     ops::Range,
 };
 
 use super::{BUFFER, cells::find};
+use crate::data::medium::Opened;
 
 /// What has not been passed yet.
-pub(super) type Rest = Chain<Cursor<Vec<u8>>, File>;
+pub(super) type Rest = Chain<Cursor<Vec<u8>>, Opened>;
 
 /// The lines of a file, read in large pieces.
 #[derive(Debug)]
 pub(super) struct Lines {
-    input: File,
+    input: Opened,
     buffer: Vec<u8>,
     /// What has been read and not passed.
     left: Range<usize>,
@@ -39,7 +39,7 @@ pub(super) enum Next {
 
 impl Lines {
     /// The lines of a file from its position on, which is number `bytes` of it.
-    pub(super) fn new(input: File, bytes: u64) -> Self {
+    pub(super) fn new(input: Opened, bytes: u64) -> Self {
         Self {
             input,
             buffer: vec![0; BUFFER],

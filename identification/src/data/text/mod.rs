@@ -13,14 +13,15 @@ mod squeeze;
 use overact::Code;
 use std::{
     fmt::Display,
-    fs::File,
     io::{Read, Seek, SeekFrom},
-    path::{Path, PathBuf},
 };
 
 use self::dialect::{BEGINNING, Dialect};
 pub(super) use self::rows::Rows;
-use super::problems::{Existing, only, unreadable};
+use super::{
+    medium::{Medium, Opened},
+    problems::{Existing, only, unreadable},
+};
 use crate::error::{Error, Problem};
 
 /// Bytes that are read at once.
@@ -31,7 +32,7 @@ const BUFFER: usize = 1 << 18;
 pub(super) struct Text {
     /// The file as the caller named it.
     file: String,
-    path: PathBuf,
+    medium: Medium,
     dialect: Dialect,
 }
 
@@ -40,8 +41,8 @@ impl Text {
     ///
     /// # Errors
     /// A file that can't be read, or that can be read in more than one way.
-    pub(super) fn open(file: String, path: &Path) -> Result<Self, Error> {
-        let input = File::open(path).map_err(|error| unreadable(&file, &error))?;
+    pub(super) fn open(file: String, medium: &Medium) -> Result<Self, Error> {
+        let input = medium.open().map_err(|error| unreadable(&file, &error))?;
         let mut beginning = Vec::new();
         input
             .take(BEGINNING as u64)
@@ -50,7 +51,7 @@ impl Text {
         let dialect = Dialect::of(&file, &beginning, beginning.len() < BEGINNING)?;
         Ok(Self {
             file,
-            path: path.to_owned(),
+            medium: medium.clone(),
             dialect,
         })
     }
@@ -96,8 +97,8 @@ impl Text {
     }
 
     /// The file behind the mark of its encoding, if it has one, and the length of that.
-    fn data(&self) -> std::io::Result<(File, u64)> {
-        let mut file = File::open(&self.path)?;
+    fn data(&self) -> std::io::Result<(Opened, u64)> {
+        let mut file = self.medium.open()?;
         let mut start = Vec::new();
         file.by_ref().take(3).read_to_end(&mut start)?;
         let mark = start.len() - dialect::without_mark(&start).len();

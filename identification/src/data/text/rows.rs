@@ -3,10 +3,7 @@
 
 use csv::{ByteRecord, Trim};
 use overact::Code;
-use std::{
-    fs::File,
-    io::{Read, Result as IoResult},
-};
+use std::io::{Read, Result as IoResult};
 
 use super::{
     BUFFER, Text, cells,
@@ -15,7 +12,7 @@ use super::{
     squeeze::Squeeze,
 };
 use crate::{
-    data::problems::shown,
+    data::{medium::Opened, problems::shown},
     error::{Error, Problem},
 };
 
@@ -46,7 +43,7 @@ impl<'a> Rows<'a> {
     pub(super) fn new(
         text: &'a Text,
         wanted: &[(usize, &'a str)],
-        (input, bytes): (File, u64),
+        (input, bytes): (Opened, u64),
     ) -> Result<Self, Error> {
         let places = wanted.iter().zip(0..);
         let mut order: Vec<(usize, usize)> =

@@ -1,10 +1,11 @@
 //! From where a robot is seen.
 
 use super::scene::{Part, Point, Scene};
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Unit, Vector3};
 use overact_codegen::mechanism::{Mechanism, Motion};
 
 /// Directions of the sheet in the base frame.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct View {
     /// To the right.
     pub(super) right: Point,
@@ -12,6 +13,8 @@ pub(super) struct View {
     pub(super) up: Point,
     /// Towards the reader.
     pub(super) toward: Point,
+    /// About what the robot is turned: what is vertical on the sheet, and in space if there is gravity.
+    vertical: Point,
     /// Whether the robot lies in the plane of the sheet.
     pub(super) planar: bool,
 }
@@ -27,6 +30,23 @@ impl View {
         match plane(mechanism, scene) {
             Some(normal) => Self::along(&normal, mechanism),
             None => Self::best(mechanism, scene),
+        }
+    }
+
+    /// The view of the robot after it has been turned around its vertical, to the right, and then over, towards the
+    /// reader, rad.
+    pub(super) fn turned(&self, around: f64, over: f64) -> Self {
+        // The reader goes the other way than the robot.
+        let spin = Rotation3::from_axis_angle(&Unit::new_normalize(self.vertical), -around);
+        let right = spin * self.right;
+        let tilt = Rotation3::from_axis_angle(&Unit::new_normalize(right), -over);
+        let turned = |direction: Point| tilt * (spin * direction);
+        Self {
+            right,
+            up: turned(self.up),
+            toward: turned(self.toward),
+            vertical: self.vertical,
+            planar: self.planar && around == 0.0 && over == 0.0,
         }
     }
 
@@ -53,6 +73,7 @@ impl View {
             right: up.cross(normal),
             up,
             toward: *normal,
+            vertical: up,
             planar: true,
         }
     }
@@ -91,6 +112,7 @@ impl View {
             right,
             up: toward.cross(&right),
             toward,
+            vertical: *up,
             planar: false,
         }
     }

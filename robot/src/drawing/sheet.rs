@@ -10,6 +10,8 @@ pub(super) const WIDTH: f64 = 720.0;
 const MARGIN: [f64; 3] = [92.0, 104.0, 96.0];
 /// Largest height of the robot.
 const TALLEST: f64 = 400.0;
+/// Diameter of the ball around a robot that is turned.
+const LARGEST_TURNED: f64 = 500.0;
 /// Smallest height, for robots that lie flat.
 const LOWEST: f64 = 130.0;
 
@@ -48,6 +50,26 @@ impl Sheet {
             scale,
             middle: [(left + right) / 2.0, (bottom + top) / 2.0],
             height: ((height * scale).max(LOWEST) + MARGIN[1] + MARGIN[2]).round(),
+        }
+    }
+
+    /// The scale at which a scene fits from wherever it is seen: that of the ball around it.
+    pub(super) fn around(scene: &Scene, view: &View) -> Self {
+        let points = scene.points();
+        let low = points.iter().copied().reduce(|a, b| a.inf(&b));
+        let high = points.iter().copied().reduce(|a, b| a.sup(&b));
+        let middle = (low.unwrap_or_default() + high.unwrap_or_default()) / 2.0;
+        let far = points.iter().map(|point| (point - middle).norm());
+        let radius = far.fold(scene.sphere.unwrap_or(0.0), f64::max);
+        let scale = match radius < NOTHING {
+            true => 400.0,
+            false => LARGEST_TURNED / (2.0 * radius),
+        };
+        let [right, up, _] = view.project(&middle);
+        Self {
+            scale,
+            middle: [right, up],
+            height: (LARGEST_TURNED + MARGIN[1] + MARGIN[2]).round(),
         }
     }
 

@@ -1,28 +1,30 @@
 //! How well the actuators, and every choice of kept ones, determine the platform at home.
 
+use crate::{interpreted::InterpretedRobot, partitions::partitions};
 use nalgebra::DMatrix;
 use overact::{Function, Model};
-use overact_robot::{InterpretedRobot, partitions};
 use serde::Serialize;
 
 /// Condition numbers at the home pose, angular columns as they are (rad).
 #[derive(Debug, Serialize)]
-pub(super) struct Conditioning {
+#[non_exhaustive]
+pub struct Conditioning {
     /// Of J_p^inv; null where it is singular.
-    pub(super) home: Option<f64>,
+    pub home: Option<f64>,
     /// Of J_a for every choice of kept actuators of case 2, best first.
-    pub(super) partitions: Vec<Partition>,
+    pub partitions: Vec<Partition>,
 }
 
 /// A choice of kept actuators.
 #[derive(Debug, Serialize)]
-pub(super) struct Partition {
+#[non_exhaustive]
+pub struct Partition {
     /// Their names.
-    pub(super) kept_actuators: Vec<String>,
+    pub kept_actuators: Vec<String>,
     /// Whether it is the description's choice.
-    pub(super) chosen: bool,
+    pub chosen: bool,
     /// The condition number; null where they do not determine the platform.
-    pub(super) condition: Option<f64>,
+    pub condition: Option<f64>,
 }
 
 impl Conditioning {

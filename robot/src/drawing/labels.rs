@@ -5,7 +5,7 @@ use super::scene::{Part, Scene};
 use super::sheet::{Sheet, WIDTH, flat, n};
 use super::style::COLOURS;
 use super::view::View;
-use crate::output::counted;
+use crate::counted::counted;
 use overact_codegen::mechanism::Mechanism;
 
 /// The robot's name and what it can do.

@@ -1,86 +1,135 @@
-//! What `inspect` tells: its fields are the keys of the JSON document.
+//! What a robot's model consists of and what it costs: the document of `overact inspect`, whose keys are the
+//! names of the fields.
 
-use super::conditioning::Conditioning;
+mod conditioning;
+
+pub use conditioning::{Conditioning, Partition};
+
+use crate::{compiled_file::CompiledFile, interpreted::InterpretedRobot};
 use overact::Columns;
 use overact_codegen::{
     BaseParameter, RobotModel, WholeCost, derivation::MotionInput, lowering::Array,
 };
-use overact_robot::{CompiledFile, InterpretedRobot};
 use serde::Serialize;
 
+/// What a robot's model consists of and what it costs.
 #[derive(Debug, Serialize)]
-pub(super) struct Document {
-    pub(super) robot: String,
-    pub(super) summary: String,
-    pub(super) file: String,
-    pub(super) dof: usize,
-    pub(super) actuators: usize,
-    pub(super) joints: usize,
-    pub(super) actuator_names: Vec<String>,
-    pub(super) joint_names: Vec<String>,
-    pub(super) coordinates: Vec<String>,
-    pub(super) pose: Vec<String>,
-    pub(super) home_pose: Vec<f64>,
-    pub(super) home_joints: Vec<f64>,
-    pub(super) kept_actuators: Vec<String>,
-    pub(super) bodies: Vec<Body>,
+#[non_exhaustive]
+pub struct Inspection {
+    /// Name of the robot.
+    pub robot: String,
+    /// What the robot is, in a sentence; empty where the description does not say.
+    pub summary: String,
+    /// The description as the user named it.
+    pub file: String,
+    /// Degrees of freedom r.
+    pub dof: usize,
+    /// Actuators n.
+    pub actuators: usize,
+    /// Joints of all legs n_t.
+    pub joints: usize,
+    /// Names of the n actuators.
+    pub actuator_names: Vec<String>,
+    /// Names of the n_t joints.
+    pub joint_names: Vec<String>,
+    /// Names of the r coordinates of the twist.
+    pub coordinates: Vec<String>,
+    /// Names of the coordinates of the pose.
+    pub pose: Vec<String>,
+    /// The pose at home, m and rad.
+    pub home_pose: Vec<f64>,
+    /// The joints at home, rad or m.
+    pub home_joints: Vec<f64>,
+    /// Names of the actuators that case 2 keeps.
+    pub kept_actuators: Vec<String>,
+    /// Joints with their bodies, platform and payload.
+    pub bodies: Vec<Body>,
     /// Names in column order, the payload's last.
-    pub(super) parameters: Vec<String>,
-    pub(super) base_parameters: Vec<Base>,
-    pub(super) functions: Vec<Function>,
-    pub(super) conditioning: Conditioning,
+    pub parameters: Vec<String>,
+    /// Base parameters in the order of their columns, with what is regrouped into them.
+    pub base_parameters: Vec<Base>,
+    /// All functions with what they cost.
+    pub functions: Vec<Function>,
+    /// How well the actuators determine the platform at home.
+    pub conditioning: Conditioning,
 }
 
 /// A joint with the body behind it, the platform or the payload.
 #[derive(Debug, Serialize)]
-pub(super) struct Body {
-    pub(super) name: String,
-    pub(super) joint: &'static str,
-    pub(super) actuated: bool,
+#[non_exhaustive]
+pub struct Body {
+    /// Name of the joint, `platform` or `payload`.
+    pub name: String,
+    /// What kind of joint holds it: `revolute`, `prismatic`, `fixed`, `motor` or `free`.
+    pub joint: &'static str,
+    /// Whether a motor drives the joint.
+    pub actuated: bool,
     /// The name of its motor, if it has one.
-    pub(super) actuator: Option<String>,
+    pub actuator: Option<String>,
     /// Parameters whose columns are not identically zero.
-    pub(super) parameters: Vec<String>,
+    pub parameters: Vec<String>,
 }
 
+/// A base parameter with its regrouping.
 #[derive(Debug, Serialize)]
-pub(super) struct Base {
-    pub(super) name: String,
+#[non_exhaustive]
+pub struct Base {
+    /// Name, with the suffix `R` where others are regrouped into it.
+    pub name: String,
     /// The kept parameter first, with coefficient 1.
-    pub(super) regrouping: Vec<Term>,
+    pub regrouping: Vec<Term>,
 }
 
+/// A standard parameter in a regrouping.
 #[derive(Debug, Serialize)]
-pub(super) struct Term {
-    pub(super) parameter: String,
-    pub(super) coefficient: f64,
+#[non_exhaustive]
+pub struct Term {
+    /// Its name.
+    pub parameter: String,
+    /// What it is multiplied by.
+    pub coefficient: f64,
 }
 
+/// A function of the robot and its cost.
 #[derive(Debug, Serialize)]
-pub(super) struct Function {
-    pub(super) name: &'static str,
+#[non_exhaustive]
+pub struct Function {
+    /// Name in the table of functions.
+    pub name: &'static str,
     /// Name of the Rust function.
-    pub(super) function: String,
-    pub(super) columns: Option<&'static str>,
-    pub(super) from: &'static str,
-    pub(super) inputs: Vec<Argument>,
-    pub(super) outputs: Vec<Argument>,
+    pub function: String,
+    /// Which parameters the columns stand for, where the function is a model of them.
+    pub columns: Option<&'static str>,
+    /// What it is evaluated from: pose, joints or actuators.
+    pub from: &'static str,
+    /// Its inputs in their order.
+    pub inputs: Vec<Argument>,
+    /// Its output.
+    pub outputs: Vec<Argument>,
     /// Additions, multiplications and divisions; what is called is counted in, once.
-    pub(super) operations: usize,
+    pub operations: usize,
+    /// Operations by kind, with those of what is called.
     #[serde(flatten)]
-    pub(super) cost: WholeCost,
+    pub cost: WholeCost,
 }
 
+/// An array that goes in or comes out.
 #[derive(Debug, Serialize)]
-pub(super) struct Argument {
-    pub(super) name: String,
-    pub(super) shape: Vec<usize>,
+#[non_exhaustive]
+pub struct Argument {
+    /// Name of the array.
+    pub name: String,
+    /// How many numbers there are along each axis.
+    pub shape: Vec<usize>,
+    /// Whether a caller may leave it out.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub(super) optional: bool,
+    pub optional: bool,
 }
 
-impl Document {
-    pub(super) fn new(robot: CompiledFile) -> Self {
+impl Inspection {
+    /// What there is to be told of a robot that has been compiled.
+    #[must_use]
+    pub fn new(robot: CompiledFile) -> Self {
         let CompiledFile { file, model, .. } = robot;
         let mechanism = &model.mechanism;
         let joints = mechanism.joints();

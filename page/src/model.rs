@@ -1,0 +1,76 @@
+//! A description that is compiled: what its model consists of, what it costs, and its code.
+
+use crate::{
+    problems::{json, thrown},
+    progress::tell,
+};
+use overact_codegen::{Effort, Request, Source, c, diagnostic::Code, emission};
+use overact_robot::{CompiledFile, Inspection, Problem};
+use wasm_bindgen::prelude::*;
+
+/// A compiled robot.
+#[wasm_bindgen]
+pub struct Model {
+    inspection: String,
+    rust: String,
+    c: c::Files,
+}
+
+#[wasm_bindgen]
+impl Model {
+    /// Compiles a description with all its functions; `effort` is `none`, `quick` or `thorough`.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the description.
+    #[wasm_bindgen(constructor)]
+    pub fn new(name: &str, text: &str, effort: &str) -> Result<Self, JsValue> {
+        let unknown = || Problem::new(Code::USAGE, format!("there is no effort `{effort}`"));
+        let effort = Effort::named(effort).ok_or_else(|| thrown(unknown()))?;
+        let request = Request {
+            progress: &|step| {
+                let part = step.done as f64 / step.functions.max(1) as f64;
+                tell(part, step.work);
+            },
+            ..Request::with_effort(effort)
+        };
+        let robot = CompiledFile::new(Source::new(name, text), &request).map_err(thrown)?;
+        let rust = emission::file(&robot.model, name);
+        let c = c::files(&robot.model, &format!("{name} --lang c"));
+        let inspection = json(&Inspection::new(robot))?;
+        Ok(Self {
+            inspection,
+            rust,
+            c,
+        })
+    }
+
+    /// What `overact inspect --json` prints.
+    #[must_use]
+    pub fn inspection(&self) -> String {
+        self.inspection.clone()
+    }
+
+    /// The robot's module of Rust.
+    #[must_use]
+    pub fn rust(&self) -> String {
+        self.rust.clone()
+    }
+
+    /// How the files of C are called, without `.h` and `.c`.
+    #[must_use]
+    pub fn c_name(&self) -> String {
+        self.c.stem.clone()
+    }
+
+    /// The header of C.
+    #[must_use]
+    pub fn c_header(&self) -> String {
+        self.c.header.clone()
+    }
+
+    /// The source of C.
+    #[must_use]
+    pub fn c_source(&self) -> String {
+        self.c.source.clone()
+    }
+}

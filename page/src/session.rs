@@ -1,0 +1,189 @@
+//! A robot that runs: its virtual runs, logs of the user, and what is identified from either.
+
+use crate::{
+    problems::{json, thrown},
+    progress::tell,
+};
+use overact::Model;
+use overact_identification::{Grade, Identification, Progress};
+use overact_report::{About, Units, document, numbers, whole_page};
+use overact_robot::{Identifier, Robot, Runs, drawing};
+use overact_simulation::{Record, write_csv};
+use serde::Serialize;
+use wasm_bindgen::prelude::*;
+
+/// A robot with the logs that have been given to it.
+#[wasm_bindgen]
+pub struct Session {
+    pub(crate) robot: Robot,
+    runs: Runs,
+}
+
+/// A run of the virtual experiment, as the simulation writes it to a file.
+#[derive(Serialize)]
+struct Log<'a> {
+    name: &'a str,
+    payload: bool,
+    /// Whether the description holds it out, to validate with.
+    held_out: bool,
+    samples: usize,
+    csv: String,
+}
+
+impl<'a> Log<'a> {
+    fn new(record: &'a Record, held_out: &[String]) -> Self {
+        let mut csv = Vec::new();
+        // Writing to memory does not fail.
+        let _ = write_csv(record, &mut csv);
+        Self {
+            name: &record.name,
+            payload: record.payload,
+            held_out: held_out.contains(&record.name),
+            samples: record.time.len(),
+            csv: String::from_utf8_lossy(&csv).into_owned(),
+        }
+    }
+}
+
+#[wasm_bindgen]
+impl Session {
+    /// The robot of a description; errors call it `name`.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    #[wasm_bindgen(constructor)]
+    pub fn new(name: &str, text: &str) -> Result<Self, JsValue> {
+        let robot = Robot::from_text(name, text).map_err(thrown)?;
+        let runs = Runs::default();
+        Ok(Self { robot, runs })
+    }
+
+    /// The virtual runs as logs.
+    ///
+    /// # Errors
+    /// A description without an experiment, or one that can't be made.
+    pub fn simulate(&self) -> Result<String, JsValue> {
+        let experiment = self.robot.experiment().map_err(thrown)?;
+        let records = experiment.records(&tell).map_err(thrown)?;
+        let held_out = self.robot.held_out();
+        let logs = records.iter().map(|record| Log::new(record, &held_out));
+        json(&logs.collect::<Vec<_>>())
+    }
+
+    /// Adds the bytes of a log, whatever its format: of a run with the payload on the platform or without, to identify
+    /// from or held out, to validate with.
+    ///
+    /// # Errors
+    /// A log that can't be used.
+    pub fn add_log(
+        &mut self,
+        name: &str,
+        bytes: &[u8],
+        payload: bool,
+        held_out: bool,
+    ) -> Result<(), JsValue> {
+        let log = self.robot.log_of_bytes(name, bytes.into(), payload);
+        let log = log.map_err(thrown)?;
+        match held_out {
+            true => self.runs.validation.push(log),
+            false => self.runs.identified.push(log),
+        }
+        Ok(())
+    }
+
+    /// Identifies from the logs that have been added, or from the virtual experiment where there are none.
+    ///
+    /// # Errors
+    /// What is wrong with the logs or the experiment, or data that determine nothing.
+    pub fn identify(&self) -> Result<Identified, JsValue> {
+        let made;
+        let runs = if self.runs.identified.is_empty() {
+            let experiment = self.robot.experiment().map_err(thrown)?;
+            let held_out = self.robot.held_out();
+            made = experiment.runs(&held_out, &tell).map_err(thrown)?;
+            &made
+        } else {
+            &self.runs
+        };
+        let identifier = Identifier::new(&self.robot).data(runs).progress(&doing);
+        let result = identifier.run().map_err(thrown)?;
+        Identified::new(&self.robot, &result)
+    }
+}
+
+fn doing(progress: Progress<'_>) {
+    let part = |done: usize, samples: usize| done as f64 / samples.max(1) as f64;
+    match progress {
+        Progress::Base => tell(0.0, "base parameters"),
+        Progress::Run { run, done, samples } => tell(part(done, samples), run),
+        Progress::Estimation { model } => tell(1.0, &format!("{model}: estimation")),
+        Progress::Validation { run, done, samples } => {
+            tell(part(done, samples), &format!("cross-validation on {run}"));
+        }
+        _ => {}
+    }
+}
+
+/// What was identified, in all the ways in which it is told.
+#[wasm_bindgen]
+pub struct Identified {
+    summary: String,
+    page: String,
+    document: String,
+    numbers: String,
+    trusted: bool,
+}
+
+impl Identified {
+    fn new(robot: &Robot, result: &Identification) -> Result<Self, JsValue> {
+        let description = robot.description();
+        let about = About {
+            units: &Units::new(&robot.model().info()),
+            summary: &description.summary,
+            source: &description.source,
+            drawing: &drawing::svg(&robot.model().model().mechanism),
+            published: None,
+        };
+        let document = document(result).map_err(thrown)?;
+        Ok(Self {
+            summary: overact_report::summary(result, None),
+            page: whole_page(result, &about, "identification").map_err(thrown)?,
+            document,
+            numbers: numbers(result).map_err(thrown)?,
+            trusted: result.grade() == Grade::Use,
+        })
+    }
+}
+
+#[wasm_bindgen]
+impl Identified {
+    /// What `overact identify` prints.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        self.summary.clone()
+    }
+
+    /// The report: a page of its own.
+    #[must_use]
+    pub fn page(&self) -> String {
+        self.page.clone()
+    }
+
+    /// All numbers, that of `overact identify --json`.
+    #[must_use]
+    pub fn document(&self) -> String {
+        self.document.clone()
+    }
+
+    /// All numbers as one flat table, CSV.
+    #[must_use]
+    pub fn numbers(&self) -> String {
+        self.numbers.clone()
+    }
+
+    /// Whether nothing was found that speaks against the result.
+    #[must_use]
+    pub fn trusted(&self) -> bool {
+        self.trusted
+    }
+}

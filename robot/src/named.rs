@@ -1,0 +1,73 @@
+//! Functions called by their names, for those who ask from elsewhere: other languages, a browser.
+
+use crate::error::Problem;
+use overact::{Function, Input, Model};
+use overact_codegen::diagnostic::{Code, did_you_mean};
+
+/// The name of a function in the table of functions, with `_base` where base parameters are meant.
+#[must_use]
+pub fn function_of_model(function: Function) -> String {
+    match function.is_of_base_parameters() {
+        true => format!("{}_base", function.name()),
+        false => function.name().to_owned(),
+    }
+}
+
+/// A function at samples, by its name ([`function_of_model`]). `inputs` are all inputs in their order, each sample
+/// after sample; parameters stand once. The output is sample after sample, each row by row.
+///
+/// ```
+/// use overact_robot::{Robot, values};
+///
+/// # fn main() -> Result<(), overact_robot::Error> {
+/// # let emps = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/emps.toml");
+/// let robot = Robot::from_toml(emps)?; // "robots/emps.toml"
+/// assert_eq!(values(robot.model(), "joints", 2, &[0.1, 0.2])?, [0.1, 0.2]);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// A function that there is not, another number of inputs, or a sample without a value.
+pub fn values(
+    model: &dyn Model,
+    function: &str,
+    samples: usize,
+    inputs: &[f64],
+) -> Result<Vec<f64>, Problem> {
+    let misused = |message: String| Problem::new(Code::USAGE, message);
+    let mut all = Function::ALL.into_iter();
+    let found = all.find(|one| function_of_model(*one) == function);
+    let found = found.ok_or_else(|| {
+        let names: Vec<String> = Function::ALL.into_iter().map(function_of_model).collect();
+        let problem = misused(format!("there is no function `{function}`"));
+        match did_you_mean(function, names.iter().map(String::as_str)) {
+            Some(help) => problem.help(help),
+            None => problem,
+        }
+    })?;
+    let sizes = model.info().sizes;
+    let (mut rows, mut rest) = (Vec::new(), inputs);
+    for input in found.inputs() {
+        let count = match input {
+            Input::Parameters | Input::BaseParameters => 1,
+            _ => samples,
+        };
+        let parts = rest.split_at_checked(sizes.of(*input) * count);
+        let (own, others) = parts
+            .ok_or_else(|| misused(format!("there are too few numbers for `{}`", input.name())))?;
+        rows.push(own);
+        rest = others;
+    }
+    if !rest.is_empty() {
+        return Err(misused(format!(
+            "there are {} numbers too many",
+            rest.len()
+        )));
+    }
+    let (height, width) = found.shape(&sizes);
+    let mut output = vec![0.0; samples * height * width];
+    let done = model.evaluate(found, &rows, &mut output);
+    done.map_err(|error| misused(format!("sample {}: {}", error.sample, error.error)))?;
+    Ok(output)
+}
