@@ -108,6 +108,13 @@ impl Files {
         self.read.borrow_mut()[place.file].2.push(error);
     }
 
+    /// Notes errors that were found in a file elsewhere.
+    pub(crate) fn note(&self, file: usize, errors: &Diagnostics) {
+        for error in errors {
+            self.read.borrow_mut()[file].2.push(error.clone());
+        }
+    }
+
     /// Notes an error of the first file as a whole.
     pub(crate) fn refuse(&self, message: impl Into<String>, help: impl Into<String>) {
         if let Some(first) = self.read.borrow_mut().first_mut() {

@@ -1,11 +1,18 @@
 //! The import from a file to a description.
 
 use crate::{
-    assembly::{idle, layout, network::Network, simple},
+    assembly::{
+        idle,
+        layout::{self, Layout},
+        network::Network,
+        simple,
+    },
+    experiment::{self, Experiment},
     files::{Errors, Files},
     mjcf,
     model::Model,
     options::Options,
+    par,
     plan::Plan,
     urdf, writing, xml,
 };
@@ -37,8 +44,27 @@ pub fn import(path: &Path, options: &Options) -> Result<Imported, Errors> {
 }
 
 fn described(files: &Files, path: &Path, options: &Options) -> Option<String> {
+    let (model, _) = model(files, path, options)?;
+    let robot = Robot::new(files, &model, options)?;
+    let designed = experiment::design(&robot.network, &robot.layout, &robot.plan);
+    Some(robot.toml(&designed, path, options))
+}
+
+/// The format of a robot's file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// That of MuJoCo.
+    Mjcf,
+    /// That of ROS.
+    Urdf,
+    /// That of OpenSYMORO.
+    Par,
+}
+
+/// The robot of a file with all choices of the user, and the file's format; `None` after an error.
+pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Model, Format)> {
     let file = files.read(path, None)?;
-    let mut model = read(files, file, options)?;
+    let (mut model, format) = read(files, file, options)?;
     choose(files, &mut model, options)?;
     simple::drop_closures_on_one_body(&mut model);
     if !model.closures.is_empty() {
@@ -49,26 +75,58 @@ fn described(files: &Files, path: &Path, options: &Options) -> Option<String> {
     }
     plain_balls(&mut model);
     no_springs_in_loops(&mut model);
-    let network = Network::new(files, &model)?;
-    check_motors(files, &network)?;
-    let layout = layout::find(files, &network, options)?;
-    let plan = Plan::new(files, &network, &layout)?;
-    let source = path
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned());
-    Some(writing::toml(
-        &network,
-        &plan,
-        &source.unwrap_or_default(),
-        options,
-    ))
+    Some((model, format))
 }
 
-fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
+/// A robot's skeleton and chains, and its legs in the description.
+pub(crate) struct Robot<'m> {
+    pub(crate) network: Network<'m>,
+    pub(crate) layout: Layout,
+    pub(crate) plan: Plan,
+}
+
+impl<'m> Robot<'m> {
+    /// Skeleton, chains and legs; `None` after an error.
+    pub(crate) fn new(files: &Files, model: &'m Model, options: &Options) -> Option<Self> {
+        let network = Network::new(files, model)?;
+        check_motors(files, &network)?;
+        let layout = layout::find(files, &network, options)?;
+        let plan = Plan::new(files, &network, &layout)?;
+        Some(Self {
+            network,
+            layout,
+            plan,
+        })
+    }
+
+    /// The description.
+    pub(crate) fn toml(
+        &self,
+        designed: &Result<Experiment, String>,
+        path: &Path,
+        options: &Options,
+    ) -> String {
+        let source = path
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned());
+        let source = source.unwrap_or_default();
+        writing::toml(&self.network, &self.plan, designed, &source, options)
+    }
+}
+
+fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)> {
+    let text = files.text(file);
+    if !text
+        .trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n'])
+        .starts_with('<')
+        && is_table(&text)
+    {
+        return par::read(files, file, options).map(|model| (model, Format::Par));
+    }
     let root = xml::parse(files, file, &["visual", "collision", "asset", "geom"])?;
     match root.name.as_str() {
-        "mujoco" => mjcf::read(files, file, options),
-        "robot" => urdf::read(files, file, options),
+        "mujoco" => mjcf::read(files, file, options).map(|model| (model, Format::Mjcf)),
+        "robot" => urdf::read(files, file, options).map(|model| (model, Format::Urdf)),
         other => {
             let message = format!("a file of <{other}> is neither MJCF nor URDF");
             files.report(
@@ -79,6 +137,12 @@ fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
             None
         }
     }
+}
+
+/// Whether a text is the table of a .par file.
+fn is_table(text: &str) -> bool {
+    let mut lines = text.lines();
+    lines.any(|line| line.trim_start().get(..2) == Some("NJ") && line.contains('='))
 }
 
 /// Which joints are driven and where they stand, as the user says it.
@@ -137,6 +201,9 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
         let at = find(model, name)?;
         model.joints[at].home = *position;
     }
+    if model.closures.is_empty() {
+        off_limits(model, options);
+    }
     if model.joints.is_empty() {
         files.refuse(
             "the robot has no joint that moves",
@@ -145,6 +212,34 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
         return None;
     }
     Some(())
+}
+
+/// Without loops a joint that the file's zero puts on its limit stands in the middle of its range at home, so that
+/// there is room for motions about it.
+fn off_limits(model: &mut Model, options: &Options) {
+    let mut names = Vec::new();
+    for joint in model
+        .joints
+        .iter_mut()
+        .filter(|joint| joint.follow.is_none())
+    {
+        let is_chosen = options.home.iter().any(|(name, _)| *name == joint.name);
+        let Some([low, high]) = joint.range.filter(|_| !is_chosen) else {
+            continue;
+        };
+        let room = 0.05 * (high - low);
+        if joint.home < low + room || joint.home > high - room {
+            joint.home = 0.5 * (low + high);
+            names.push(format!("`{}`", joint.name));
+        }
+    }
+    if !names.is_empty() {
+        let list = names.join(", ");
+        let note = format!(
+            "The file's zero is on or near a limit of {list}: home is in the middle of the range."
+        );
+        model.notes.push(note);
+    }
 }
 
 /// There have to be as many motors as degrees of freedom.

@@ -1,13 +1,18 @@
-//! Other people's descriptions of robots, made into descriptions of overact.
+//! Other people's descriptions of robots, made into descriptions of overact, and identified parameters put back into
+//! them.
 //!
 //! | stage | from | to |
 //! |---|---|---|
-//! | `mjcf`, `urdf` | a file, with those that it includes | bodies, joints and closures (`model`) |
+//! | `mjcf`, `urdf`, `par` | a file, with those that it includes | bodies, joints and closures (`model`) |
 //! | `assembly` | the model | a closed configuration, a skeleton and chains |
 //! | `frames` | axes in space | modified Denavit-Hartenberg constants |
+//! | `experiment` | the closed robot | motions inside the limits of its joints |
 //! | `writing` | all of it | TOML with a comment at each choice |
+//! | `export` | the file and parameters | the file with these parameters |
 
 mod assembly;
+mod experiment;
+mod export;
 mod files;
 mod frames;
 mod geometry;
@@ -15,11 +20,13 @@ mod import;
 mod mjcf;
 mod model;
 mod options;
+mod par;
 mod plan;
 mod urdf;
 mod writing;
 mod xml;
 
+pub use export::{Exported, export};
 pub use files::Errors;
-pub use import::{Imported, import};
+pub use import::{Format, Imported, import};
 pub use options::Options;

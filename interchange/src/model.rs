@@ -34,10 +34,14 @@ pub(crate) struct Body {
     pub(crate) parent: usize,
     /// Its frame in that of the parent where the joint stands at its reference.
     pub(crate) placement: Pose,
+    /// Where the file describes it; none of bodies that stand for parts of joints.
+    pub(crate) place: Option<Place>,
     /// The joint between the two; none where they are fixed together.
     pub(crate) joint: Option<usize>,
     /// Mass and inertia, none of a massless body.
     pub(crate) inertia: Option<Inertia>,
+    /// Whether the file says that it has mass and inertia, but not how much.
+    pub(crate) has_unknown_inertia: bool,
 }
 
 /// Mass, centre and inertia about the centre in the axes of the body.
@@ -79,6 +83,10 @@ pub(crate) struct Joint {
     pub(crate) reference: f64,
     /// Its position in the file's usual configuration.
     pub(crate) home: f64,
+    /// Its smallest and largest position.
+    pub(crate) range: Option<[f64; 2]>,
+    /// Its largest speed, rad/s or m/s.
+    pub(crate) speed: Option<f64>,
     /// What it follows.
     pub(crate) follow: Option<Follow>,
     pub(crate) actuated: bool,
@@ -133,8 +141,10 @@ impl Model {
             name: "ground".to_owned(),
             parent: 0,
             placement: Pose::identity(),
+            place: None,
             joint: None,
             inertia: None,
+            has_unknown_inertia: false,
         };
         Self {
             name: name.to_owned(),
@@ -176,6 +186,8 @@ impl Joint {
             at: Point3::origin(),
             reference: 0.0,
             home: 0.0,
+            range: None,
+            speed: None,
             follow: None,
             actuated: false,
             damping: 0.0,
@@ -209,6 +221,17 @@ impl Inertia {
             centre,
             tensor: about(self) + about(other),
         }
+    }
+
+    /// What is left of a body without another that is part of it, in the same frame.
+    #[must_use]
+    pub(crate) fn without(&self, other: &Self) -> Self {
+        let negative = Self {
+            mass: -other.mass,
+            tensor: -other.tensor,
+            ..*other
+        };
+        self.with(&negative)
     }
 
     /// The same body seen from a frame in which its own stands.

@@ -11,6 +11,8 @@ pub struct Options {
     pub actuated: Option<Vec<String>>,
     /// Joints that shall be the independent coordinates.
     pub coordinates: Option<Vec<String>>,
+    /// Values of symbols in the file, lengths in m and angles in rad.
+    pub values: Vec<(String, f64)>,
     /// Positions of joints where the search for a closed home configuration starts, rad or m.
     pub home: Vec<(String, f64)>,
 }

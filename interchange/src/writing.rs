@@ -1,7 +1,10 @@
 //! The description as TOML, with a comment at each choice.
 
+mod experiment;
+
 use crate::{
     assembly::network::Network,
+    experiment::Experiment,
     frames::step::angles,
     geometry::digits::{angle, decimal, fine, is_zero},
     model::Pose,
@@ -11,7 +14,13 @@ use crate::{
 use std::fmt::Write as _;
 
 /// The description.
-pub(crate) fn toml(network: &Network<'_>, plan: &Plan, source: &str, options: &Options) -> String {
+pub(crate) fn toml(
+    network: &Network<'_>,
+    plan: &Plan,
+    designed: &Result<Experiment, String>,
+    source: &str,
+    options: &Options,
+) -> String {
     let model = network.model;
     let mut text = String::new();
     let name = options.name.as_deref().unwrap_or(&model.name);
@@ -21,6 +30,12 @@ pub(crate) fn toml(network: &Network<'_>, plan: &Plan, source: &str, options: &O
         comment_text(source)
     );
     text.push_str("# Frames are those of modified Denavit-Hartenberg constants; positions of joints are those of the file.\n");
+    if let Some(given) = given(options) {
+        comment(
+            &mut text,
+            &format!("Imported with {given}, which `overact export` needs as well."),
+        );
+    }
     for note in &plan.notes {
         comment(&mut text, note);
     }
@@ -39,8 +54,37 @@ pub(crate) fn toml(network: &Network<'_>, plan: &Plan, source: &str, options: &O
     for leg in &plan.legs {
         place(&mut text, leg);
     }
+    experiment::toml(&mut text, designed);
     values(&mut text, plan);
     text
+}
+
+/// The choices of the user on which names of parameters depend; none where there are none.
+fn given(options: &Options) -> Option<String> {
+    let mut words = Vec::new();
+    if options.fix_base {
+        words.push("--fix-base".to_owned());
+    }
+    for (key, names) in [
+        ("--actuated", &options.actuated),
+        ("--coordinates", &options.coordinates),
+    ] {
+        words.extend(
+            names
+                .iter()
+                .map(|names| format!("{key} {}", names.join(","))),
+        );
+    }
+    for (key, pairs) in [("--value", &options.values), ("--home", &options.home)] {
+        let pairs: Vec<String> = pairs
+            .iter()
+            .map(|(name, value)| format!("{name}={value:?}"))
+            .collect();
+        if !pairs.is_empty() {
+            words.push(format!("{key} {}", pairs.join(",")));
+        }
+    }
+    (!words.is_empty()).then(|| format!("`{}`", words.join(" ")))
 }
 
 fn shape(text: &mut String, leg: &Leg) {
@@ -222,7 +266,8 @@ fn values(text: &mut String, plan: &Plan) {
                 } else {
                     format!("_{}", leg.name)
                 };
-                lines.push((*symbol, format!("{symbol}_{}{of} = {shown}", joint.name)));
+                let is_prior = is_believable(joint, symbol);
+                lines.push((is_prior, format!("{symbol}_{}{of} = {shown}", joint.name)));
             }
         }
     }
@@ -234,8 +279,29 @@ fn values(text: &mut String, plan: &Plan) {
         let _ = writeln!(text, "{line}");
     }
     text.push_str("\n# and what is believed before data speak.\n[prior.values]\n");
-    for (_, line) in lines {
+    for (_, line) in lines.into_iter().filter(|(is_prior, _)| *is_prior) {
         let _ = writeln!(text, "{line}");
+    }
+}
+
+/// Whether a value may be believed before data speak: masses and moments of bodies that can be. A file may give a body
+/// in a plane nothing but the moment about its normal; what is left out follows from its mass.
+fn is_believable(joint: &Joint, symbol: &str) -> bool {
+    let own = |of: &str| {
+        joint
+            .values
+            .iter()
+            .find(|(s, _)| *s == of)
+            .map_or(0.0, |(_, v)| *v)
+    };
+    let moments = ["xx", "yy", "zz"].map(own);
+    let largest = moments.iter().copied().fold(0.0, f64::max);
+    match symbol {
+        "xx" | "xy" | "xz" | "yy" | "yz" | "zz" => {
+            own("m") > 0.0 && moments.iter().all(|moment| *moment > 1e-12 * largest)
+        }
+        "mx" | "my" | "mz" | "m" => own("m") > 0.0,
+        _ => own(symbol) >= 0.0,
     }
 }
 

@@ -68,7 +68,8 @@ fn place_of(text: &str, file: usize, at: roxmltree::TextPos) -> Place {
     Place { file, span }
 }
 
-fn element(
+/// An element with all that is in it; `None` where that is too deep.
+pub(crate) fn element(
     node: roxmltree::Node<'_, '_>,
     file: usize,
     skip: &[&str],

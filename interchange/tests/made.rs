@@ -56,3 +56,66 @@ fn loops_of_mjcf_are_chains_on_a_skeleton() {
     assert!(text.contains("gear 2"), "{text}");
     assert!(text.contains("spins freely"), "{text}");
 }
+
+/// The four-bar of the table, with lengths that its symbols have.
+fn of_table() -> Options {
+    let lengths = [("L1", 0.2), ("D3", 0.5), ("L2", 0.52), ("L3", 0.25)];
+    Options {
+        values: lengths.map(|(name, value)| (name.to_owned(), value)).to_vec(),
+        ..Options::default()
+    }
+}
+
+#[test]
+fn a_table_of_opensymoro_closes_its_loops() {
+    let (text, checked) = made("arm.par", &of_table());
+    let mechanism = &checked.mechanism;
+    assert_eq!(
+        (
+            mechanism.dof(),
+            mechanism.actuated().len(),
+            mechanism.legs.len()
+        ),
+        (1, 1, 2)
+    );
+    assert!(text.contains("name = \"LoopArm\""), "{text}");
+    assert!(text.contains("gravity = [0, 0, -9.81]"), "{text}");
+    // The rocker's numbers are values, the rod's symbols are parameters without any.
+    assert!(text.contains("m_j3_") && text.contains(" = 2.0"), "{text}");
+    assert!(!text.contains("m_j2_"), "{text}");
+    let rod = mechanism.joints().into_iter().find(|at| {
+        let joint = &mechanism.legs[at.leg].joints[at.joint];
+        joint.name.starts_with("j2")
+    });
+    let rod = rod.expect("the rod's joint");
+    let parameters = &mechanism.legs[rod.leg].joints[rod.joint].parameters;
+    assert!(parameters.len() >= 10, "{parameters:?}");
+    assert!(text.contains("No virtual experiment"), "the rod's mass is not known: {text}");
+}
+
+#[test]
+fn every_robot_has_runs_inside_the_limits_of_its_joints() {
+    for (name, coordinates) in [("arm.urdf", 4), ("ankle.xml", 2)] {
+        let (text, checked) = made(name, &Options::default());
+        let experiment = checked.description.experiment.expect("an experiment");
+        assert_eq!(experiment.runs.len(), 3, "{text}");
+        for run in &experiment.runs {
+            assert_eq!(run.terms.len(), 5 * coordinates);
+        }
+        assert!(experiment.torque_noise.iter().all(|noise| *noise > 0.0));
+    }
+    // The slide of the arm goes from 0 to 0.2 m: home is in the middle, and a run stays inside.
+    let (text, checked) = made("arm.urdf", &Options::default());
+    assert!(text.contains("home = { reach = 0.1 }"), "{text}");
+    let experiment = checked.description.experiment.expect("an experiment");
+    for run in &experiment.runs {
+        let own = run.terms.iter().filter(|term| term.index == 2);
+        let largest = (0..1000).map(|at| {
+            let phase = |harmonic: f64| f64::from(at) / 1000.0 * std::f64::consts::TAU * harmonic;
+            let values = own.clone().map(|term| term.amplitude * (phase(f64::from(term.harmonic)) + term.phase).sin());
+            values.sum::<f64>().abs()
+        });
+        let largest = largest.fold(0.0, f64::max);
+        assert!((0.02..=0.1001).contains(&largest), "{largest}");
+    }
+}

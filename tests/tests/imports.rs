@@ -143,7 +143,7 @@ const HOUSES: [House; 7] = [
         folder: "interchange",
         order: &[
             "options", "files", "xml", "geometry", "model", "assembly", "frames", "plan", "urdf",
-            "mjcf", "writing", "import",
+            "mjcf", "par", "experiment", "writing", "import", "export",
         ],
     },
     House {

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
-    /// The robot: MJCF or URDF
+    /// The robot: MJCF, URDF or .par
     #[arg(value_name = "FILE")]
     pub(super) file: PathBuf,
     /// The description to write instead of stdout
@@ -21,6 +21,14 @@ pub(crate) struct Arguments {
     /// Name of the robot [default: that of the file]
     #[arg(long)]
     name: Option<String>,
+    /// What the file leaves open
+    #[command(flatten)]
+    choices: Choices,
+}
+
+/// Choices on which the joints of the description depend, and with them the names of its parameters.
+#[derive(Debug, clap::Args)]
+pub(super) struct Choices {
     /// Fix a base that floats where it stands
     #[arg(long)]
     fix_base: bool,
@@ -30,13 +38,30 @@ pub(crate) struct Arguments {
     /// Joints that shall be the independent coordinates [default: those whose chains are cheapest]
     #[arg(long, value_delimiter = ',', value_name = "JOINTS")]
     coordinates: Option<Vec<String>>,
+    /// Values of symbols of a .par file, lengths in m and angles in rad
+    #[arg(long = "value", value_delimiter = ',', value_name = "SYMBOL=NUMBER", value_parser = position)]
+    values: Vec<(String, f64)>,
     /// Where joints stand when the search for a closed configuration starts, rad or m
     #[arg(long, value_delimiter = ',', value_name = "JOINT=POSITION", value_parser = position)]
     home: Vec<(String, f64)>,
 }
 
+impl Choices {
+    /// As the importer takes them.
+    pub(super) fn options(&self) -> Options {
+        Options {
+            name: None,
+            fix_base: self.fix_base,
+            actuated: self.actuated.clone(),
+            coordinates: self.coordinates.clone(),
+            values: self.values.clone(),
+            home: self.home.clone(),
+        }
+    }
+}
+
 fn position(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("write JOINT=POSITION")?;
+    let (name, value) = text.split_once('=').ok_or("write NAME=NUMBER")?;
     let value: f64 = value
         .trim()
         .parse()
@@ -54,10 +79,7 @@ fn position(text: &str) -> Result<(String, f64), String> {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = Options {
         name: arguments.name.clone(),
-        fix_base: arguments.fix_base,
-        actuated: arguments.actuated.clone(),
-        coordinates: arguments.coordinates.clone(),
-        home: arguments.home.clone(),
+        ..arguments.choices.options()
     };
     let output: Vec<&std::path::Path> = arguments.output.as_deref().into_iter().collect();
     check(&[&arguments.file], &output)?;
@@ -68,7 +90,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// All errors of all files.
-fn failure(errors: overact_interchange::Errors) -> Failure {
+pub(super) fn failure(errors: overact_interchange::Errors) -> Failure {
     let described = errors
         .0
         .into_iter()

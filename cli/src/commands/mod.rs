@@ -4,6 +4,7 @@ mod check;
 mod evaluate;
 mod excite;
 mod explain;
+mod export;
 mod factor;
 mod factors;
 mod generate;
@@ -68,8 +69,10 @@ pub(crate) enum Command {
     Completions(shell::Completions),
     /// Print or write pages for `man`
     Manual(shell::Manual),
-    /// Make a description of a robot's MJCF or URDF, with loops
+    /// Make a description of a robot's MJCF, URDF or .par, with loops
     Import(import::Arguments),
+    /// Put identified parameters back into the MJCF or URDF that a description was made of
+    Export(export::Arguments),
 }
 
 impl Command {
@@ -94,6 +97,7 @@ impl Command {
             Self::Completions(arguments) => shell::completions(arguments),
             Self::Manual(arguments) => shell::manual(arguments),
             Self::Import(arguments) => import::run(arguments),
+            Self::Export(arguments) => export::run(arguments),
         }
     }
 
@@ -115,6 +119,7 @@ impl Command {
             Self::Completions(_) => "completions",
             Self::Manual(_) => "manual",
             Self::Import(_) => "import",
+            Self::Export(_) => "export",
         }
     }
 
@@ -136,6 +141,7 @@ impl Command {
             Self::Identify(arguments) => slice::from_ref(&arguments.file),
             Self::Partitions(arguments) => slice::from_ref(&arguments.file),
             Self::Import(arguments) => slice::from_ref(&arguments.file),
+            Self::Export(arguments) => return arguments.file().display().to_string(),
         };
         let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
         names.join(", ")

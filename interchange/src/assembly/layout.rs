@@ -6,7 +6,7 @@
 
 use super::{
     ears::{Ear, cheapest, follows, freedoms},
-    motion::rank,
+    motion::{State, rank},
     network::{Network, Origin},
 };
 use crate::{files::Files, model::Kind, options::Options};
@@ -285,26 +285,38 @@ fn reaches(network: &Network<'_>, a: usize, b: usize, may: impl Fn(usize, usize)
 
 /// Whether the skeleton's joints can move independently of each other.
 fn independent(network: &Network<'_>, skeleton: &[(usize, usize)]) -> bool {
+    if network.model.closures.is_empty() {
+        return true;
+    }
     let freedoms: usize = skeleton_freedoms(network, skeleton).iter().sum();
     // Home may be singular; of the others each has to do.
     let looked_at = 1.min(network.states.len() - 1)..network.states.len();
     looked_at.into_iter().all(|state| {
-        let rates = rates(network, skeleton, state);
+        let twists = &network.twists[state];
+        let rates = skeleton_rates(network, skeleton, &network.states[state], twists);
         rates.nrows() == freedoms && rank(&rates).0 == freedoms
     })
 }
 
-/// The rates of the skeleton's joints for each motion that the network has.
-fn rates(network: &Network<'_>, skeleton: &[(usize, usize)], at: usize) -> DMatrix<f64> {
-    let state = &network.states[at];
+/// The rates of the skeleton's joints for each motion that the network has in a configuration; `twists` has those of
+/// its groups.
+pub(crate) fn skeleton_rates(
+    network: &Network<'_>,
+    skeleton: &[(usize, usize)],
+    state: &State,
+    twists: &[DMatrix<f64>],
+) -> DMatrix<f64> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for &(index, from) in skeleton {
         let edge = &network.edges[index];
         if follows(network, index) {
             continue;
         }
-        let to = edge.groups[usize::from(edge.groups[0] == from)];
-        let relative = &network.twists[at][to] - &network.twists[at][from];
+        let (to, sign) = match edge.groups[0] == from {
+            true => (edge.groups[1], 1.0),
+            false => (edge.groups[0], -1.0),
+        };
+        let relative = &twists[to] - &twists[from];
         let axis = network.axis(edge, state);
         let turning = |e: &Vector3<f64>| {
             (relative.rows(3, 3).transpose() * e)
@@ -313,9 +325,9 @@ fn rates(network: &Network<'_>, skeleton: &[(usize, usize)], at: usize) -> DMatr
                 .collect()
         };
         match edge.kind {
-            Kind::Revolute => rows.push(turning(&axis.direction)),
+            Kind::Revolute => rows.push(turning(&(axis.direction * sign))),
             Kind::Prismatic => {
-                let velocity = relative.rows(0, 3).transpose() * axis.direction;
+                let velocity = relative.rows(0, 3).transpose() * axis.direction * sign;
                 rows.push(velocity.iter().copied().collect());
             }
             Kind::Ball if network.groups[to].spins => {
@@ -331,7 +343,7 @@ fn rates(network: &Network<'_>, skeleton: &[(usize, usize)], at: usize) -> DMatr
             Kind::Ball => rows.extend((0..3).map(|i| turning(&Vector3::ith(i, 1.0)))),
         }
     }
-    let columns = network.twists[at].first().map_or(0, DMatrix::ncols);
+    let columns = twists.first().map_or(0, DMatrix::ncols);
     DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
 }
 

@@ -17,6 +17,8 @@ pub(crate) struct Group {
     pub(crate) bodies: Vec<usize>,
     /// Its inertia in the world at home.
     pub(crate) inertia: Option<Inertia>,
+    /// Whether one of its bodies has an inertia of which the file does not say how large it is.
+    pub(crate) has_unknown_inertia: bool,
     /// A rod between two balls: it spins freely about their line.
     pub(crate) spins: bool,
 }
@@ -127,7 +129,11 @@ impl<'m> Network<'m> {
     }
 
     /// A basis of the rates of the tree's coordinates that keep loops closed and rods from spinning.
-    fn motions(&self, motion: &Motion<'_>, state: &State) -> DMatrix<f64> {
+    pub(crate) fn motions(&self, motion: &Motion<'_>, state: &State) -> DMatrix<f64> {
+        if self.model.closures.is_empty() && !self.groups.iter().any(|group| group.spins) {
+            let count = motion.coordinates.len();
+            return DMatrix::identity(count, count);
+        }
         let (_, closure) = motion.closure(state);
         let bodies = motion.twists(state);
         let mut rows: Vec<Vec<f64>> = closure
@@ -258,12 +264,14 @@ fn groups(model: &Model, of_body: &[usize], home: &State) -> Vec<Group> {
     let empty = Group {
         bodies: Vec::new(),
         inertia: None,
+        has_unknown_inertia: false,
         spins: false,
     };
     let mut groups = vec![empty; count];
     for (at, body) in model.bodies.iter().enumerate() {
         let group = &mut groups[of_body[at]];
         group.bodies.push(at);
+        group.has_unknown_inertia |= body.has_unknown_inertia;
         let own = body.inertia.map(|inertia| inertia.seen(&home.poses[at]));
         group.inertia = match (group.inertia, own) {
             (Some(all), Some(own)) => Some(all.with(&own)),

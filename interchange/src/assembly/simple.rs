@@ -57,7 +57,9 @@ fn ball(model: &Model, third: usize) -> Option<[usize; 3]> {
             .closures
             .iter()
             .any(|closure| closure.bodies().contains(&empty));
-        if children != 1 || closes || !is_massless(model.bodies[empty].inertia.as_ref()) {
+        let has_mass = model.bodies[empty].has_unknown_inertia
+            || !is_massless(model.bodies[empty].inertia.as_ref());
+        if children != 1 || closes || has_mass {
             return None;
         }
     }

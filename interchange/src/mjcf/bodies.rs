@@ -95,8 +95,10 @@ fn body(
             },
             parent,
             placement,
+            place: is_last.then(|| element.place.clone()),
             joint: Some(model.joints.len() - 1),
             inertia: None,
+            has_unknown_inertia: false,
         });
         parent = model.bodies.len() - 1;
         placement = Pose::identity();
@@ -106,8 +108,10 @@ fn body(
             name,
             parent,
             placement,
+            place: Some(element.place.clone()),
             joint: None,
             inertia: None,
+            has_unknown_inertia: false,
         });
     }
     let own = model.bodies.len() - 1;
@@ -169,6 +173,7 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
         }
     };
     joint.reference = position("ref");
+    joint.range = range(reader, element, kind);
     joint.home = joint.reference;
     [joint.damping, joint.friction, joint.armature] =
         ["damping", "frictionloss", "armature"].map(|key| first(files, element, key));
@@ -177,6 +182,22 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
         joint.spring = Some((stiffness, position("springref")));
     }
     Some(joint)
+}
+
+/// The limits of a joint where it has some.
+fn range(reader: &Reader<'_>, element: &Element, kind: Kind) -> Option<[f64; 2]> {
+    let limits: [f64; 2] = element.numbers(reader.files, "range")?;
+    let is_limited = match element.get("limited") {
+        Some("true") => true,
+        Some("false") => false,
+        _ => reader.compiler.limits_ranges,
+    };
+    let limits = match kind {
+        Kind::Revolute => limits.map(|limit| reader.compiler.angle(limit)),
+        Kind::Prismatic => limits,
+        Kind::Ball => return None,
+    };
+    (is_limited && limits[0] < limits[1]).then_some(limits)
 }
 
 /// The first number of an attribute: of polynomials the linear one.

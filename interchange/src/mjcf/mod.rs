@@ -69,6 +69,8 @@ struct Compiler {
     /// Axes of Euler angles, and whether each turn is about the axes that the ones before have turned.
     sequence: [(usize, bool); 3],
     inertia_from_geometry: bool,
+    /// Whether a joint with a range is limited to it unasked.
+    limits_ranges: bool,
 }
 
 impl Compiler {
@@ -77,6 +79,7 @@ impl Compiler {
             is_degrees: true,
             sequence: [(0, true), (1, true), (2, true)],
             inertia_from_geometry: false,
+            limits_ranges: true,
         };
         for compiler in root.all("compiler") {
             match compiler.attribute("angle") {
@@ -108,6 +111,7 @@ impl Compiler {
                 let message = format!("coordinates that are `{value}` can't be said");
                 files.report(place, message, "save the model with local coordinates");
             }
+            own.limits_ranges &= compiler.get("autolimits") != Some("false");
             own.inertia_from_geometry |= compiler.get("inertiafromgeom") == Some("true");
         }
         own

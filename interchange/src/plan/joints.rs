@@ -172,6 +172,8 @@ impl<'d, 'm> Draft<'d, 'm> {
             values: Vec::new(),
             spring: None,
             home: node.home,
+            of: None,
+            carries: None,
             comment: Vec::new(),
         };
         if axis == 0 {
@@ -204,13 +206,14 @@ impl<'d, 'm> Draft<'d, 'm> {
 
     /// Motor, friction, spring and what it follows.
     fn torques(&self, edge: &Edge, joint: &mut Joint, has_loops: bool) {
-        let Origin::Joint(own) = edge.origin else {
+        let Origin::Joint(at) = edge.origin else {
             return;
         };
-        let own = &self.network.model.joints[own];
+        let own = &self.network.model.joints[at];
         if edge.kind == Kind::Ball {
             return;
         }
+        joint.of = Some(at);
         joint.actuated = own.actuated;
         let mut symbols = Vec::new();
         let given = [
@@ -259,12 +262,23 @@ impl<'d, 'm> Draft<'d, 'm> {
     /// Adds the parameters of the bodies that the joints carry.
     fn add_bodies(&self, framed: &[Framed], joints: &mut [Joint]) {
         for (at, group) in self.groups.iter().enumerate() {
-            let inertia = group.and_then(|group| self.network.groups[group].inertia);
-            let inertia = inertia.filter(|i| !crate::assembly::simple::is_massless(Some(i)));
-            let Some(inertia) = inertia else { continue };
+            let Some(group) = *group else { continue };
             let Some(joint) = joints.iter_mut().find(|joint| joint.name == self.names[at]) else {
                 continue;
             };
+            let inertia = self.network.groups[group].inertia;
+            let inertia = inertia.filter(|i| !crate::assembly::simple::is_massless(Some(i)));
+            if inertia.is_some() || self.network.groups[group].has_unknown_inertia {
+                joint.parameters = match joint.parameters.take() {
+                    Some(symbols) if symbols == ["ia", "fv", "fs", "off"] => None,
+                    symbols => {
+                        let own = symbols.unwrap_or_default();
+                        Some(std::iter::once("inertia").chain(own).collect())
+                    }
+                };
+            }
+            let Some(inertia) = inertia else { continue };
+            joint.carries = Some((group, framed[at].frame));
             let own = inertia.seen(&framed[at].frame.inverse());
             let about = own.about_origin();
             let first = own.centre.coords * own.mass;
@@ -281,13 +295,6 @@ impl<'d, 'm> Draft<'d, 'm> {
                 ("m", own.mass),
             ];
             joint.values.splice(0..0, values);
-            joint.parameters = match joint.parameters.take() {
-                Some(symbols) if symbols == ["ia", "fv", "fs", "off"] => None,
-                symbols => {
-                    let own = symbols.unwrap_or_default();
-                    Some(std::iter::once("inertia").chain(own).collect())
-                }
-            };
         }
     }
 }
@@ -315,6 +322,8 @@ fn fixed(name: String, antecedent: Option<String>, step: Step, comment: Vec<Stri
         values: Vec::new(),
         spring: None,
         home: 0.0,
+        of: None,
+        carries: None,
         comment,
     }
 }

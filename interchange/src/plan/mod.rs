@@ -14,7 +14,7 @@ use crate::{
     model::Pose,
 };
 use joints::Draft;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use names::Names;
 
 pub(crate) use names::word;
@@ -50,6 +50,10 @@ pub(crate) struct Joint {
     /// A spring: where it rests.
     pub(crate) spring: Option<f64>,
     pub(crate) home: f64,
+    /// The joint of the file that it is.
+    pub(crate) of: Option<usize>,
+    /// The bodies of the file that it carries, as a group of the network, and its frame in the world at home.
+    pub(crate) carries: Option<(usize, Pose)>,
     pub(crate) comment: Vec<String>,
 }
 
@@ -66,6 +70,8 @@ pub(crate) struct End {
 #[derive(Debug)]
 pub(crate) struct Plan {
     pub(crate) legs: Vec<Leg>,
+    /// The axes of the skeleton's joints in the world at home, also of those that follow others.
+    pub(crate) axes: Vec<Vector3<f64>>,
     /// Comments for the head of the description.
     pub(crate) notes: Vec<String>,
 }
@@ -80,19 +86,13 @@ impl Plan {
         bodies[0] = Some(("ground".to_owned(), Pose::identity()));
         let is_tree = layout.chains.is_empty();
         let mut leg_names = Names::default();
-        let mut legs = vec![skeleton(
-            files,
-            network,
-            layout,
-            is_tree,
-            &mut bodies,
-            &mut leg_names,
-        )];
+        let (leg, axes) = skeleton(files, network, layout, is_tree, &mut bodies, &mut leg_names);
+        let mut legs = vec![leg];
         for ear in &layout.chains {
             legs.push(chain(files, network, ear, &mut bodies, &mut leg_names)?);
         }
         let notes = notes(network, layout);
-        Some(Self { legs, notes })
+        Some(Self { legs, axes, notes })
     }
 }
 
@@ -103,7 +103,7 @@ fn skeleton(
     is_tree: bool,
     bodies: &mut Bodies,
     names: &mut Names,
-) -> Leg {
+) -> (Leg, Vec<Vector3<f64>>) {
     let mut draft = Draft::new(files, network);
     for &(edge, from) in &layout.skeleton {
         let groups = network.edges[edge].groups;
@@ -124,13 +124,15 @@ fn skeleton(
         )],
     };
     let joints = draft.joints(&framed, !is_tree);
-    Leg {
+    let axes = draft.nodes.iter().map(|node| node.direction).collect();
+    let leg = Leg {
         name,
         comment,
         base: None,
         joints,
         end: None,
-    }
+    };
+    (leg, axes)
 }
 
 fn chain(

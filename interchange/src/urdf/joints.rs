@@ -175,6 +175,13 @@ fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -
         joint.damping = dynamics.number(files, "damping", 0.0);
         joint.friction = dynamics.number(files, "friction", 0.0);
     }
+    if let Some(limit) = element.child("limit") {
+        let ends = ["lower", "upper"].map(|key| limit.number(files, key, 0.0));
+        let is_limited = element.get("type") != Some("continuous") && ends[0] < ends[1];
+        joint.range = (is_limited && kind != Kind::Ball).then_some(ends);
+        let speed = limit.number(files, "velocity", 0.0);
+        joint.speed = (speed > 0.0).then_some(speed);
+    }
     model.joints.push(joint);
     Some(model.joints.len() - 1)
 }

@@ -54,7 +54,7 @@ fn links<'e>(files: &Files, root: &'e Element) -> Links<'e> {
 }
 
 /// The frame of an element's `<origin>`, or of the element itself where it has `xyz` and `rpy`.
-fn origin(files: &Files, of: Option<&Element>) -> Pose {
+pub(crate) fn origin(files: &Files, of: Option<&Element>) -> Pose {
     let Some(element) = of else {
         return Pose::identity();
     };
@@ -74,10 +74,12 @@ fn body(files: &Files, link: &Element, parent: usize, placement: Pose) -> Body {
         name: link.get("name").unwrap_or_default().to_owned(),
         parent,
         placement,
+        place: Some(link.place.clone()),
         joint: None,
         inertia: link
             .child("inertial")
             .map(|inertial| inertia(files, inertial)),
+        has_unknown_inertia: false,
     }
 }
 

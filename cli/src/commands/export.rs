@@ -1,0 +1,117 @@
+//! `overact export`: identified parameters back into the robot's file that a description was made of.
+
+use super::import::{Choices, failure};
+use crate::{
+    failure::{Failure, Problem},
+    note::is_quiet,
+    output::{self, check, print},
+};
+use overact_codegen::diagnostic::Code;
+use overact_interchange::{Exported, export};
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+/// Arguments of the command.
+#[derive(Debug, clap::Args)]
+#[command(group(clap::ArgGroup::new("original").required(true).args(["mjcf", "urdf"])))]
+pub(crate) struct Arguments {
+    /// The MJCF that the description was made of
+    #[arg(long, value_name = "FILE")]
+    mjcf: Option<PathBuf>,
+    /// The URDF that the description was made of
+    #[arg(long, value_name = "FILE")]
+    urdf: Option<PathBuf>,
+    /// Standard parameters, as `overact identify --parameters` writes them
+    #[arg(long, value_name = "TOML")]
+    parameters: PathBuf,
+    /// The file to write instead of stdout; included files in which something changes are written beside it
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// As the description was imported
+    #[command(flatten)]
+    choices: Choices,
+}
+
+impl Arguments {
+    /// The robot's file.
+    pub(super) fn file(&self) -> &Path {
+        let all = self.mjcf.as_deref().or(self.urdf.as_deref());
+        all.unwrap_or(Path::new("-"))
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// What is wrong with one of the files, or an output that can't be written.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let file = arguments.file();
+    let output = output::file(arguments.output.as_ref());
+    let outputs: Vec<&Path> = output.into_iter().collect();
+    check(&[file, &arguments.parameters], &outputs)?;
+    let options = arguments.choices.options();
+    let exported = export(file, &arguments.parameters, &options).map_err(failure)?;
+    let is_mjcf = exported.format == overact_interchange::Format::Mjcf;
+    if is_mjcf != arguments.mjcf.is_some() {
+        let (is, key) = if is_mjcf {
+            ("MJCF", "--mjcf")
+        } else {
+            ("URDF", "--urdf")
+        };
+        let message = format!("the file is {is}: write `{key}`");
+        return Err(Failure::Usage(message));
+    }
+    let others = beside(file, output, &exported)?;
+    let all: Vec<&Path> = outputs.iter().copied().chain(others.iter().map(|(path, _)| path.as_path())).collect();
+    let inputs: Vec<&Path> = exported.inputs.iter().map(PathBuf::as_path).collect();
+    check(&inputs, &all)?;
+    tell(&exported);
+    match output {
+        Some(output) => {
+            let mut files = vec![(output.to_owned(), exported.text.into_bytes())];
+            files.extend(others);
+            output::write(files)
+        }
+        None => print(&exported.text),
+    }
+}
+
+/// Included files that changed, with the paths beside the output that stand to it as theirs to the file.
+fn beside(file: &Path, output: Option<&Path>, exported: &Exported) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let place = |(path, text): &(PathBuf, String)| {
+        let inside = path.strip_prefix(folder).ok().filter(|p| p.components().all(|c| c.as_os_str() != ".."));
+        match (inside, output) {
+            (Some(inside), Some(output)) => {
+                let to = output.parent().unwrap_or(Path::new("")).join(inside);
+                Ok((to, text.clone().into_bytes()))
+            }
+            _ => {
+                let message = "parameters stand in this included file, which changes, too";
+                let help = "write to a file in another folder, `-o NEW/robot.xml`; files that are included from outside of \
+                            the robot's own folder have to be moved into it before";
+                let problem = Problem::new(Code::OUTPUT, message).file(path.display().to_string());
+                Err(problem.help(help).into())
+            }
+        }
+    };
+    exported.included.iter().map(place).collect()
+}
+
+/// What changed, and what has no place in the file.
+fn tell(exported: &Exported) {
+    if is_quiet() {
+        return;
+    }
+    let mut lines = vec![match exported.changed.is_empty() {
+        true => "nothing differs from the file".to_owned(),
+        false => format!("changed: {}", exported.changed.join(", ")),
+    }];
+    lines.extend(exported.notes.iter().cloned());
+    for line in lines {
+        // A closed stderr is no reason to stop.
+        let _ = writeln!(io::stderr(), "note: {line}");
+    }
+}

@@ -1,0 +1,116 @@
+//! The successive angles of a ball, or of the universal joint that stands for it on a rod, and their rates.
+
+use crate::{
+    assembly::{
+        motion::State,
+        network::{Edge, Network},
+    },
+    model::Kind,
+};
+use nalgebra::{DMatrix, Matrix3, Rotation3, Unit, Vector3};
+
+/// A ball as the description has it: turns about axes one after the other, the first of which is fixed on the body
+/// that it starts from. All vectors are those of the world at home.
+pub(super) struct Ball {
+    from: usize,
+    to: usize,
+    axes: Vec<Vector3<f64>>,
+    /// Of a rod, which has two angles, the direction of its line at home.
+    line: Option<Vector3<f64>>,
+}
+
+impl Ball {
+    /// The ball of an edge that is gone along from one group to another, about these axes at home.
+    pub(super) fn new(
+        network: &Network<'_>,
+        edge: &Edge,
+        from: usize,
+        to: usize,
+        axes: &[Vector3<f64>],
+    ) -> Option<Self> {
+        let line = (axes.len() == 2).then(|| network.line(to, &network.states[0]));
+        let is_ball = edge.kind == Kind::Ball && (2..=3).contains(&axes.len());
+        is_ball.then(|| Self {
+            from,
+            to,
+            axes: axes.to_vec(),
+            line,
+        })
+    }
+
+    /// How far a group has turned from home.
+    fn turned(network: &Network<'_>, group: usize, state: &State) -> Rotation3<f64> {
+        let body = network.groups[group].bodies[0];
+        state.poses[body].rotation * network.states[0].poses[body].rotation.inverse()
+    }
+
+    /// Its angles, zero at home.
+    pub(super) fn angles(&self, network: &Network<'_>, state: &State) -> Vec<f64> {
+        let [a, b] = [self.from, self.to].map(|group| Self::turned(network, group, state));
+        let relative = a.inverse() * b;
+        match &self.line {
+            None => {
+                let third = self.axes[0].cross(&self.axes[1]);
+                let basis = Matrix3::from_columns(&[self.axes[0], self.axes[1], third]);
+                let m = basis.transpose() * relative.matrix() * basis;
+                // Rx(a) Ry(b) Rz(c).
+                let sign = third.dot(&self.axes[2]).signum();
+                let second = m[(0, 2)].clamp(-1.0, 1.0).asin();
+                vec![
+                    (-m[(1, 2)]).atan2(m[(2, 2)]),
+                    second,
+                    sign * (-m[(0, 1)]).atan2(m[(0, 0)]),
+                ]
+            }
+            Some(line) => {
+                let first = self.axes[0];
+                let across = (line - first * first.dot(line)).normalize();
+                let sign = first.cross(&across).dot(&self.axes[1]).signum();
+                let now = relative * line;
+                let polar = |d: &Vector3<f64>| d.dot(&first).clamp(-1.0, 1.0).acos();
+                let turn = now.dot(&first.cross(&across)).atan2(now.dot(&across));
+                vec![turn, sign * (polar(&now) - polar(line))]
+            }
+        }
+    }
+
+    /// The rates of its angles for each motion; `twists` has those of the groups.
+    pub(super) fn rates(
+        &self,
+        network: &Network<'_>,
+        state: &State,
+        twists: &[DMatrix<f64>],
+    ) -> Option<Vec<Vec<f64>>> {
+        let angles = self.angles(network, state);
+        let mut turned = Self::turned(network, self.from, state);
+        let mut axes = Vec::new();
+        for (axis, angle) in self.axes.iter().zip(&angles) {
+            axes.push(turned * axis);
+            turned *= Rotation3::from_axis_angle(&Unit::new_normalize(*axis), *angle);
+        }
+        let relative = twists[self.to].rows(3, 3) - twists[self.from].rows(3, 3);
+        let columns: Vec<Vector3<f64>> = match self.line {
+            None => axes.clone(),
+            Some(_) => {
+                let line = network.line(self.to, state);
+                axes.iter().map(|axis| axis.cross(&line)).collect()
+            }
+        };
+        let matrix = DMatrix::from_fn(3, columns.len(), |i, j| columns[j][i]);
+        let inverse = matrix.pseudo_inverse(1e-9).ok()?;
+        let moved = DMatrix::from_fn(3, relative.ncols(), |i, j| {
+            let rate = Vector3::new(relative[(0, j)], relative[(1, j)], relative[(2, j)]);
+            match self.line {
+                None => rate[i],
+                Some(_) => rate.cross(&network.line(self.to, state))[i],
+            }
+        });
+        let rates = inverse * moved;
+        Some(
+            rates
+                .row_iter()
+                .map(|row| row.iter().copied().collect())
+                .collect(),
+        )
+    }
+}

@@ -1,0 +1,127 @@
+//! A run, gone along in small steps: whether the loops close all the way, away from singular configurations and
+//! inside the limits of all joints.
+
+use super::{guide::Guide, harmonics::Shape};
+use crate::{assembly::motion::State, model::Kind};
+use nalgebra::{DMatrix, DVector};
+
+/// What stands in the way of a run.
+pub(super) enum Trouble {
+    /// A joint beyond its limits, and how much each coordinate does to it.
+    Limit { joint: usize, share: Vec<f64> },
+    /// A configuration that is nearly singular, or in which the loops do not close.
+    Singular,
+}
+
+/// The configurations of a run over one period.
+pub(super) struct Course {
+    pub(super) stops: Vec<Stop>,
+}
+
+/// A configuration of a run.
+pub(super) struct Stop {
+    pub(super) state: State,
+    /// Velocities of the tree's coordinates for each coordinate's rate.
+    pub(super) tree: DMatrix<f64>,
+    /// Those of the driven joints.
+    pub(super) actuators: DMatrix<f64>,
+    /// Rates and accelerations of the coordinates, in periods of the first harmonic.
+    pub(super) rates: DVector<f64>,
+    pub(super) accelerations: DVector<f64>,
+}
+
+/// Largest speed of a joint of which the file tells none, rad/s and m/s.
+const USUAL: [f64; 2] = [6.0, 1.0];
+/// Steps of a period, and those from home to its start.
+const STEPS: u32 = 120;
+const APPROACH: u32 = 8;
+
+impl Course {
+    /// The run of these shapes and sizes about home.
+    pub(super) fn along(
+        guide: &Guide<'_, '_>,
+        shapes: &[Shape],
+        sizes: &[f64],
+    ) -> Result<Self, Trouble> {
+        let wanted = |part: f64| {
+            let all = shapes
+                .iter()
+                .zip(sizes)
+                .map(|(shape, size)| shape.at(part).0 * size);
+            DVector::from_iterator(sizes.len(), all)
+        };
+        let begin = wanted(0.0);
+        let mut state = guide.network.states[0].clone();
+        let mut now = DVector::zeros(sizes.len());
+        let mut stops = Vec::new();
+        for step in 1..=APPROACH + STEPS {
+            let rates = guide.rates(&state).ok_or(Trouble::Singular)?;
+            let next = match step <= APPROACH {
+                true => &begin * (f64::from(step) / f64::from(APPROACH)),
+                false => wanted(f64::from(step - APPROACH) / f64::from(STEPS)),
+            };
+            state = guide
+                .step(&state, &rates, &(&next - &now))
+                .ok_or(Trouble::Singular)?;
+            // Joints of the file are told where they stand, so that small errors do not add up.
+            let positions = guide.positions(&state).into_iter().enumerate();
+            now =
+                DVector::from_iterator(sizes.len(), positions.map(|(at, p)| p.unwrap_or(next[at])));
+            let rates = guide.rates(&state).ok_or(Trouble::Singular)?;
+            if let Some(joint) = guide.beyond(&state) {
+                let share = share(guide, &rates.tree, joint, sizes);
+                return Err(Trouble::Limit { joint, share });
+            }
+            if step >= APPROACH {
+                let part = f64::from(step - APPROACH) / f64::from(STEPS);
+                let of = |which: fn((f64, f64, f64)) -> f64| {
+                    let all = shapes
+                        .iter()
+                        .zip(sizes)
+                        .map(|(shape, size)| which(shape.at(part)) * size);
+                    DVector::from_iterator(sizes.len(), all)
+                };
+                stops.push(Stop {
+                    state: state.clone(),
+                    tree: rates.tree,
+                    actuators: rates.actuators,
+                    rates: of(|v| v.1),
+                    accelerations: of(|v| v.2),
+                });
+            }
+        }
+        Ok(Self { stops })
+    }
+
+    /// The largest speed of any joint as a part of that which it may have, at one period in a second.
+    pub(super) fn fastest(&self, guide: &Guide<'_, '_>) -> f64 {
+        let joints = &guide.network.model.joints;
+        let coordinates = &guide.motion.coordinates;
+        let of = |stop: &Stop| {
+            let speeds = &stop.tree * &stop.rates;
+            let parts = speeds.iter().zip(coordinates).map(|(speed, c)| {
+                let joint = &joints[c.joint];
+                let usual = match joint.kind {
+                    Kind::Prismatic => USUAL[1],
+                    Kind::Revolute | Kind::Ball => USUAL[0],
+                };
+                speed.abs() / joint.speed.map_or(usual, |own| 0.8 * own)
+            });
+            parts.fold(0.0, f64::max)
+        };
+        self.stops.iter().map(of).fold(0.0, f64::max)
+    }
+}
+
+/// How much each coordinate moves a joint where the run meets its limit.
+fn share(guide: &Guide<'_, '_>, tree: &DMatrix<f64>, joint: usize, sizes: &[f64]) -> Vec<f64> {
+    let follow = guide.network.model.joints[joint].follow;
+    let leader = follow.map_or(joint, |f| f.joint);
+    let row = guide
+        .motion
+        .coordinates
+        .iter()
+        .position(|c| c.joint == leader);
+    let part = |at: usize| row.map_or(1.0, |row| (tree[(row, at)] * sizes[at]).abs());
+    (0..sizes.len()).map(part).collect()
+}

@@ -1,0 +1,224 @@
+//! Which motion of the file's tree goes with a motion of the coordinates.
+
+use super::balls::Ball;
+use crate::{
+    assembly::{
+        ears::freedoms,
+        layout::{Layout, skeleton_rates},
+        motion::{Motion, State},
+        network::{Network, Origin},
+    },
+    model::Kind,
+    plan::Plan,
+};
+use nalgebra::{DMatrix, DVector};
+
+/// A robot that is led along its coordinates.
+pub(super) struct Guide<'g, 'm> {
+    pub(super) network: &'g Network<'m>,
+    layout: &'g Layout,
+    /// Balls of the skeleton, by their edge.
+    balls: Vec<(usize, Ball)>,
+    pub(super) motion: Motion<'m>,
+    /// Driven joints of the file.
+    pub(super) actuators: Vec<usize>,
+    /// Smallest and largest position of each joint, home between them.
+    pub(super) limits: Vec<Option<[f64; 2]>>,
+    smallest: [f64; 2],
+}
+
+/// Velocities in a configuration for a unit rate of each coordinate.
+pub(super) struct Rates {
+    /// Of the tree's coordinates.
+    pub(super) tree: DMatrix<f64>,
+    /// Of the driven joints.
+    pub(super) actuators: DMatrix<f64>,
+}
+
+/// How much nearer to a singular configuration than home a motion may come.
+const NEARER: f64 = 0.35;
+/// A home that is nearer to a limit than this stands on it, rad or m.
+const AT_LIMIT: f64 = 1e-3;
+
+impl<'g, 'm> Guide<'g, 'm> {
+    /// A guide; none where the coordinates do not determine the motion at home.
+    pub(super) fn new(network: &'g Network<'m>, layout: &'g Layout, plan: &Plan) -> Option<Self> {
+        let model = network.model;
+        let limits = model.joints.iter().enumerate().map(|(at, joint)| {
+            let home = network.states[0].positions[at];
+            let [low, high] = joint.range?;
+            let low = if low > home - AT_LIMIT {
+                f64::NEG_INFINITY
+            } else {
+                low
+            };
+            let high = if high < home + AT_LIMIT {
+                f64::INFINITY
+            } else {
+                high
+            };
+            Some([low, high])
+        });
+        let actuators = (0..model.joints.len())
+            .filter(|&at| model.joints[at].actuated && model.joints[at].kind != Kind::Ball);
+        let mut own = Self {
+            network,
+            layout,
+            balls: balls(network, layout, plan)?,
+            motion: Motion::new(model),
+            actuators: actuators.collect(),
+            limits: limits.collect(),
+            smallest: [0.0; 2],
+        };
+        own.smallest = own.raw(&network.states[0])?.1.map(|value| NEARER * value);
+        (own.smallest[0] > 1e-9).then_some(own)
+    }
+
+    /// How many coordinates there are.
+    pub(super) fn count(&self) -> usize {
+        self.network.mobility
+    }
+
+    /// Velocities in a configuration; none where it is nearly singular.
+    pub(super) fn rates(&self, state: &State) -> Option<Rates> {
+        let (rates, sizes) = self.raw(state)?;
+        (sizes[0] >= self.smallest[0] && sizes[1] >= self.smallest[1]).then_some(rates)
+    }
+
+    /// Velocities, and the smallest singular values of coordinates and of actuators.
+    fn raw(&self, state: &State) -> Option<(Rates, [f64; 2])> {
+        let basis = self.network.motions(&self.motion, state);
+        let bodies = self.motion.twists(state);
+        let groups: Vec<DMatrix<f64>> = self
+            .network
+            .groups
+            .iter()
+            .map(|group| &bodies[group.bodies[0]] * &basis)
+            .collect();
+        let own = self.own_rates(state, &groups)?;
+        if own.nrows() != own.ncols() || own.nrows() != self.count() {
+            return None;
+        }
+        let size = own.clone().singular_values().amin();
+        let tree = &basis * own.try_inverse()?;
+        let actuators = DMatrix::from_fn(self.actuators.len(), tree.ncols(), |i, j| {
+            let joint = self.actuators[i];
+            let follow = self.network.model.joints[joint].follow;
+            let (leader, factor) = follow.map_or((joint, 1.0), |f| (f.joint, f.factor));
+            let at = self
+                .motion
+                .coordinates
+                .iter()
+                .position(|c| c.joint == leader);
+            at.map_or(0.0, |at| factor * tree[(at, j)])
+        });
+        let driven = match actuators.nrows() >= actuators.ncols() {
+            true => actuators.clone().singular_values().amin(),
+            false => 0.0,
+        };
+        Some((Rates { tree, actuators }, [size, driven]))
+    }
+
+    /// The rates of the coordinates for each motion.
+    fn own_rates(&self, state: &State, groups: &[DMatrix<f64>]) -> Option<DMatrix<f64>> {
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for step in &self.layout.skeleton {
+            match self.balls.iter().find(|(edge, _)| *edge == step.0) {
+                Some((_, ball)) => rows.extend(ball.rates(self.network, state, groups)?),
+                None => {
+                    let own = skeleton_rates(self.network, &[*step], state, groups);
+                    rows.extend(
+                        own.row_iter()
+                            .map(|row| row.iter().copied().collect::<Vec<_>>()),
+                    );
+                }
+            }
+        }
+        let columns = groups.first().map_or(0, DMatrix::ncols);
+        Some(DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j]))
+    }
+
+    /// The configuration behind a step of the coordinates; none where the loops do not close there.
+    pub(super) fn step(&self, state: &State, rates: &Rates, by: &DVector<f64>) -> Option<State> {
+        let moved = self.motion.moved_by(state, &(&rates.tree * by));
+        self.motion.closed(&moved).ok()
+    }
+
+    /// How far from home the coordinates stand; of closures, which are no joints of the file, nothing is told.
+    pub(super) fn positions(&self, state: &State) -> Vec<Option<f64>> {
+        let of = |&(index, from): &(usize, usize)| {
+            if let Some((_, ball)) = self.balls.iter().find(|(edge, _)| *edge == index) {
+                return ball
+                    .angles(self.network, state)
+                    .into_iter()
+                    .map(Some)
+                    .collect();
+            }
+            let edge = &self.network.edges[index];
+            let to = edge.groups[usize::from(edge.groups[0] == from)];
+            let count = freedoms(self.network, index, to, true);
+            match edge.origin {
+                Origin::Joint(joint) => {
+                    let home = self.network.states[0].positions[joint];
+                    vec![Some(state.positions[joint] - home); count]
+                }
+                Origin::Closure(_) => vec![None; count],
+            }
+        };
+        self.layout.skeleton.iter().flat_map(of).collect()
+    }
+
+    /// The joint that stands beyond its limits.
+    pub(super) fn beyond(&self, state: &State) -> Option<usize> {
+        let is_beyond = |joint: usize| {
+            self.limits[joint].is_some_and(|[low, high]| {
+                let at = state.positions[joint];
+                at < low || at > high
+            })
+        };
+        (0..self.limits.len()).find(|&joint| is_beyond(joint))
+    }
+
+    /// The numbers of driven joints, in another order.
+    pub(super) fn actuators_in_order(&self, joints: &[usize]) -> Vec<usize> {
+        let at = |joint: &usize| self.actuators.iter().position(|own| own == joint);
+        joints.iter().filter_map(at).collect()
+    }
+
+    /// Limits that home stands on, and which the motion therefore passes.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let joints = self.network.model.joints.iter().enumerate();
+        let passed =
+            joints.filter(|(at, joint)| joint.range.is_some() && self.limits[*at] != joint.range);
+        let names: Vec<String> = passed
+            .map(|(_, joint)| format!("`{}`", joint.name))
+            .collect();
+        match names.is_empty() {
+            true => Vec::new(),
+            false => vec![format!(
+                "Home stands on a limit of {}, which these runs pass: `overact import --home` starts elsewhere.",
+                names.join(", ")
+            )],
+        }
+    }
+}
+
+/// The balls of the skeleton with the axes that the description gives them; none where it has others.
+fn balls(network: &Network<'_>, layout: &Layout, plan: &Plan) -> Option<Vec<(usize, Ball)>> {
+    let mut axes = plan.axes.iter();
+    let mut balls = Vec::new();
+    for &(index, from) in &layout.skeleton {
+        let edge = &network.edges[index];
+        let to = edge.groups[usize::from(edge.groups[0] == from)];
+        let count = if edge.kind == Kind::Ball {
+            freedoms(network, index, to, true)
+        } else {
+            1
+        };
+        let own: Vec<_> = axes.by_ref().take(count).copied().collect();
+        if edge.kind == Kind::Ball {
+            balls.push((index, Ball::new(network, edge, from, to, &own)?));
+        }
+    }
+    Some(balls)
+}

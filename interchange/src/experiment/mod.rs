@@ -1,0 +1,186 @@
+//! A virtual experiment for a robot that came without one: motions inside the limits of its joints that keep off
+//! singular configurations, and noise in proportion to its torques.
+
+mod balls;
+mod course;
+mod guide;
+mod harmonics;
+mod torques;
+
+use crate::{
+    assembly::{layout::Layout, network::Network},
+    model::Kind,
+    plan::{Leg, Plan},
+};
+use course::{Course, Trouble};
+use guide::Guide;
+use harmonics::{PERIODS, Shape, ready};
+
+/// What `overact simulate` needs of a robot.
+#[derive(Debug)]
+pub(crate) struct Experiment {
+    /// Frequency of the first harmonic, Hz.
+    pub(crate) fundamental: f64,
+    /// Duration of each run, s.
+    pub(crate) duration: f64,
+    /// The runs to identify from, and the last one, which is held out.
+    pub(crate) runs: [Vec<Term>; RUNS],
+    /// Resolution of each actuator's encoder, rad or m, in the order of the description.
+    pub(crate) encoders: Vec<f64>,
+    /// Standard deviation of each actuator's measured torque, N m or N.
+    pub(crate) noise: Vec<f64>,
+    /// What a reader has to know of it.
+    pub(crate) notes: Vec<String>,
+}
+
+/// A harmonic of a coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Term {
+    pub(crate) coordinate: String,
+    pub(crate) is_angle: bool,
+    pub(crate) harmonic: usize,
+    /// Amplitude, degrees or metres.
+    pub(crate) amplitude: f64,
+    /// Phase, whole degrees.
+    pub(crate) phase: f64,
+}
+
+/// The held-out run is that much faster than the other.
+pub(crate) const FASTER: f64 = 1.2;
+
+/// Runs, the last of which is held out.
+const RUNS: usize = 3;
+/// Most coordinates for which runs are sought.
+const MOST: usize = 40;
+/// Largest displacement of a coordinate, rad and m.
+const LARGEST: [f64; 2] = [0.5, 0.1];
+/// Smallest one below which there is no room for a motion.
+const SMALLEST: f64 = 4e-3;
+/// Largest ratio of the inertias that the coordinates feel along a run.
+const GROWTH: f64 = 8.0;
+/// How often a motion that meets a limit is made smaller.
+const TRIES: usize = 30;
+/// Frequencies of the first harmonic, Hz.
+const FUNDAMENTALS: [f64; 7] = [1.0, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05];
+
+/// An experiment, or why there is none.
+pub(crate) fn design(
+    network: &Network<'_>,
+    layout: &Layout,
+    plan: &Plan,
+) -> Result<Experiment, String> {
+    let coordinates = coordinates(plan);
+    if coordinates.len() > MOST {
+        return Err(format!("it has more than {MOST} coordinates"));
+    }
+    let guide = Guide::new(network, layout, plan).ok_or("home is a singular configuration")?;
+    if coordinates.len() != guide.count() {
+        return Err("its coordinates are not those of joints of the file".to_owned());
+    }
+    let shapes = |run: usize| {
+        (0..coordinates.len())
+            .map(move |at| Shape::new(at, run))
+            .collect()
+    };
+    let shapes: [Vec<Shape>; RUNS] = std::array::from_fn(shapes);
+    let mut sizes: Vec<f64> = coordinates
+        .iter()
+        .map(|(_, is_angle)| LARGEST[usize::from(!is_angle)])
+        .collect();
+    let mut courses = Vec::new();
+    let is_tree = network.model.closures.is_empty();
+    let mut tries = 0;
+    while courses.len() < RUNS {
+        let reason = match Course::along(&guide, &shapes[courses.len()], &sizes) {
+            // A tree has no configuration in which a small motion becomes a large one.
+            Ok(course) if is_tree || torques::growth(&guide, &course) < GROWTH => {
+                courses.push(course);
+                continue;
+            }
+            Ok(_) => {
+                sizes.iter_mut().for_each(|size| *size *= 0.8);
+                "its inertia grows fast".to_owned()
+            }
+            Err(Trouble::Limit { joint, share }) => {
+                shorten(&mut sizes, &share);
+                format!("`{}` meets its limit", network.model.joints[joint].name)
+            }
+            Err(Trouble::Singular) => {
+                sizes.iter_mut().for_each(|size| *size *= 0.8);
+                "a singular configuration is near".to_owned()
+            }
+        };
+        // A smaller motion is another one: both are gone along again.
+        courses.clear();
+        tries += 1;
+        if tries > TRIES || sizes.iter().all(|size| *size < SMALLEST) {
+            return Err(format!("there is no room around home: {reason}"));
+        }
+    }
+    let speeds = courses.iter().map(|course| course.fastest(&guide));
+    let fastest = speeds.fold(0.0, f64::max);
+    let fundamental = FUNDAMENTALS
+        .iter()
+        .copied()
+        .find(|f| f * FASTER * fastest <= 1.0);
+    let fundamental = fundamental.unwrap_or(FUNDAMENTALS[FUNDAMENTALS.len() - 1]);
+    let sizes_of_torques = torques::sizes(&guide, &courses[0], fundamental)
+        .ok_or("the masses and inertias of the file do not determine how it accelerates")?;
+    let order = guide.actuators_in_order(&actuators(plan));
+    let noise = order
+        .iter()
+        .map(|&at| ready(0.005 * sizes_of_torques[at], 1))
+        .collect();
+    let encoders = order
+        .iter()
+        .map(|&at| match network.model.joints[guide.actuators[at]].kind {
+            Kind::Prismatic => 1e-6,
+            Kind::Revolute | Kind::Ball => 1e-5,
+        });
+    let terms = |shapes: &[Shape]| {
+        let named = coordinates.iter().zip(shapes).zip(&sizes);
+        named
+            .flat_map(|(((name, is_angle), shape), size)| shape.terms(name, *is_angle, *size))
+            .collect()
+    };
+    Ok(Experiment {
+        fundamental,
+        duration: (PERIODS / fundamental).max(10.0).ceil(),
+        runs: shapes.each_ref().map(|shapes| terms(shapes)),
+        encoders: encoders.collect(),
+        noise,
+        notes: guide.notes(),
+    })
+}
+
+/// The coordinates of the description: joints of its skeleton, and whether they are angles.
+fn coordinates(plan: &Plan) -> Vec<(String, bool)> {
+    let moved = plan
+        .legs
+        .iter()
+        .filter(|leg| leg.end.is_none())
+        .flat_map(|leg| &leg.joints);
+    let moved = moved.filter(|joint| joint.kind != "fixed" && joint.follows.is_none());
+    moved
+        .map(|joint| (joint.name.clone(), joint.kind == "revolute"))
+        .collect()
+}
+
+/// The joints of the file that are driven, in the order of the description.
+fn actuators(plan: &Plan) -> Vec<usize> {
+    let joints = plan.legs.iter().flat_map(|leg: &Leg| &leg.joints);
+    joints
+        .filter(|joint| joint.actuated)
+        .filter_map(|joint| joint.of)
+        .collect()
+}
+
+/// Makes those coordinates smaller that move a joint most towards its limit.
+fn shorten(sizes: &mut [f64], share: &[f64]) {
+    let largest = share.iter().copied().fold(0.0, f64::max);
+    for (size, share) in sizes.iter_mut().zip(share) {
+        if *share >= 0.5 * largest {
+            *size *= 0.8;
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! How large torques are along a run: inertia and weight, shared out to the motors, and their friction.
+
+use super::{
+    course::{Course, Stop},
+    guide::Guide,
+};
+use crate::model::Inertia;
+use nalgebra::{DMatrix, DVector, Matrix6, Vector3};
+
+/// Root mean square of each driven joint's torque at a frequency of the first harmonic, Hz. None where the masses and
+/// inertias leave an acceleration free.
+pub(super) fn sizes(guide: &Guide<'_, '_>, course: &Course, fundamental: f64) -> Option<Vec<f64>> {
+    let model = guide.network.model;
+    let mut sums = vec![0.0; guide.actuators.len()];
+    for stop in &course.stops {
+        let (mass, weight) = reduced(guide, stop);
+        if !is_positive(&mass) {
+            return None;
+        }
+        let forces = mass * &stop.accelerations * fundamental.powi(2) - weight;
+        // Of all torques that do this the smallest, as a controller without internal torques has them.
+        let shared = stop.actuators.transpose().pseudo_inverse(1e-12).ok()? * forces;
+        for (sum, torque) in sums.iter_mut().zip(shared.iter()) {
+            *sum += torque * torque;
+        }
+    }
+    #[allow(clippy::cast_precision_loss, reason = "some hundred stops")]
+    let count = course.stops.len() as f64;
+    let driven = guide.actuators.iter().zip(sums);
+    let sizes: Vec<f64> = driven
+        .map(|(&joint, sum)| (sum / count).sqrt() + model.joints[joint].friction)
+        .collect();
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
+    // A motor without any torque still has a sensor with noise.
+    let noisy = sizes.iter().map(|size| size.max(1e-3 * largest).max(1e-6));
+    Some(noisy.collect())
+}
+
+/// By how much the inertia that the coordinates feel grows along a run, in the direction in which it grows most: a
+/// controller is laid out for a robot that stays about the same. One where masses leave an acceleration free.
+pub(super) fn growth(guide: &Guide<'_, '_>, course: &Course) -> f64 {
+    let masses = course.stops.iter().map(|stop| reduced(guide, stop).0);
+    let masses: Vec<DMatrix<f64>> = masses.collect();
+    let Some(factor) = masses.first().and_then(|first| first.clone().cholesky()) else {
+        return 1.0;
+    };
+    let Some(inverse) = factor.l().try_inverse() else {
+        return 1.0;
+    };
+    let sizes = masses.iter().map(|mass| {
+        let beside = &inverse * mass * inverse.transpose();
+        beside.symmetric_eigenvalues().amax()
+    });
+    let (smallest, largest) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
+        (low.min(size), high.max(size))
+    });
+    largest / smallest.max(f64::MIN_POSITIVE)
+}
+
+/// Inertia and weight that the coordinates feel.
+fn reduced(guide: &Guide<'_, '_>, stop: &Stop) -> (DMatrix<f64>, DVector<f64>) {
+    let model = guide.network.model;
+    let gravity = Vector3::from(model.gravity);
+    let twists = guide.motion.twists(&stop.state);
+    let count = guide.motion.coordinates.len();
+    let (mut mass, mut weight) = (DMatrix::zeros(count, count), DVector::zeros(count));
+    for (at, body) in model.bodies.iter().enumerate() {
+        let Some(inertia) = body.inertia.map(|own| own.seen(&stop.state.poses[at])) else {
+            continue;
+        };
+        mass += twists[at].transpose() * spatial(&inertia) * &twists[at];
+        let force = gravity * inertia.mass;
+        let moment = inertia.centre.coords.cross(&force);
+        let wrench = DVector::from_iterator(6, force.iter().chain(moment.iter()).copied());
+        weight += twists[at].transpose() * wrench;
+    }
+    for (at, coordinate) in guide.motion.coordinates.iter().enumerate() {
+        mass[(at, at)] += model.joints[coordinate.joint].armature;
+    }
+    let tree = &stop.tree;
+    (tree.transpose() * mass * tree, tree.transpose() * weight)
+}
+
+/// Whether every acceleration needs a force.
+fn is_positive(mass: &DMatrix<f64>) -> bool {
+    let scale: Vec<f64> = mass.diagonal().iter().map(|v| v.sqrt()).collect();
+    let scaled = DMatrix::from_fn(mass.nrows(), mass.ncols(), |i, j| {
+        mass[(i, j)] / (scale[i] * scale[j])
+    });
+    scaled.iter().all(|v| v.is_finite()) && scaled.symmetric_eigenvalues().amin() > 1e-9
+}
+
+/// Inertia about the world's origin of a body that is seen from there, for a velocity of the point there and a rate.
+fn spatial(inertia: &Inertia) -> Matrix6<f64> {
+    let mut all = Matrix6::zeros();
+    let cross = inertia.centre.coords.cross_matrix() * inertia.mass;
+    all.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(inertia.mass);
+    all.fixed_view_mut::<3, 3>(0, 3).copy_from(&-cross);
+    all.fixed_view_mut::<3, 3>(3, 0).copy_from(&cross);
+    all.fixed_view_mut::<3, 3>(3, 3)
+        .copy_from(&inertia.about_origin());
+    all
+}

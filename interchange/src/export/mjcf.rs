@@ -1,0 +1,48 @@
+//! Parameters in MJCF: attributes of `<inertial>` and `<joint>`.
+
+use super::patch::{Patch, numbers};
+use crate::model::Inertia;
+use roxmltree::Node;
+
+/// The attribute of a joint that a parameter is.
+pub(super) fn attribute(symbol: &str) -> Option<&'static str> {
+    Some(match symbol {
+        "ia" => "armature",
+        "fv" => "damping",
+        "fs" => "frictionloss",
+        "k" => "stiffness",
+        _ => return None,
+    })
+}
+
+/// A body's mass, centre and inertia about it in the axes of the body, which `fullinertia` says without a turn.
+pub(super) fn inertia(patch: &mut Patch, text: &str, body: Node<'_, '_>, own: &Inertia) {
+    let Some(inertial) = body.children().find(|child| child.has_tag_name("inertial")) else {
+        return;
+    };
+    let t = &own.tensor;
+    patch.set(inertial, "pos", &numbers(own.centre.coords.as_slice()));
+    patch.set(inertial, "mass", &numbers(&[own.mass]));
+    let full = [
+        t[(0, 0)],
+        t[(1, 1)],
+        t[(2, 2)],
+        t[(0, 1)],
+        t[(0, 2)],
+        t[(1, 2)],
+    ];
+    match inertial.has_attribute("fullinertia") {
+        true => patch.set(inertial, "fullinertia", &numbers(&full)),
+        false => patch.rename(inertial, "diaginertia", "fullinertia", &numbers(&full)),
+    }
+    for turn in ["quat", "axisangle", "xyaxes", "zaxis", "euler"] {
+        patch.remove(text, inertial, turn);
+    }
+}
+
+/// A parameter of a joint.
+pub(super) fn joint(patch: &mut Patch, joint: Node<'_, '_>, values: &[(&'static str, f64)]) {
+    for (name, value) in values {
+        patch.set(joint, name, &numbers(&[*value]));
+    }
+}

@@ -1,0 +1,334 @@
+//! The export of identified parameters into the file that a description was made of.
+//!
+//! The file is imported again, which tells where in it each body and joint of the description stands, and what it
+//! says of them; what differs from that is changed in the text, and nothing else.
+
+mod complete;
+mod mjcf;
+mod patch;
+mod share;
+mod urdf;
+
+use crate::{
+    assembly::network::Network,
+    files::{Errors, Files},
+    import::{self, Format, Robot},
+    options::Options,
+    plan::{Joint, Plan},
+};
+use overact_codegen::{
+    Source,
+    description::{self, parse_parameters},
+};
+use patch::{Patch, element_at};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+};
+
+/// Files with other parameters.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Exported {
+    /// The format of the file.
+    pub format: Format,
+    /// The text of the file itself.
+    pub text: String,
+    /// Files that it includes and in which something changed, with their paths and new texts.
+    pub included: Vec<(PathBuf, String)>,
+    /// All files that were read.
+    pub inputs: Vec<PathBuf>,
+    /// Bodies and joints of which the file says something else now.
+    pub changed: Vec<String>,
+    /// What the file has no place for, or can't be; sentences.
+    pub notes: Vec<String>,
+}
+
+/// Puts parameters, a TOML text as `overact identify --parameters` writes it, into the file of a robot. Options are
+/// those of the import, since names of parameters depend on them; parameters that are not given stay as they are.
+///
+/// # Errors
+/// All that is wrong with one of the files, each at its line.
+pub fn export(path: &Path, parameters: &Path, options: &Options) -> Result<Exported, Errors> {
+    let files = Files::default();
+    let exported = exported(&files, path, parameters, options);
+    match exported.filter(|_| files.is_clean()) {
+        Some(exported) => Ok(exported),
+        None => Err(files.into_errors()),
+    }
+}
+
+fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) -> Option<Exported> {
+    let (model, format) = import::model(files, path, options)?;
+    if format == Format::Par {
+        let help = "parameters have the names of the description: write them in the place of the file's symbols";
+        files.refuse("parameters are not put back into .par files", help);
+        return None;
+    }
+    let robot = Robot::new(files, &model, options)?;
+    // Names of parameters do not depend on a virtual experiment.
+    let text = robot.toml(&Err("none is needed".to_owned()), path, options);
+    let values = values(files, parameters, &text)?;
+    let mut own = Export {
+        files,
+        network: &robot.network,
+        format,
+        values,
+        told: BTreeSet::new(),
+        wanted: Wanted::default(),
+        notes: Vec::new(),
+    };
+    own.gather(&robot.plan);
+    let changed = own.wanted.names.clone();
+    let mut notes = std::mem::take(&mut own.notes);
+    notes.extend(own.left_out());
+    let mut texts = own.patched()?;
+    let mut included = Vec::new();
+    let text = texts.remove(&0).unwrap_or_else(|| files.text(0));
+    for (file, text) in texts {
+        included.push((files.path(file), text));
+    }
+    let inputs = files.paths();
+    Some(Exported {
+        format,
+        text,
+        included,
+        inputs,
+        changed,
+        notes,
+    })
+}
+
+/// The parameters that a file gives, by the names of the description.
+fn values(files: &Files, parameters: &Path, toml: &str) -> Option<BTreeMap<String, f64>> {
+    let file = files.read(parameters, None)?;
+    let source = Source::new(files.name(file), files.text(file));
+    let Ok(description) = description::parse(&Source::new("imported.toml", toml)) else {
+        files.refuse(
+            "the description of the file can't be read",
+            "`overact import` and `overact check` say why",
+        );
+        return None;
+    };
+    match parse_parameters(&source, &description) {
+        Ok(values) => Some(
+            values
+                .into_iter()
+                .map(|one| (one.name.value, one.value))
+                .collect(),
+        ),
+        Err(errors) => {
+            files.note(file, &errors);
+            None
+        }
+    }
+}
+
+/// What shall change, by the place of the element that says it.
+#[derive(Debug, Default)]
+struct Wanted {
+    inertias: BTreeMap<(usize, usize), crate::model::Inertia>,
+    joints: BTreeMap<(usize, usize), Vec<(&'static str, f64)>>,
+    names: Vec<String>,
+}
+
+struct Export<'e, 'm> {
+    files: &'e Files,
+    network: &'e Network<'m>,
+    format: Format,
+    values: BTreeMap<String, f64>,
+    /// Names of parameters that found their place, or stay as they are.
+    told: BTreeSet<String>,
+    wanted: Wanted,
+    notes: Vec<String>,
+}
+
+/// Moments and mass of a body in the order of their columns.
+const INERTIAL: [&str; 10] = ["xx", "xy", "xz", "yy", "yz", "zz", "mx", "my", "mz", "m"];
+/// Part of the largest moment of its kind below which a difference is rounding.
+const SAME: f64 = 1e-13;
+
+impl Export<'_, '_> {
+    fn gather(&mut self, plan: &Plan) {
+        let is_single = plan.legs.len() == 1;
+        for leg in &plan.legs {
+            for joint in &leg.joints {
+                let of = match is_single {
+                    true => joint.name.clone(),
+                    false => format!("{}_{}", joint.name, leg.name),
+                };
+                self.body(joint, &of);
+                self.torques(joint, &of);
+            }
+        }
+    }
+
+    /// The body of a joint, where its parameters differ from those of the file.
+    fn body(&mut self, joint: &Joint, of: &str) {
+        let Some((group, frame)) = joint.carries else {
+            return;
+        };
+        let own = |symbol: &str| {
+            joint
+                .values
+                .iter()
+                .find(|(s, _)| *s == symbol)
+                .map_or(0.0, |(_, v)| *v)
+        };
+        let before = INERTIAL.map(own);
+        let mut after = before;
+        let mut is_given = [false; 10];
+        for (at, symbol) in INERTIAL.iter().enumerate() {
+            let name = format!("{symbol}_{of}");
+            if let Some(value) = self.values.get(&name) {
+                (after[at], is_given[at]) = (*value, true);
+                self.told.insert(name);
+            }
+        }
+        if is_same(&before, &after) {
+            return;
+        }
+        let name = self.network.group_name(group).to_owned();
+        let cannot_be =
+            |values| !share::inertia(values, &frame).is_some_and(|own| share::is_body(&own));
+        if is_given.contains(&false) && cannot_be(after) {
+            if let Some(whole) = complete::completed(&after, is_given) {
+                after = whole;
+                self.notes.push(format!(
+                    "What the motion does not feel of `{name}` was chosen such that a body can have the rest."
+                ));
+            }
+        }
+        let Some(whole) = share::inertia(after, &frame) else {
+            self.notes.push(format!(
+                "`{name}` has moments without a mass, which the file can't say: it stays as it is."
+            ));
+            return;
+        };
+        if !share::is_body(&whole) {
+            self.notes.push(format!(
+                "`{name}` is no body that can be: its mass or a principal moment is not positive, or one is larger than \
+                 the other two; the engine may refuse it."
+            ));
+        }
+        let (shares, is_gathered) = share::among(self.network, group, &whole);
+        if is_gathered {
+            self.notes.push(format!(
+                "All of `{name}` and what is fixed to it stands in one of them."
+            ));
+        }
+        for share in shares {
+            let body = &self.network.model.bodies[share.body];
+            if let Some(place) = &body.place {
+                self.wanted
+                    .inertias
+                    .insert((place.file, place.span.start), share.inertia);
+                self.wanted.names.push(body.name.clone());
+            }
+        }
+    }
+
+    /// Friction, rotor and spring of a joint, where they differ from those of the file.
+    fn torques(&mut self, joint: &Joint, of: &str) {
+        let Some(own) = joint.of else { return };
+        let file_joint = &self.network.model.joints[own];
+        let mut changes = Vec::new();
+        for symbol in ["ia", "fv", "fs", "k"] {
+            let name = format!("{symbol}_{of}");
+            let attribute = match self.format {
+                Format::Mjcf => mjcf::attribute(symbol),
+                Format::Urdf => urdf::attribute(symbol),
+                Format::Par => None,
+            };
+            let (Some(value), Some(attribute)) = (self.values.get(&name), attribute) else {
+                continue;
+            };
+            let before = joint
+                .values
+                .iter()
+                .find(|(s, _)| *s == symbol)
+                .map_or(0.0, |(_, v)| *v);
+            if (value - before).abs() > SAME * before.abs() {
+                changes.push((attribute, *value));
+            }
+            self.told.insert(name);
+        }
+        if !changes.is_empty() {
+            let place = &file_joint.place;
+            self.wanted
+                .joints
+                .insert((place.file, place.span.start), changes);
+            self.wanted.names.push(file_joint.name.clone());
+        }
+    }
+
+    /// What the file has no place for.
+    fn left_out(&self) -> Option<String> {
+        let left = self
+            .values
+            .iter()
+            .filter(|(name, value)| **value != 0.0 && !self.told.contains(*name));
+        let left: Vec<String> = left
+            .map(|(name, value)| format!("{name} = {value}"))
+            .collect();
+        let format = match self.format {
+            Format::Mjcf => "MJCF",
+            Format::Urdf => "URDF",
+            Format::Par => ".par",
+        };
+        (!left.is_empty())
+            .then(|| format!("{format} has no place for {}: left out.", left.join(", ")))
+    }
+
+    /// The texts of the files in which something changes; `None` after an error.
+    fn patched(&self) -> Option<BTreeMap<usize, String>> {
+        let keys = self.wanted.inertias.keys().chain(self.wanted.joints.keys());
+        let files: BTreeSet<usize> = keys.map(|(file, _)| *file).collect();
+        let mut texts = BTreeMap::new();
+        for file in files {
+            let text = self.files.text(file);
+            let document = roxmltree::Document::parse(&text).ok()?;
+            let mut patch = Patch::default();
+            for ((_, start), inertia) in self
+                .wanted
+                .inertias
+                .iter()
+                .filter(|((of, _), _)| *of == file)
+            {
+                let node = element_at(&document, *start)?;
+                match self.format {
+                    Format::Mjcf => mjcf::inertia(&mut patch, &text, node, inertia),
+                    Format::Urdf => {
+                        urdf::inertia(&mut patch, self.files, &text, node, inertia, file)
+                    }
+                    Format::Par => {}
+                }
+            }
+            for ((_, start), values) in self.wanted.joints.iter().filter(|((of, _), _)| *of == file)
+            {
+                let node = element_at(&document, *start)?;
+                match self.format {
+                    Format::Mjcf => mjcf::joint(&mut patch, node, values),
+                    Format::Urdf => urdf::joint(&mut patch, &text, node, values),
+                    Format::Par => {}
+                }
+            }
+            if !patch.is_empty() {
+                texts.insert(file, patch.applied(&text));
+            }
+        }
+        Some(texts)
+    }
+}
+
+/// Whether two sets of parameters are one but for rounding.
+fn is_same(before: &[f64; 10], after: &[f64; 10]) -> bool {
+    [0..6, 6..9, 9..10].into_iter().all(|kind| {
+        let scale = before[kind.clone()]
+            .iter()
+            .copied()
+            .map(f64::abs)
+            .fold(0.0, f64::max);
+        kind.into_iter()
+            .all(|at| (after[at] - before[at]).abs() <= SAME * scale)
+    })
+}

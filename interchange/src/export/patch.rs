@@ -1,0 +1,115 @@
+//! Changes of a file's text that leave everything else as it is, to the byte.
+
+use crate::geometry::digits::fine;
+use roxmltree::Node;
+use std::ops::Range;
+
+/// Texts in the place of others of a file.
+#[derive(Debug, Default)]
+pub(super) struct Patch {
+    edits: Vec<(Range<usize>, String)>,
+}
+
+impl Patch {
+    /// Whether nothing changes.
+    pub(super) fn is_empty(&self) -> bool {
+        self.edits.is_empty()
+    }
+
+    /// The text with all changes.
+    pub(super) fn applied(mut self, text: &str) -> String {
+        self.edits
+            .sort_by_key(|(range, _)| (range.start, range.end));
+        let mut new = String::with_capacity(text.len() + 1000);
+        let mut at = 0;
+        for (range, with) in self.edits {
+            new.push_str(&text[at..range.start]);
+            new.push_str(&with);
+            at = range.end;
+        }
+        new.push_str(&text[at..]);
+        new
+    }
+
+    fn replace(&mut self, range: Range<usize>, with: impl Into<String>) {
+        self.edits.push((range, with.into()));
+    }
+
+    /// Sets an attribute; where the element has none of the name, behind its last one.
+    pub(super) fn set(&mut self, node: Node<'_, '_>, name: &str, value: &str) {
+        match node.attribute_node(name) {
+            Some(attribute) => self.replace(attribute.range_value(), value),
+            None => {
+                let behind = node.attributes().last().map(|last| last.range().end);
+                let behind =
+                    behind.unwrap_or_else(|| node.range().start + 1 + node.tag_name().name().len());
+                self.replace(behind..behind, format!(" {name}=\"{value}\""));
+            }
+        }
+    }
+
+    /// Puts an attribute in the place of one of another name.
+    pub(super) fn rename(&mut self, node: Node<'_, '_>, from: &str, to: &str, value: &str) {
+        match node.attribute_node(from) {
+            Some(attribute) => self.replace(attribute.range(), format!("{to}=\"{value}\"")),
+            None => self.set(node, to, value),
+        }
+    }
+
+    /// Takes an attribute out, with the blanks before it.
+    pub(super) fn remove(&mut self, text: &str, node: Node<'_, '_>, name: &str) {
+        let Some(attribute) = node.attribute_node(name) else {
+            return;
+        };
+        let range = attribute.range();
+        let before = text[..range.start].trim_end().len();
+        self.replace(before..range.end, "");
+    }
+
+    /// Adds an element behind the last one in another, on a line of its own where that one has such.
+    pub(super) fn append(&mut self, text: &str, node: Node<'_, '_>, element: &str) {
+        match node.children().filter(Node::is_element).last() {
+            Some(last) => {
+                let range = last.range();
+                let line = text[..range.start].rfind('\n').map_or(0, |at| at + 1);
+                let indent = &text[line..range.start];
+                let between = match indent.trim().is_empty() && line > 0 {
+                    true => format!("\n{indent}"),
+                    false => String::new(),
+                };
+                self.replace(range.end..range.end, format!("{between}{element}"));
+            }
+            None => {
+                let range = node.range();
+                let own = &text[range.clone()];
+                let name = node.tag_name().name();
+                match own.strip_suffix("/>") {
+                    Some(open) => {
+                        let from = range.start + open.trim_end().len();
+                        self.replace(from..range.end, format!(">{element}</{name}>"));
+                    }
+                    None => {
+                        let close = range.start + own.rfind("</").unwrap_or(own.len());
+                        self.replace(close..close, element.to_owned());
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The element that begins at a byte.
+pub(super) fn element_at<'a, 'i>(
+    document: &'a roxmltree::Document<'i>,
+    start: usize,
+) -> Option<Node<'a, 'i>> {
+    let mut all = document.descendants();
+    all.find(|node| node.is_element() && node.range().start == start)
+}
+
+/// Numbers with blanks between them, as short as their own rounding allows.
+pub(super) fn numbers(values: &[f64]) -> String {
+    let scale = values.iter().copied().map(f64::abs).fold(0.0, f64::max);
+    let shown: Vec<String> = values.iter().map(|value| fine(*value, scale)).collect();
+    shown.join(" ")
+}

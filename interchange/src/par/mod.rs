@@ -1,0 +1,386 @@
+//! .par files of OpenSYMORO: a table of modified Denavit-Hartenberg frames with the parameters of their bodies, in
+//! numbers and symbols.
+
+mod expression;
+mod text;
+
+use crate::{
+    files::{Files, Place},
+    frames::step::Step,
+    geometry::exact,
+    model::{Body, Closure, ClosureKind, Follow, Inertia, Joint, Kind, Model, Pose},
+    options::Options,
+};
+use expression::{Fault, symbols, value};
+use nalgebra::{Matrix3, Point3, Vector3};
+use std::collections::BTreeMap;
+use text::{Entries, entries, robot_name};
+
+/// Most frames of a robot.
+const FRAMES: usize = 1000;
+
+/// Reads a robot; what is wrong is noted in the files.
+pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
+    let text = files.text(file);
+    let entries = entries(files, file, &text)?;
+    let reader = Reader {
+        files,
+        entries,
+        file,
+        symbols: options.values.iter().cloned().collect(),
+    };
+    let mut model = Model::new(robot_name(&text).unwrap_or("robot"));
+    reader.robot(&mut model, options)?;
+    files.is_clean().then_some(model)
+}
+
+struct Reader<'f> {
+    files: &'f Files,
+    entries: Entries,
+    file: usize,
+    /// Values of symbols that the user gives.
+    symbols: BTreeMap<String, f64>,
+}
+
+/// A frame of the table.
+struct Frame {
+    antecedent: usize,
+    /// 0 revolute, 1 prismatic, 2 fixed.
+    sigma: usize,
+    place: Place,
+}
+
+impl Reader<'_> {
+    fn robot(&self, model: &mut Model, options: &Options) -> Option<()> {
+        let links = self.count("NL")?;
+        let joints = self
+            .count("NJ")
+            .or_else(|| self.files.is_clean().then_some(links))?;
+        let frames = self.count("NF").unwrap_or(2 * joints - links.min(joints));
+        if links == 0 || joints < links || frames != 2 * joints - links || frames > FRAMES {
+            let message =
+                format!("{links} links, {joints} joints and {frames} frames make no robot");
+            let help =
+                "each joint more than links closes a loop and has two frames: NF = 2 NJ - NL";
+            self.files.report(&self.place("NL"), message, help);
+            return None;
+        }
+        for key in ["is_floating", "is_mobile"] {
+            let floats = self
+                .entries
+                .get(&key.to_ascii_uppercase())
+                .and_then(|(_, values)| values.first());
+            if let Some((_, place)) = floats
+                .filter(|(text, _)| !["0", "False"].contains(&text.as_str()) && !options.fix_base)
+            {
+                let help = "a base that floats has no motor to identify from: `--fix-base` fixes it where it stands";
+                self.files
+                    .report(place, "a base that moves can't be said", help);
+            }
+        }
+        self.gravity(model);
+        let table = self.table(frames)?;
+        let mut variables = BTreeMap::new();
+        model.says_motors = self.entries.contains_key("MU");
+        for (at, frame) in table.iter().enumerate() {
+            // The second frame of a joint that closes a loop stands on the body that it ends on.
+            if at >= joints {
+                self.close(at, at - (joints - links), &table, model);
+                continue;
+            }
+            let number = at + 1;
+            let (placement, joint) = self.joint(at, frame, &mut variables, model)?;
+            let (inertia, is_unknown) = if at < links {
+                self.inertia(at)?
+            } else {
+                (None, false)
+            };
+            let joint = joint.map(|mut joint| {
+                joint.actuated = self.is_driven(at);
+                self.torques(at, &mut joint);
+                model.joints.push(joint);
+                model.joints.len() - 1
+            });
+            model.bodies.push(Body {
+                name: format!("link{number}"),
+                parent: frame.antecedent,
+                placement,
+                place: None,
+                joint,
+                inertia,
+                has_unknown_inertia: is_unknown,
+            });
+        }
+        self.files.is_clean().then_some(())
+    }
+
+    /// Antecedents and kinds of the frames.
+    fn table(&self, frames: usize) -> Option<Vec<Frame>> {
+        let mut table = Vec::new();
+        for at in 0..frames {
+            let antecedent = self.whole("ANT", at)?;
+            let sigma = self.whole("SIGMA", at)?;
+            let place = self.entry("ANT", at)?.1.clone();
+            if antecedent > at || sigma > 2 {
+                let message = format!("frame {} stands on {antecedent} with sigma {sigma}", at + 1);
+                let help = "ant names a frame before, or 0 for the base; sigma is 0, 1 or 2";
+                self.files.report(&place, message, help);
+                return None;
+            }
+            table.push(Frame {
+                antecedent,
+                sigma,
+                place,
+            });
+        }
+        Some(table)
+    }
+
+    /// A closure between the body that a cut joint carries and the one on which its second frame is fixed.
+    fn close(&self, at: usize, cut: usize, table: &[Frame], model: &mut Model) {
+        let frame = &table[at];
+        let Some(step) = self.step(at, &BTreeMap::new()) else {
+            return;
+        };
+        model.closures.push(Closure {
+            name: format!("j{}", cut + 1),
+            kind: ClosureKind::Weld {
+                bodies: [frame.antecedent, cut + 1],
+                at: [step.frame(), Pose::identity()],
+            },
+            place: frame.place.clone(),
+        });
+    }
+
+    /// The frame where its joint stands at zero, and the joint; `None` after an error.
+    fn joint(
+        &self,
+        at: usize,
+        frame: &Frame,
+        variables: &mut BTreeMap<String, usize>,
+        model: &Model,
+    ) -> Option<(Pose, Option<Joint>)> {
+        let name = format!("j{}", at + 1);
+        let key = match frame.sigma {
+            0 => "THETA",
+            1 => "R",
+            _ => return Some((self.step(at, &BTreeMap::new())?.frame(), None)),
+        };
+        let kind = if frame.sigma == 0 {
+            Kind::Revolute
+        } else {
+            Kind::Prismatic
+        };
+        let (text, place) = self.entry(key, at)?;
+        let mut free = symbols(text);
+        free.retain(|symbol| !self.symbols.contains_key(symbol));
+        let [variable] = &free[..] else {
+            let message = format!(
+                "the position of joint {} is `{text}`, which has {} variables",
+                at + 1,
+                free.len()
+            );
+            let help = "a joint's position is its own variable, or a multiple of another joint's, and a constant: give \
+                        the values of other symbols, `--value NAME=NUMBER`";
+            self.files.report(place, message, help);
+            return None;
+        };
+        let zero = self.step(at, &BTreeMap::from([(variable.clone(), 0.0)]))?;
+        let one = self.step(at, &BTreeMap::from([(variable.clone(), 1.0)]))?;
+        let factor = one.theta - zero.theta + one.r - zero.r;
+        let mut joint = Joint::new(&name, kind, place.clone());
+        match variables.get(variable) {
+            Some(&leader) => {
+                joint.follow = Some(Follow {
+                    joint: leader,
+                    factor,
+                    offset: 0.0,
+                });
+            }
+            None if (factor - 1.0).abs() < 1e-12 => {
+                variables.insert(variable.clone(), model.joints.len());
+            }
+            None => {
+                let message = format!(
+                    "the position of joint {} is `{text}`, no variable and a constant",
+                    at + 1
+                );
+                self.files.report(
+                    place,
+                    message,
+                    "write the joint's variable with the factor 1",
+                );
+                return None;
+            }
+        }
+        Some((zero.frame(), Some(joint)))
+    }
+
+    /// The six constants of a frame for a value of its variable.
+    fn step(&self, at: usize, variable: &BTreeMap<String, f64>) -> Option<Step> {
+        let mut symbols = self.symbols.clone();
+        symbols.extend(variable.clone());
+        let of = |key: &str| self.number(key, at, &symbols);
+        let (gamma, b, alpha) = (of("GAMMA"), of("B"), of("ALPHA"));
+        let (d, theta, r) = (of("D"), of("THETA"), of("R"));
+        Some(Step {
+            gamma: exact::angle(gamma?),
+            b: b?,
+            alpha: exact::angle(alpha?),
+            d: d?,
+            theta: exact::angle(theta?),
+            r: r?,
+        })
+    }
+
+    /// The inertia of a body, and whether it has one without values.
+    fn inertia(&self, at: usize) -> Option<(Option<Inertia>, bool)> {
+        let keys = ["XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M"];
+        let mut values = [0.0; 10];
+        for (value, key) in values.iter_mut().zip(keys) {
+            match self.optional(key, at)? {
+                Some(known) => *value = known,
+                None => return Some((None, true)),
+            }
+        }
+        let [xx, xy, xz, yy, yz, zz, mx, my, mz, mass] = values;
+        let first = Vector3::new(mx, my, mz);
+        let about = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        if mass == 0.0 {
+            // Base parameters are moments without a mass: no body that a prior could be about.
+            let is_empty = first == Vector3::zeros() && about == Matrix3::zeros();
+            return Some((None, !is_empty));
+        }
+        let centre = Point3::from(first / mass);
+        let own = Inertia {
+            mass,
+            centre,
+            tensor: Matrix3::zeros(),
+        };
+        Some((
+            Some(Inertia {
+                tensor: about - own.about_origin(),
+                ..own
+            }),
+            false,
+        ))
+    }
+
+    /// Friction and rotor of a joint, as far as they are numbers.
+    fn torques(&self, at: usize, joint: &mut Joint) {
+        let own = |key: &str| self.optional(key, at).flatten().unwrap_or(0.0);
+        (joint.armature, joint.damping, joint.friction) = (own("IA"), own("FV"), own("FS"));
+    }
+
+    fn is_driven(&self, at: usize) -> bool {
+        self.entries
+            .get("MU")
+            .and_then(|(_, values)| values.get(at))
+            .is_some_and(|(text, _)| text == "1")
+    }
+
+    /// Gravity; where it has a symbol, 9.81 m/s² against z.
+    fn gravity(&self, model: &mut Model) {
+        let Some((_, values)) = self.entries.get("G") else {
+            return;
+        };
+        let numbers: Vec<Option<f64>> = values
+            .iter()
+            .map(|(text, _)| value(text, &self.symbols).ok())
+            .collect();
+        match numbers[..] {
+            [Some(x), Some(y), Some(z)] => model.gravity = [x, y, z],
+            _ => {
+                let list: Vec<&str> = values.iter().map(|(text, _)| text.as_str()).collect();
+                model.notes.push(format!(
+                    "Gravity is {{{}}} in the file, and 9.81 m/s² against z here.",
+                    list.join(", ")
+                ));
+            }
+        }
+    }
+
+    fn place(&self, key: &str) -> Place {
+        let start = Place {
+            file: self.file,
+            span: 0..1,
+        };
+        self.entries
+            .get(key)
+            .map_or(start, |(place, _)| place.clone())
+    }
+
+    /// A value of a list; an error where there is none.
+    fn entry(&self, key: &str, at: usize) -> Option<&(String, Place)> {
+        let found = self.entries.get(key).and_then(|(_, values)| values.get(at));
+        if found.is_none() {
+            let message = format!("`{key}` has no value for frame {}", at + 1);
+            let help = "geometric parameters have NF values, dynamic ones NL";
+            self.files.report(&self.place(key), message, help);
+        }
+        found
+    }
+
+    /// A whole number of its own.
+    fn count(&self, key: &str) -> Option<usize> {
+        let (text, place) = self
+            .entries
+            .get(key)
+            .and_then(|(_, values)| values.first())?;
+        let found = text.parse().ok();
+        if found.is_none() {
+            self.files.report(
+                place,
+                format!("`{key}` is no whole number"),
+                "write for instance NL = 6",
+            );
+        }
+        found
+    }
+
+    fn whole(&self, key: &str, at: usize) -> Option<usize> {
+        let (text, place) = self.entry(key, at)?;
+        let found = text.parse().ok();
+        if found.is_none() {
+            self.files.report(
+                place,
+                format!("`{text}` is no whole number"),
+                "write 0, 1, 2, …",
+            );
+        }
+        found
+    }
+
+    /// A number; an error where it has symbols without a value.
+    fn number(&self, key: &str, at: usize, symbols: &BTreeMap<String, f64>) -> Option<f64> {
+        let (text, place) = self.entry(key, at)?;
+        match value(text, symbols) {
+            Ok(value) => Some(value),
+            Err(Fault::Unknown(symbol)) => {
+                let message = format!("`{symbol}` has no value");
+                let help = format!("give it, in m or rad: `--value {symbol}=NUMBER`");
+                self.files.report(place, message, help);
+                None
+            }
+            Err(Fault::Unreadable) => {
+                let message = format!("`{text}` is no expression");
+                let help = "numbers, symbols, pi, + - * / ** ^, parentheses, sqrt, sin, cos, tan, asin, acos, atan and atan2 can stand here";
+                self.files.report(place, message, help);
+                None
+            }
+        }
+    }
+
+    /// A dynamic parameter: `Some(None)` of one whose symbol has no value, zero of one that is not there.
+    fn optional(&self, key: &str, at: usize) -> Option<Option<f64>> {
+        let found = self.entries.get(key).and_then(|(_, values)| values.get(at));
+        let Some((text, _)) = found else {
+            return Some(Some(0.0));
+        };
+        match value(text, &self.symbols) {
+            Ok(value) => Some(Some(value)),
+            Err(Fault::Unknown(_)) => Some(None),
+            Err(Fault::Unreadable) => self.number(key, at, &self.symbols).map(Some),
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! The virtual experiment as TOML.
+
+use super::comment;
+use crate::{
+    experiment::{Experiment, FASTER, Term},
+    geometry::digits::decimal,
+};
+use std::fmt::Write as _;
+
+/// Harmonics of a run.
+const HARMONICS: f64 = 5.0;
+
+/// Settings of the experiment and of the identification, and the runs.
+pub(super) fn toml(text: &mut String, designed: &Result<Experiment, String>) {
+    let experiment = match designed {
+        Ok(experiment) => experiment,
+        Err(reason) => {
+            text.push('\n');
+            comment(
+                text,
+                &format!("No virtual experiment was found for it: {reason}."),
+            );
+            return;
+        }
+    };
+    let highest = HARMONICS * FASTER * experiment.fundamental;
+    let _ = writeln!(
+        text,
+        "\n[identification]\nfilter_cutoff = \"{} Hz\"\ndecimation = 10",
+        (10.0 * highest).ceil()
+    );
+    text.push('\n');
+    comment(
+        text,
+        "A virtual experiment: motions about home inside the limits of the joints, away from singular configurations. \
+         Controller, resolutions and noise are assumed, noise as half a percent of the torques. `overact excite` finds \
+         motions that determine more.",
+    );
+    for note in &experiment.notes {
+        comment(text, note);
+    }
+    let _ = writeln!(
+        text,
+        "[experiment]\nsampling = \"1 kHz\"\nduration = \"{} s\"\nbandwidth = \"20 Hz\"\nderivative_cutoff = \"80 Hz\"",
+        experiment.duration
+    );
+    let _ = writeln!(text, "encoder = {}", list(&experiment.encoders));
+    let _ = writeln!(text, "torque_noise = {}\nseed = 1", list(&experiment.noise));
+    for (at, name) in ["first", "second", "held out"].into_iter().enumerate() {
+        let _ = writeln!(text, "\n[[experiment.run]]\nname = \"{name}\"");
+        let is_held_out = at + 1 == experiment.runs.len();
+        if is_held_out {
+            text.push_str("validation = true\n");
+        }
+        let faster = if is_held_out { FASTER } else { 1.0 };
+        let _ = writeln!(
+            text,
+            "fundamental = \"{} Hz\"\nterms = [",
+            decimal(faster * experiment.fundamental)
+        );
+        for term in &experiment.runs[at] {
+            self::term(text, term);
+        }
+        text.push_str("]\n");
+    }
+}
+
+fn term(text: &mut String, term: &Term) {
+    let unit = if term.is_angle { " deg" } else { " m" };
+    let _ = writeln!(
+        text,
+        "    {{ coordinate = \"{}\", harmonic = {}, amplitude = \"{}{unit}\", phase = \"{} deg\" }},",
+        term.coordinate, term.harmonic, term.amplitude, term.phase
+    );
+}
+
+/// Values of all actuators, one where they are the same.
+fn list(values: &[f64]) -> String {
+    let shown: Vec<String> = values.iter().map(|value| decimal(*value)).collect();
+    match shown.first() {
+        Some(first) if shown.iter().all(|value| value == first) => first.clone(),
+        _ => format!("[{}]", shown.join(", ")),
+    }
+}
