@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import blockwise, controller, identification, logs, ours, pinocchio_peer, report, timing
+from . import blockwise, controller, identification, logs, ours, pinocchio_peer, report, table, timing
 from .description import load
 from .ours import Function
 from .peers import Model, check, models
@@ -71,6 +71,9 @@ def main():
     parser.add_argument(
         "--dynamics", action="store_true", help="only dynamics of given parameters, as a controller needs them"
     )
+    parser.add_argument(
+        "--table", action="store_true", help="all functions of seven robots, beside the fastest peer at equal flags"
+    )
     parser.add_argument("--no-times", action="store_true", help="count only")
     parser.add_argument("--core", type=int, default=0, help="the core on which all programs are timed")
     parser.add_argument("--rounds", type=int, default=15, help="turns of every program")
@@ -89,6 +92,9 @@ def main():
     if arguments.pinocchio:
         os.sched_setaffinity(0, {arguments.core})
         print(report.calls(pinocchio_peer.measure_all()))
+        return
+    if arguments.table:
+        print(table.table(table.measured(arguments.only, arguments.core, arguments.rounds)))
         return
     if arguments.dynamics:
         timed = not arguments.no_times

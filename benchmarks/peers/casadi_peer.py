@@ -15,6 +15,7 @@ BINARY = {
     casadi.OP_INV: "divisions",
     casadi.OP_SQRT: "square_roots",
     casadi.OP_SIGN: "signs",
+    casadi.OP_ATAN2: "arc_tangents",
     casadi.OP_NEG: "negations",
 }
 SKIPPED = {casadi.OP_INPUT, casadi.OP_OUTPUT, casadi.OP_CONST, casadi.OP_PARAMETER}
@@ -43,6 +44,9 @@ class Casadi:
 
     def sign(self, x):
         return Scalar(casadi.sign(x.value))
+
+    def arc_tangent(self, y, x):
+        return Scalar(casadi.atan2(y.value, x.value))
 
     def function(self, name, inputs, columns, cse):
         """A function of the inputs; the output is rows x columns, row by row."""
@@ -81,11 +85,11 @@ def count(function):
     return counted
 
 
-def c_code(function):
+def c_code(function, name="model"):
     """CasADi's own C code, behind the signature that the timing loop calls."""
     generator = casadi.CodeGenerator("model.c", {"with_header": False})
     generator.add(function)
-    call = "void model(const double **inputs, double *output) {\n"
+    call = f"void {name}(const double **inputs, double *output) {{\n"
     call += f"    casadi_int iw[{max(1, function.sz_iw())}];\n    double w[{max(1, function.sz_w())}];\n"
     call += f"    {function.name()}(inputs, &output, iw, w, 0);\n}}\n"
     return generator.dump() + call

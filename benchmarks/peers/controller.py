@@ -9,6 +9,7 @@ import numpy as np
 from . import casadi_peer, dynamics, ours, report, timing
 from .count import Count
 from .description import load
+from .model import Form
 from .peers import AGREEMENT
 from .states import states
 
@@ -30,7 +31,7 @@ class Cell:
     """One function of one robot on either side, and the times of both."""
 
     function: Function
-    form: str
+    form: Form
     count: Count
     peer: casadi.Function
     times: list[float] | None = None
@@ -133,7 +134,7 @@ def measure(only, samples, timed, core, rounds):
         line += [report.operations(own), report.operations(peer), f"{own.operations / peer.operations:.2f}"]
         if cell.times:
             line += [f"{t:.0f}" for t in cell.times] + [f"{cell.times[0] / cell.times[1]:.2f}"]
-        lines.append([*line, cell.form])
+        lines.append([*line, str(cell.form)])
     header = ["function", "overact", "CasADi, cse", "ratio"]
     header += ["overact, ns", "CasADi, ns", "ratio"] if timed else []
     return report.table([*header, "CasADi's form"], lines)

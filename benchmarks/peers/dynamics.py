@@ -306,5 +306,5 @@ def best(robot, name, inputs, names, homes, actuated):
         function = algebra.function("peer", inputs, derived, cse=True)
         counted = count(function)
         rank = counted.operations + PAIR * counted.trigonometric_pairs
-        found.append((rank, index, str(form), counted, function))
+        found.append((rank, index, form, counted, function))
     return min(found, default=None, key=lambda entry: entry[:2])

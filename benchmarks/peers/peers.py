@@ -38,7 +38,11 @@ def check(title, found, expected):
         raise RuntimeError(f"{title}: results differ from overact's by {error:.1e}")
 
 
-def models(work, function, robot, sample, expected, candidates=3):
+#: Makers of expression trees, besides CasADi.
+TREES = (sympy_trees, symforce_trees, symplex_trees)
+
+
+def models(work, function, robot, sample, expected, candidates=3, trees=TREES):
     """The peers' models, all proved to agree: CasADi's in its best forms, with and without `cse`, those of
     SymPy, SymForce and symplex, whose `cse` is alike, in the best of these."""
     found = []
@@ -54,7 +58,7 @@ def models(work, function, robot, sample, expected, candidates=3):
             check(f"{work.title}, {title}", np.array(values).reshape(expected.shape), expected)
             code = casadi_peer.c_code(compiled)
             found.append(Model(title, str(form), casadi_peer.count(compiled), code))
-    for make in (sympy_trees, symforce_trees, symplex_trees):
+    for make in trees:
         algebra = make()
         derived = columns(robot, algebra, function.inputs, function.columns, forms[0], homes)
         counted, code = algebra.function(function.inputs, derived)

@@ -20,7 +20,23 @@ BUILD = ROOT / "target" / "benchmarks"
 TEMPLATES = Path(__file__).parent / "templates"
 #: States that a program runs through, and batches that it times.
 STATES, BATCHES = 256, 200
-CFLAGS = ["-O3", "-march=native"]
+
+
+@dataclass(frozen=True)
+class Build:
+    """How a peer's C code is compiled."""
+
+    title: str
+    compiler: str
+    flags: tuple[str, ...]
+
+    @property
+    def folder(self):
+        return "".join(c if c.isalnum() else "_" for c in self.title)
+
+
+#: The build of the table of works.
+NATIVE = Build("cc -march=native", os.environ.get("CC", "cc"), ("-O3", "-march=native"))
 
 
 @dataclass
@@ -52,9 +68,9 @@ def write_states(path, states):
     np.array([np.concatenate(list(s.values())) for s in states]).tofile(path)
 
 
-def c_program(title, name, source, inputs, outputs):
-    """Compiles C code with a function `NAME_model(const double **inputs, double *output)` and its loop."""
-    folder = BUILD / "c" / name
+def c_program(title, name, source, inputs, outputs, build=NATIVE):
+    """Compiles C code with a function `model(const double **inputs, double *output)` and its loop."""
+    folder = BUILD / "c" / build.folder / name
     main = (TEMPLATES / "main.c").read_text()
     lengths = ", ".join(str(length) for _, length in inputs)
     for key, value in {"LENGTHS": lengths, "INPUTS": str(len(inputs)), "OUTPUTS": str(outputs)}.items():
@@ -65,8 +81,7 @@ def c_program(title, name, source, inputs, outputs):
     sources = [folder / "main.c", folder / "model.c"]
     if not binary.exists() or any(s.stat().st_mtime > binary.stat().st_mtime for s in sources):
         # Two translation units: the loop can't be merged with what it times.
-        compiler = os.environ.get("CC", "cc")
-        subprocess.run([compiler, *CFLAGS, "-o", binary, *sources, "-lm"], check=True)
+        subprocess.run([build.compiler, *build.flags, "-o", binary, *sources, "-lm"], check=True)
     return Program(title, binary)
 
 
@@ -75,7 +90,8 @@ def rust_crate(functions):
     folder = BUILD / "ours"
     robots = sorted({function.robot for function in functions})
     for robot in robots:
-        command = [BINARY, "generate", description(robot)]
+        names = ",".join(sorted({f.rust_name for f in functions if f.robot == robot}))
+        command = [BINARY, "generate", description(robot), "--functions", names]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         write(folder / "src" / f"{robot}.rs", done.stdout)
     modules = "".join(f"pub mod {robot};\n" for robot in robots)
@@ -84,19 +100,23 @@ def rust_crate(functions):
     return folder
 
 
-def rust_programs(functions, template="main.rs", dependencies=()):
-    """Compiles a program for each of overact's functions."""
+def rust_programs(functions, template="main.rs", dependencies=(), native=False):
+    """Compiles a program for each of overact's functions, for any processor of the kind or for this one."""
     folder = rust_crate(functions)
     shutil.rmtree(folder / "src" / "bin", ignore_errors=True)
     programs = []
     for function in functions:
         name = f"{function.robot}_{function.rust_name}_{template.removesuffix('.rs')}"
         write(folder / "src" / "bin" / f"{name}.rs", rust_main(function, template))
-        programs.append(Program("overact", folder / "target" / "release" / name))
+        target = folder / ("target-native" if native else "target")
+        programs.append(Program("overact", target / "release" / name))
     if dependencies:
         with open(folder / "Cargo.toml", "a") as manifest:
             manifest.writelines(f'[dependencies.{d}]\npath = "{ROOT / p}"\n' for d, p in dependencies)
     environment = {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_TARGET_DIR")}
+    environment["CARGO_TARGET_DIR"] = str(folder / ("target-native" if native else "target"))
+    if native:
+        environment["RUSTFLAGS"] = "-C target-cpu=native"
     subprocess.run(["cargo", "build", "--quiet", "--release"], cwd=folder, env=environment, check=True)
     return programs
 

@@ -17,6 +17,7 @@ PRELUDE = """#include <math.h>
 static inline double square(double x) { return x * x; }
 static inline double cube(double x) { return x * x * x; }
 static inline double fourth(double x) { return square(square(x)); }
+static inline double three_halves(double x) { return x * sqrt(x); }
 static inline double sign(double x) { return (x > 0.0) - (x < 0.0); }
 """
 
@@ -147,6 +148,10 @@ class Writer:
         if value == 0.5:
             self.count.add("square_roots")
             return f"sqrt({self.text(base)})"
+        if value == 1.5:
+            self.count.add("square_roots")
+            self.count.add("multiplications")
+            return f"three_halves({self.text(base)})"
         if value not in POWERS:
             raise NotImplementedError(f"the power {exponent}")
         self.count.add("multiplications", {2: 1, 3: 2, 4: 2}[int(value)])

@@ -1,0 +1,217 @@
+"""One table of all that is timed: regressors, dynamics and forward kinematics of seven robots, overact beside its
+fastest peer at equal flags.
+
+Peers: CasADi in the form in which it needs the fewest operations, with and without `cse`, and for regressors
+SymForce, each compiled by GCC and by Clang. `default` is -O3 beside cargo's release profile, `native` is either for
+this processor. What -ffast-math and the C library's vector sines give on top stands beside; it has no counterpart
+in Rust.
+"""
+
+import hashlib
+import json
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from . import casadi_peer, controller, dynamics, forward, ours, report, timing
+from .casadi_peer import Casadi
+from .count import Count
+from .description import load
+from .peers import models
+from .states import states
+from .timing import Build
+from .tree_peer import symforce_trees
+from .works import Work
+
+ROBOTS = {
+    "dualv": "DualV",
+    "delta": "Delta",
+    "hexapod": "6-UPS",
+    "octopod": "8-UPS",
+    "rx90": "RX90",
+    "kuka_lwr": "KUKA LWR",
+    "puma560": "PUMA 560",
+}
+DEFAULT = [Build("gcc", "gcc", ("-O3",)), Build("clang", "clang", ("-O3",))]
+NATIVE = [
+    Build("gcc native", "gcc", ("-O3", "-march=native")),
+    Build("clang native", "clang", ("-O3", "-march=native")),
+]
+FAST = [
+    Build("gcc fast", "gcc", ("-O3", "-march=native", "-ffast-math")),
+    Build("clang fast", "clang", ("-O3", "-march=native", "-ffast-math", "-fveclib=libmvec", "-lmvec")),
+]
+#: What the peers' functions are derived by.
+DERIVING = ["algebra", "casadi_peer", "closure", "description", "dynamics", "model", "platform", "robot", "search"]
+DERIVING += ["tree_peer", "values"]
+
+
+@dataclass
+class Peer:
+    """A peer's function as C code."""
+
+    title: str
+    count: Count
+    code: str
+
+
+@dataclass
+class Cell:
+    """A function of a robot on either side."""
+
+    title: str
+    function: ours.Function
+    peers: list[Peer]
+    #: Draws a number of states with a seed.
+    sample: object
+    #: Nanoseconds of (build, title) for overact, whose title is empty, and for every peer.
+    times: dict = field(default_factory=dict)
+
+    @property
+    def name(self):
+        return f"{self.function.robot}_{self.function.rust_name}"
+
+    def fastest(self, builds):
+        """The peer's shortest time in some builds, and whose it is."""
+        of = [(time, f"{title}, {build}") for (build, title), time in self.times.items() if title]
+        return min(entry for entry in of if entry[1].rpartition(", ")[2] in [b.title for b in builds])
+
+
+def kept(name, made_of, make):
+    """Peers that take minutes to derive, kept until the description or what derives them changes."""
+    sources = [(Path(__file__).parent / f"{source}.py").read_bytes() for source in DERIVING]
+    key = hashlib.sha256(b"\0".join([made_of, *sources])).hexdigest()
+    path = timing.BUILD / "derived" / f"{name}.json"
+    if path.exists():
+        stored = json.loads(path.read_text())
+        if stored["key"] == key:
+            return [Peer(p["title"], Count(**p["count"]), p["code"]) for p in stored["peers"]]
+    peers = make()
+    stored = [{"title": p.title, "count": vars(p.count), "code": p.code} for p in peers]
+    timing.write(path, json.dumps({"key": key, "peers": stored}))
+    return peers
+
+
+def regressor(robot, columns, source):
+    """A cell of the identification model, or none where the robot has no other source than the first."""
+    work = Work(robot, robot, columns, source)
+    function = ours.function(work)
+
+    def make():
+        sample = states(function, 20)
+        expected = function.evaluate(sample)
+        found = models(work, function, load(function.path), sample, expected, candidates=1, trees=[symforce_trees])
+        return [Peer(m.peer, m.count, m.code) for m in found]
+
+    title = f"{columns} columns" + (", from the pose" if source == "pose" else "")
+    name = f"{robot}_{function.rust_name}"
+    peers = kept(name, function.path.read_bytes(), make)
+    return Cell(title, function, peers, lambda number, seed: states(function, number, seed))
+
+
+def of_parameters(robot, name):
+    """A cell of dynamics of given parameters."""
+    document = ours.inspect(robot)
+    function = controller.function(document, robot, name)
+
+    def make():
+        own = load(function.path)
+        driven = {"dof": document["dof"], "joints": controller.actuated(robot)}
+        given = function.inputs, function.columns, document["home_joints"], driven
+        _, _, form, counted, shared = dynamics.best(own, name, *given)
+        sample = controller.sample(function, 20)
+        values = np.array([shared(*state.values()).full() for state in sample])
+        controller.check(f"{robot}, {name}", values, function.evaluate(sample))
+        algebra, (inputs, names, homes, driven) = Casadi(), given
+        derived = dynamics.derive(own, algebra, name, inputs, names, form, homes, driven)
+        plain = algebra.function("peer", inputs, derived, cse=False)
+        return [
+            Peer("CasADi, cse", counted, casadi_peer.c_code(shared)),
+            Peer("CasADi", casadi_peer.count(plain), casadi_peer.c_code(plain)),
+        ]
+
+    peers = kept(f"{robot}_{name}", function.path.read_bytes(), make)
+    title = name.replace("_", " ")
+    return Cell(title, function, peers, lambda number, seed: controller.sample(function, number, seed))
+
+
+def kinematics(robot):
+    """A cell of forward kinematics."""
+    function = forward.function(robot)
+
+    def make():
+        _, counted, codes = forward.best(function)
+        return [Peer(title, counted, c) for title, c in zip(("CasADi, cse", "CasADi"), codes, strict=True)]
+
+    peers = kept(f"{robot}_forward", function.path.read_bytes(), make)
+    return Cell("forward kinematics", function, peers, lambda number, seed: forward.sample(function, number, seed))
+
+
+def cells(robot):
+    """All cells of a robot."""
+    is_parallel = bool(ours.inspect(robot)["home_pose"])
+    for columns in ("standard", "base"):
+        yield regressor(robot, columns, "joints")
+        if is_parallel:
+            yield regressor(robot, columns, "pose")
+    for name in controller.FUNCTIONS:
+        yield of_parameters(robot, name)
+    if is_parallel:
+        yield kinematics(robot)
+
+
+def time(cell, own, core, rounds):
+    """Times both builds of overact and all builds of the peers in turns, after a check that they agree."""
+    path = timing.BUILD / "states" / f"{cell.name}.bin"
+    given = cell.sample(timing.STATES, 2)
+    timing.write_states(path, given)
+    inputs = [(name, len(value)) for name, value in given[0].items()]
+    size = int(np.prod(cell.function.shape))
+    programs = [(("default", ""), own[0]), (("native", ""), own[1])]
+    for index, peer in enumerate(cell.peers):
+        for build in [*DEFAULT, *NATIVE, *FAST]:
+            compiled = timing.c_program(peer.title, f"{cell.name}_{index}", peer.code, inputs, size, build)
+            programs.append(((build.title, peer.title), compiled))
+    expected = timing.outputs(own[0], path, core, cell.function.shape)
+    for (build, title), program in programs[1:]:
+        found = timing.outputs(program, path, core, cell.function.shape)
+        controller.check(f"{cell.name}, {title}, {build}", found, expected)
+    times = timing.compare([program for _, program in programs], path, core, rounds)
+    cell.times = dict(zip((key for key, _ in programs), times, strict=True))
+
+
+def line(robot, cell):
+    """Operations, times and their ratios to the best peer's."""
+    own, best = cell.function.count, min((p.count for p in cell.peers), key=lambda c: c.operations)
+    found = [f"{ROBOTS[robot]}, {cell.title}", report.operations(own), report.operations(best)]
+    found.append(f"{own.operations / best.operations:.2f}")
+    for kind, builds in (("default", DEFAULT), ("native", NATIVE)):
+        peer, _ = cell.fastest(builds)
+        time = cell.times[(kind, "")]
+        found += [f"{time:.0f}", f"{peer:.0f}", f"{time / peer:.2f}"]
+    fast, _ = cell.fastest(FAST)
+    return [*found, f"{fast:.0f}", f"{cell.times[('native', '')] / fast:.2f}"]
+
+
+def measured(only, core, rounds):
+    """All cells with their times."""
+    found = []
+    for robot in ROBOTS:
+        if only and only not in robot:
+            continue
+        print(f"{ROBOTS[robot]} …", file=sys.stderr, flush=True)
+        found += [(robot, cell) for cell in cells(robot)]
+    functions = [cell.function for _, cell in found]
+    own = zip(timing.rust_programs(functions), timing.rust_programs(functions, native=True), strict=True)
+    for (robot, cell), programs in zip(found, own, strict=True):
+        print(f"{ROBOTS[robot]}, {cell.title}: times …", file=sys.stderr, flush=True)
+        time(cell, programs, core, rounds)
+    return found
+
+
+def table(found):
+    """The cells as Markdown."""
+    header = ["function", "operations", "peer", "ratio", "default, ns", "peer", "ratio", "native, ns", "peer", "ratio"]
+    return report.table([*header, "peer, -ffast-math", "ratio"], [line(robot, cell) for robot, cell in found])
