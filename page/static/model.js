@@ -41,11 +41,12 @@ function parametersOf(model) {
 }
 
 function operationsOf(model) {
-  const header = ['function', 'shape', 'operations', '+ −', '×', '÷', '√', 'sin cos', 'atan2', 'each step'];
+  const header = ['function', 'operations', '+ −', '×', '÷', '√', 'sin cos', 'atan2', 'each step', 'shape'];
   const rows = model.functions.map(one => [
-    one.function, one.outputs.map(output => output.shape.join(' × ')).join(', '), one.operations, one.additions,
+    one.function, one.operations, one.additions,
     one.multiplications, one.divisions, one.square_roots, one.trigonometric_pairs, one.arc_tangents,
     one.iterations.map(iteration => iteration.operations).join(', '),
+    one.outputs.map(output => output.shape.join(' × ')).join(', '),
   ]);
   return [table(header, rows)];
 }

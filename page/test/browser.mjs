@@ -106,6 +106,7 @@ async function edits(tab) {
   holds('an error stands below its line', below === 'nonsense = 1', below);
   holds('with its code', /^OA\d+: .*nonsense/.test(told), told);
   holds('and is no part of the text', !(await tab.value('page.editor.text')).includes('OA'));
+  await picture(tab, 'error');
   await tab.key('z', 'KeyZ', 2);
   await tab.key('z', 'KeyZ', 2);
   await tab.until("document.getElementById('state').className === 'good'");
@@ -174,6 +175,7 @@ async function identifies(tab) {
   await tab.click('tab-identification');
   const virtual = await identified(tab);
   holds('the report is shown', await tab.value("document.querySelector('iframe').srcdoc.includes('Identification of')"));
+  await picture(tab, 'report');
   await tab.click('simulate');
   await tab.until('page.logs.logs.length > 0', 120);
   const named = await tab.value("document.querySelectorAll('#runs li').length");
@@ -244,9 +246,17 @@ async function refuses(tab) {
   await tab.until("document.getElementById('state').className === 'good'");
 }
 
+/** Keeps what is seen, where a folder for pictures is named. */
+async function picture(tab, name) {
+  const folder = process.env.OVERACT_SCREENSHOTS;
+  if (!folder) return;
+  mkdirSync(folder, { recursive: true });
+  await tab.value("document.getElementById(innerWidth < 600 ? 'right' : 'left').scrollIntoView()");
+  await new Promise(resolve => setTimeout(resolve, 300));
+  writeFileSync(join(folder, `${name}.png`), await tab.picture());
+}
+
 async function fits(tab) {
-  const pictures = process.env.OVERACT_SCREENSHOTS;
-  if (pictures) mkdirSync(pictures, { recursive: true });
   for (const [width, height] of [[1280, 900], [390, 844]]) {
     for (const dark of [false, true]) {
       await tab.look(width, height, dark);
@@ -255,11 +265,7 @@ async function fits(tab) {
         if (shown !== 'drawing' && shown !== 'identification') await tab.until('page.model', 120);
         const overflow = await tab.value('document.documentElement.scrollWidth - innerWidth');
         holds(`${shown} fits ${width} px, ${dark ? 'dark' : 'light'}`, overflow <= 0, overflow);
-        if (pictures) {
-          await tab.value("document.getElementById(innerWidth < 600 ? 'right' : 'left').scrollIntoView()");
-          await new Promise(resolve => setTimeout(resolve, 300));
-          writeFileSync(join(pictures, `${shown}-${width}-${dark ? 'dark' : 'light'}.png`), await tab.picture());
-        }
+        await picture(tab, `${shown}-${width}-${dark ? 'dark' : 'light'}`);
       }
     }
   }
