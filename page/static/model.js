@@ -9,8 +9,13 @@ function element(name, attributes, ...children) {
   return made;
 }
 
+/** A name that may be broken behind its underscores. */
+function broken(name) {
+  return name.split(/(?<=_)/).flatMap((part, at) => (at ? [document.createElement('wbr'), part] : [part]));
+}
+
 function table(header, rows, classes = []) {
-  const cell = kind => (text, at) => element(kind, classes[at] ? { class: classes[at] } : {}, String(text));
+  const cell = kind => (text, at) => element(kind, classes[at] ? { class: classes[at] } : {}, ...broken(String(text)));
   const head = element('tr', {}, ...header.map(cell('th')));
   const body = rows.map(row => element('tr', {}, ...row.map(cell('td'))));
   const made = element('table', {}, element('thead', {}, head), element('tbody', {}, ...body));
