@@ -183,6 +183,8 @@ async function identifies(tab) {
   await tab.click('tab-identification');
   const virtual = await identified(tab);
   holds('the report is shown', await tab.value("document.querySelector('iframe').srcdoc.includes('Identification of')"));
+  // The frame is laid out by a process of its own.
+  if (process.env.OVERACT_SCREENSHOTS) await new Promise(resolve => setTimeout(resolve, 3000));
   await picture(tab, 'report');
   await tab.click('simulate');
   await tab.until('page.logs.logs.length > 0', 120);
