@@ -19,4 +19,5 @@ mod values;
 pub use description::Description;
 pub use model::Model;
 pub use progress::listen;
-pub use session::Session;
+pub use session::{Identified, Session};
+pub use values::Values;

@@ -76,9 +76,9 @@ class Logs {
     // The report has no script, and the frame would run none.
     const frame = element('iframe', { sandbox: 'allow-downloads', title: 'Report of the identification', srcdoc: found.page });
     this.result.replaceChildren(
-      element('pre', { class: 'summary', tabindex: '0' }, found.summary),
       element('p', { class: 'bar' }, saving('report.html', 'text/html', found.page), saving('report.json', 'application/json', found.document), saving('report.csv', 'text/csv', found.numbers)),
-      frame);
+      frame,
+      element('details', {}, element('summary', {}, 'As the command line prints it'), element('pre', { class: 'summary', tabindex: '0' }, found.summary)));
     this.result.found = found;
   }
 }

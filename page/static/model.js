@@ -9,8 +9,13 @@ function element(name, attributes, ...children) {
   return made;
 }
 
+/** A name that may be broken behind its underscores. */
+function broken(name) {
+  return name.split(/(?<=_)/).flatMap((part, at) => (at ? [document.createElement('wbr'), part] : [part]));
+}
+
 function table(header, rows, classes = []) {
-  const cell = kind => (text, at) => element(kind, classes[at] ? { class: classes[at] } : {}, String(text));
+  const cell = kind => (text, at) => element(kind, classes[at] ? { class: classes[at] } : {}, ...broken(String(text)));
   const head = element('tr', {}, ...header.map(cell('th')));
   const body = rows.map(row => element('tr', {}, ...row.map(cell('td'))));
   const made = element('table', {}, element('thead', {}, head), element('tbody', {}, ...body));
@@ -41,11 +46,12 @@ function parametersOf(model) {
 }
 
 function operationsOf(model) {
-  const header = ['function', 'shape', 'operations', '+ −', '×', '÷', '√', 'sin cos', 'atan2', 'each step'];
+  const header = ['function', 'operations', '+ −', '×', '÷', '√', 'sin cos', 'atan2', 'each step', 'shape'];
   const rows = model.functions.map(one => [
-    one.function, one.outputs.map(output => output.shape.join(' × ')).join(', '), one.operations, one.additions,
+    one.function, one.operations, one.additions,
     one.multiplications, one.divisions, one.square_roots, one.trigonometric_pairs, one.arc_tangents,
     one.iterations.map(iteration => iteration.operations).join(', '),
+    one.outputs.map(output => output.shape.join(' × ')).join(', '),
   ]);
   return [table(header, rows)];
 }

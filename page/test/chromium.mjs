@@ -117,6 +117,12 @@ export class Tab {
 
   async click(id) { await this.value(`document.getElementById('${id}').click()`); }
 
+  /** Chooses files in an input. */
+  async files(id, files) {
+    const { result } = await this.send('Runtime.evaluate', { expression: `document.getElementById('${id}')` });
+    await this.send('DOM.setFileInputFiles', { files, objectId: result.objectId });
+  }
+
   async type(text) { await this.send('Input.insertText', { text }); }
 
   async key(key, code, modifiers = 0) {

@@ -4,7 +4,8 @@
 //! A question is a line `STEM FUNCTION SAMPLES INPUTS` and a line of numbers for each input, sample after sample, as for
 //! `tests/compiled/examples/values.rs`. The answer is a line of numbers, or one that begins with `error`.
 
-use overact_robot::{Robot, values};
+use overact_codegen::{Effort, Request};
+use overact_robot::{CompiledFile, InterpretedRobot, values};
 use std::{
     error::Error,
     io::{self, BufRead, Write},
@@ -16,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = folder.ok_or("the folder of the descriptions is missing")?;
     let mut lines = io::stdin().lock().lines();
     let mut out = io::stdout().lock();
-    let mut last: Option<(String, Robot)> = None;
+    let mut last: Option<(String, InterpretedRobot)> = None;
     while let Some(question) = lines.next().transpose()? {
         let words: Vec<&str> = question.split_whitespace().collect();
         let &[stem, function, samples, count] = words.as_slice() else {
@@ -29,11 +30,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
         if last.as_ref().is_none_or(|(known, _)| known != stem) {
-            let robot = Robot::from_toml(folder.join(format!("{stem}.toml")))?;
-            last = Some((stem.to_owned(), robot));
+            let file = folder.join(format!("{stem}.toml"));
+            let compiled = CompiledFile::read(&file, &Request::with_effort(Effort::None))?;
+            last = Some((stem.to_owned(), InterpretedRobot::new(compiled.model)));
         }
         let Some((_, robot)) = &last else { continue };
-        match values(robot.model(), function, samples.parse()?, &inputs) {
+        match values(robot, function, samples.parse()?, &inputs) {
             Ok(values) => {
                 let words: Vec<String> = values.iter().map(|one| format!("{one:?}")).collect();
                 writeln!(out, "{}", words.join(" "))?;
