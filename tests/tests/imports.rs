@@ -45,6 +45,7 @@ const HOUSES: [House; 7] = [
         order: &[
             "error",
             "significant",
+            "called",
             "blocks",
             "thresholds",
             "series",

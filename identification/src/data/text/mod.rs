@@ -104,6 +104,8 @@ impl Text {
             record: ByteRecord::new(),
             line: 0,
             is_broken: false,
+            is_first: true,
+            is_helped: false,
         };
         if dialect.has_header {
             rows.advance()?;
@@ -164,6 +166,10 @@ pub(super) struct Rows<'a> {
     line: usize,
     /// Whether nothing more can be read.
     is_broken: bool,
+    /// Whether no row of numbers has been looked at.
+    is_first: bool,
+    /// Whether the way out of a cell without a number has been told.
+    is_helped: bool,
 }
 
 impl Rows<'_> {
@@ -203,15 +209,25 @@ impl Rows<'_> {
     /// Puts the numbers of the next row into `values`; `false` at the end.
     ///
     /// # Errors
-    /// Every cell of the row that is no finite number, or a file that can't be read on.
+    /// Every cell of the row that is no finite number, cells that are more than those of other rows, or a
+    /// file that can't be read on.
     pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         if !self.advance()? {
             return Ok(false);
         }
-        let decimal_comma = self.text.dialect.decimal_comma;
+        let is_first = std::mem::take(&mut self.is_first);
+        let dialect = &self.text.dialect;
+        if self.record.len() > dialect.most {
+            let filled = |cell: &usize| !self.record[*cell].trim_ascii().is_empty();
+            let last = (dialect.most..self.record.len()).rev().find(filled);
+            if let Some(last) = last {
+                let file = self.text.file.as_str();
+                return Err(dialect.wider(file, self.line, last + 1).into());
+            }
+        }
         let mut problems = Vec::new();
         for (&(place, name), value) in self.wanted.iter().zip(values) {
-            match number(self.record.get(place), decimal_comma) {
+            match number(self.record.get(place), dialect.decimal_comma) {
                 Ok(found) => *value = found,
                 Err(message) => {
                     *value = f64::NAN;
@@ -224,9 +240,58 @@ impl Rows<'_> {
                 }
             }
         }
+        if !problems.is_empty()
+            && problems.len() == self.wanted.len()
+            && let Some(problem) = self.words(is_first)
+        {
+            problems = vec![problem];
+        } else if let Some(first) = problems.first_mut()
+            && !std::mem::replace(&mut self.is_helped, true)
+        {
+            *first = first.clone().help(
+                "cut the log before or after this line, or fill the gap; overact invents no samples",
+            );
+        }
         Error::check(problems)?;
         Ok(true)
     }
+
+    /// What is said of a line that has words in the place of all its numbers: the header once more, or units
+    /// below it.
+    fn words(&self, is_first: bool) -> Option<Problem> {
+        let cells = || self.record.iter().map(<[u8]>::trim_ascii);
+        let number = |cell| number(Some(cell), self.text.dialect.decimal_comma);
+        let is_number = |cell| number(cell).is_ok() || is_infinite(cell);
+        let has_words = cells().any(|cell| cell.iter().any(u8::is_ascii_alphabetic));
+        if self.record.len() < 2 || !has_words || cells().any(is_number) {
+            return None;
+        }
+        let names = self.text.dialect.names.iter().map(String::as_bytes);
+        let is_header = cells().eq(names);
+        let shown: Vec<String> = cells()
+            .filter(|cell| !cell.is_empty())
+            .take(3)
+            .map(|cell| format!("`{}`", shown(&String::from_utf8_lossy(cell))))
+            .collect();
+        let words = shown.join(", ");
+        let message = match (is_header, is_first) {
+            (true, _) => format!("the line repeats the names of the columns: {words}"),
+            (false, true) => format!("the line below the names looks like units: {words}"),
+            (false, false) => format!("the line has words where numbers are to be: {words}"),
+        };
+        let problem = Problem::new(Code::NOT_A_NUMBER, message);
+        let problem = problem.file(self.text.file.as_str()).line(self.line);
+        let comment = char::from(self.text.dialect.comment);
+        Some(problem.help(format!(
+            "delete the line, or start it with `{comment}`, the sign of a comment"
+        )))
+    }
+}
+
+/// Whether a cell is a word for a number that is not finite.
+fn is_infinite(cell: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(cell.trim_ascii());
+    text.parse::<f64>().is_ok()
 }
 
 /// A cell as a finite number, or what is wrong with it.
