@@ -38,8 +38,10 @@ pub(crate) fn tell_doubts(doubts: &[String], as_json: bool) {
 /// Tells a note about a file.
 pub(crate) fn tell(file: &str, note: Option<&str>, as_json: bool) {
     if let (Some(note), false) = (note, as_json || is_quiet()) {
-        // A closed stderr is no reason to stop.
-        let _ = writeln!(io::stderr(), "note: {file}: {note}");
+        for line in note.lines() {
+            // A closed stderr is no reason to stop.
+            let _ = writeln!(io::stderr(), "note: {file}: {line}");
+        }
     }
 }
 

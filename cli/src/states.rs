@@ -2,7 +2,7 @@
 //! `pose[0]` for each number).
 
 use crate::failure::{Failure, Problem};
-use overact_codegen::diagnostic::Code;
+use overact_codegen::diagnostic::{Code, did_you_mean};
 use serde::{
     Deserialize, Deserializer,
     de::{Error as _, MapAccess, Visitor},
@@ -121,6 +121,28 @@ impl States {
             .flatten()
             .map(String::as_str)
             .collect()
+    }
+
+    /// What the states of a JSON file hold and no function takes, in a sentence; none where that is nothing. Tables
+    /// have other columns often.
+    pub(crate) fn unknown(&self, known: &[&str]) -> Option<String> {
+        let states = self.states.iter().filter(|_| self.format == Format::Json);
+        let names = states.flat_map(|state| state.quantities.keys());
+        let mut names: Vec<&str> = names.map(String::as_str).collect();
+        names.retain(|name| !known.contains(name));
+        names.sort_unstable();
+        names.dedup();
+        let (first, more) = (names.first()?, names.len() - 1);
+        let near = did_you_mean(first, known.iter().copied());
+        let near = near.map_or_else(String::new, |near| format!(": {near}"));
+        let others = match more {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let file = &self.file;
+        Some(format!(
+            "{file}: no function takes `{first}`{others} of the states{near}"
+        ))
     }
 
     /// The numbers of a quantity in a state; `None` where the state does not hold it.
@@ -360,6 +382,26 @@ mod tests {
         assert!(said.contains("`pose` stands twice in a state"), "{said}");
         let mended = text.replace(",\n\"pose\"", ",\n\"twist\"");
         assert_eq!(States::parse("s.json".into(), &mended).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn quantities_that_nobody_takes_are_named_in_json() {
+        let told = |text: &str| {
+            let states = States::parse("s.json".into(), text).unwrap();
+            states.unknown(&["pose", "twist"])
+        };
+        assert_eq!(told("[{\"pose\": [1], \"twist\": [2]}]"), None);
+        assert_eq!(told("pose[0],note\n1,2\n"), None);
+        let expected = "s.json: no function takes `twits` of the states: did you mean `twist`?";
+        assert_eq!(
+            told("[{\"pose\": [1], \"twits\": [2]}]").as_deref(),
+            Some(expected)
+        );
+        let two = told("[{\"a1\": 1}, {\"b\": 1}]");
+        assert_eq!(
+            two.as_deref(),
+            Some("s.json: no function takes `a1` and 1 more of the states")
+        );
     }
 
     #[test]

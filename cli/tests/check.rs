@@ -192,3 +192,62 @@ fn bodies_that_nobody_can_build_are_found_as_identification_finds_them() {
     assert_eq!(refused, said);
     assert_eq!(bench.files(), ["my.toml"]);
 }
+
+#[test]
+fn what_may_not_be_meant_is_noted_with_its_line() {
+    let bench = changed(
+        "serial-6r",
+        &[
+            ("alpha = \"90 deg\"", "alpha = 90"),
+            ("d3 = \"0.45 m\"", "d3 = 450"),
+        ],
+    );
+    let outcome = bench.run(&["check", "my.toml"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    for (part, expected) in [
+        ("alpha = 90", "90 rad are more than a turn: 90 deg?"),
+        ("d = \"d3\"", "is 450 m long"),
+    ] {
+        let line = line(&bench, part);
+        let note = outcome.err.lines().find(|told| told.contains(expected));
+        let note = note.unwrap_or_else(|| panic!("{expected}: {}", outcome.err));
+        assert!(
+            note.starts_with(&format!("note: my.toml: line {line}: ")),
+            "{note}"
+        );
+    }
+    let missing = bench.bad(&["check", "nothing.toml"]);
+    assert!(
+        missing.contains("`overact new` lists templates"),
+        "{missing}"
+    );
+}
+
+#[test]
+fn a_seed_is_for_virtual_runs() {
+    let bench = Bench::with("serial-2r", str::to_owned);
+    bench.write("log.csv", "time,q_1,q_2,tau_1,tau_2\n0,0,0,0,0\n");
+    let outcome = bench.run(&["identify", "my.toml", "--data", "log.csv", "--seed", "3"]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.err);
+    assert!(
+        outcome
+            .err
+            .contains("`--seed` is for the noise of the virtual experiment"),
+        "{}",
+        outcome.err
+    );
+}
+
+#[test]
+fn columns_that_a_log_lacks_are_told_with_the_line_that_names_them() {
+    let bench = Bench::with("serial-2r", |text| {
+        let names = "positions = [\"q1\", \"q2\"]\ntorques = [\"t1\",\n\"t2\"]\n";
+        format!("{text}\n[data]\nsampling = \"1 kHz\"\n{names}")
+    });
+    bench.write("log.csv", "q1,q2,t1,T22\n0,0,0,0\n1,1,1,1\n");
+    let said = bench.bad(&["identify", "my.toml", "--data", "log.csv"]);
+    let line = line(&bench, "\"t2\"]");
+    let expected =
+        format!("did you mean `T22` for `t2`? The names stand in the table [data], my.toml:{line}");
+    assert!(said.contains(&expected), "{said}");
+}

@@ -31,6 +31,7 @@
 mod assessment;
 mod blocks;
 mod calibration;
+mod called;
 mod consistent;
 pub mod data;
 mod error;
@@ -61,6 +62,7 @@ pub use calibration::{
     CalibratedParameter, Calibration, CalibrationScope, ChangedGeometry, DescribedGeometry,
     Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
+pub use called::{called, titled};
 pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
 pub use data::{Dataset, Gain, Load, Log, Mapping, Periods, Time, Variant};
 pub use error::{Error, Problem};

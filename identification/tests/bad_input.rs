@@ -86,11 +86,52 @@ fn cells_are_named_by_line_and_column() {
     assert_eq!(error.problems[0].column.as_deref(), Some("q_1"));
     assert_eq!(
         text(log, folder.path()),
-        "log.csv:3: column `q_1`: `abc` is not a number\n\
+        "log.csv:3: column `q_1`: `abc` is not a number\n  help: cut the log before or after this line, or fill the \
+         gap; overact invents no samples\n\
          log.csv:3: column `tau_1`: `NaN` is not a finite number\n\
          log.csv:4: column `tau_1`: the line ends before this column\n\
          log.csv:5: column `q_1`: the cell is empty"
     );
+}
+
+#[test]
+fn lines_with_more_cells_than_others_are_errors() {
+    let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0.1,1,0,5\n0.2,,2,1\n0.3,1,1,\n");
+    assert_eq!(
+        text(log, folder.path()),
+        "log.csv:3: the line has 4 columns, but the header names 3\n  help: if decimals stand behind commas, separate \
+         the columns by semicolons or tabs; else name every column\n\
+         log.csv:4: the line has 4 columns, but the header names 3\n  help: if decimals stand behind commas, separate \
+         the columns by semicolons or tabs; else name every column"
+    );
+    // A separator at the end of lines is no column.
+    let (log, _folder) = csv("time,q_1,tau_1\n0,0,0,\n0.1,1,0,\n0.2,2,1,\n");
+    assert_eq!(log.expect("a log").samples(), 3);
+    let (log, folder) = csv("# time q_1 tau_1\n0 0 0\n0.1 1 0\n0.2 2 1 7\n");
+    let text = text(log, folder.path());
+    assert!(
+        text.starts_with("log.csv:4: the line has 4 columns, but the first one has 3"),
+        "{text}"
+    );
+}
+
+#[test]
+fn lines_of_words_are_told_once() {
+    let (log, folder) = csv("time,q_1,tau_1\ns,rad,Nm\n0,0,0\n0.1,1,0\n");
+    assert_eq!(
+        text(log, folder.path()),
+        "log.csv:2: the line below the names looks like units: `s`, `rad`, `Nm`\n  help: delete the line, or start it with \
+         `#`, the sign of a comment"
+    );
+    let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0.1,1,0\ntime,q_1,tau_1\n0.2,2,1\n");
+    let text = text(log, folder.path());
+    assert!(
+        text.starts_with(
+            "log.csv:4: the line repeats the names of the columns: `time`, `q_1`, `tau_1`\n"
+        ),
+        "{text}"
+    );
+    assert_eq!(text.matches("log.csv").count(), 1, "{text}");
 }
 
 #[test]
@@ -116,9 +157,9 @@ fn empty_files_are_errors() {
         "log.csv: the run is empty\n  help: give a log with the samples of a whole motion"
     );
     let (log, folder) = csv("");
-    assert!(
-        text(log, folder.path())
-            .starts_with("log.csv: there are no columns `time`, `q_1`, `tau_1`; the file has none")
+    assert_eq!(
+        text(log, folder.path()),
+        "log.csv: the file is empty\n  help: give a log with the samples of a whole motion"
     );
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n");
     assert_eq!(

@@ -137,7 +137,8 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
     );
     assert_eq!(
         broken.expect_err("no number"),
-        "i.csv:3: column `tau`: `x` is not a number"
+        "i.csv:3: column `tau`: `x` is not a number\n  help: cut the log before or after this line, or fill \
+         the gap; overact invents no samples"
     );
 }
 

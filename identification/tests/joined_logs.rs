@@ -64,15 +64,107 @@ fn files_are_joined_sample_by_sample() {
     );
     assert_eq!(
         joined("file3.b", "$5").expect_err("missing"),
-        "pos.csv+torque.csv: there are no columns `file3.b`, `$5`; the file has `a`, `b`, `a`, `c`\n  help: the \
-         columns that can be called by number are `$1` to `$4`; where the others stand in \
-         another file of this run, give both as one, `a.csv+b.csv`"
+        "pos.csv+torque.csv: there are no columns `file3.b`, `$5`; the files have `file1.a`, `file1.b`, `file2.a`, `file2.c`\n  help: \
+         `file3` is number 3 of the files of a run that are joined, `--data a.csv+b.csv`; this run has 2 files"
     );
     let missing = run("pos.csv+none.csv", &files, &mapping(at(10.0), "b", "c"));
     assert!(
         missing
             .expect_err("missing")
             .starts_with("none.csv: the file can't be read")
+    );
+}
+
+#[test]
+fn columns_of_joined_files_are_called_by_their_file() {
+    let told = |files: &[(&str, &str)], torque: &str| {
+        let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
+        let mapping = mapping(at(10.0), "file1.b", torque);
+        run(&names.join("+"), files, &mapping).expect_err("a slip")
+    };
+    let text = told(&[POSITIONS, TORQUES], "file2.C2");
+    assert!(
+        text.ends_with("help: did you mean `file2.c` for `file2.C2`?"),
+        "{text}"
+    );
+    let text = told(&[POSITIONS], "file2.c");
+    assert!(
+        text.ends_with("`file2` is number 2 of the files of a run that are joined, `--data a.csv+b.csv`; this run has 1 file"),
+        "{text}"
+    );
+    let text = told(
+        &[POSITIONS, ("bare.csv", "0.5,7\n1.5,8\n2.5,9\n")],
+        "file2.c",
+    );
+    assert!(
+        text.contains("bare.csv has no names: its columns are called by their numbers through all files, `$3` to `$4`"),
+        "{text}"
+    );
+    let text = told(&[POSITIONS, ("colons.csv", "a:c\n1:2\n3:4\n")], "file2.c");
+    assert!(
+        text.contains("colons.csv has one column only, `a:c`: separate columns by commas, semicolons, tabs or blanks"),
+        "{text}"
+    );
+    let text = told(&[POSITIONS, ("none.csv", "")], "file2.c");
+    assert!(text.starts_with("none.csv: the file is empty\n"), "{text}");
+    let text = told(&[POSITIONS, TORQUES], "file2.c Nm");
+    assert!(
+        text.contains("`file2.c Nm`: behind the column `file2.c` stands `Nm`"),
+        "{text}"
+    );
+    let text = told(&[POSITIONS, TORQUES], "deg2rad(file2.c)");
+    assert!(
+        text.contains("there is no function `deg2rad`; there are sin, cos"),
+        "{text}"
+    );
+    assert!(
+        text.contains("write `* pi/180` behind the column"),
+        "{text}"
+    );
+    // One file in the place of two.
+    let text = told(&[POSITIONS, POSITIONS], "file2.b");
+    assert!(
+        text.starts_with("pos.csv: the file is given twice in one run"),
+        "{text}"
+    );
+    // A line too many in one file is told alone, not with what follows from it.
+    let text = told(
+        &[POSITIONS, ("units.csv", "a;c\nrad;Nm\n1;7\n2;8\n3;9\n")],
+        "file2.c",
+    );
+    assert_eq!(
+        text.matches("error").count() + text.lines().count(),
+        2,
+        "{text}"
+    );
+}
+
+#[test]
+fn names_of_files_that_are_joined_otherwise_are_explained() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    for (name, text) in [POSITIONS, TORQUES] {
+        fs::write(folder.path().join(name), text).expect("written");
+    }
+    let mapping = mapping(at(10.0), "b", "c");
+    for between in [" + ", ",", " "] {
+        let both = format!("{}{between}{}", path("pos.csv"), path("torque.csv"));
+        let text = read(Path::new(&both), &mapping, false)
+            .expect_err("no file")
+            .to_string();
+        let joined = format!("`{}+{}`", path("pos.csv"), path("torque.csv"));
+        assert!(
+            text.contains("joined by `+` without blanks") && text.contains(&joined),
+            "{text}"
+        );
+    }
+    let with_input = format!("{}+-", path("pos.csv"));
+    let text = read(Path::new(&with_input), &mapping, false)
+        .expect_err("no file")
+        .to_string();
+    assert!(
+        text.contains("standard input can't be joined with files"),
+        "{text}"
     );
 }
 

@@ -146,7 +146,7 @@ fn files_that_are_cut_off_or_empty_are_refused() {
     );
     assert_eq!(
         log(&written("message log { }", &[]), &mapping).expect_err("no columns"),
-        "a.parquet: there are no columns `t`, `q`, `tau`; the file has none\n  help: name the columns in the mapping"
+        "a.parquet: there are no columns `t`, `q`, `tau`; the file has none\n  help: name the columns in the table [data]"
     );
     assert_eq!(
         log(b"PARE and more", &mapping).expect_err("encrypted"),

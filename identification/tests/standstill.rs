@@ -4,7 +4,7 @@ mod common;
 
 use common::{EMPS, PAIR};
 use overact::Model;
-use overact_identification::{Dataset, Identification, Log, Settings, identify};
+use overact_identification::{CheckKind, Dataset, Identification, Log, Settings, identify};
 use std::f64::consts::PI;
 
 const FREQUENCY: f64 = 1000.0;
@@ -86,6 +86,98 @@ fn equations_at_standstill_are_left_out_and_counted() {
             "{own:?} {other:?}"
         );
     }
+}
+
+#[test]
+fn limits_that_leave_little_are_told() {
+    let most = identified(vec![0.5]);
+    let left_out = most.runs[0].standstill_equations[0];
+    let all = left_out + most.estimates[0].equations;
+    assert!(2 * left_out > all, "{left_out} of {all}");
+    let expected = format!("{left_out} of {all} equations are left out at standstill");
+    let told = |text: &String| text.starts_with(&expected) && text.contains("`position_scale`");
+    assert!(most.warnings.iter().any(told), "{:?}", most.warnings);
+    let few = identified(vec![0.08]);
+    assert!(!few.warnings.iter().any(|text| text.contains("left out at")));
+    let log = log();
+    let refused = |settings: Settings| {
+        let dataset = Dataset {
+            runs: std::slice::from_ref(&log),
+            validation: &[],
+            true_values: None,
+            variants: &[],
+        };
+        let result = identify(&EMPS, &dataset, &settings, &|_| {});
+        result.expect_err("too little").to_string()
+    };
+    let text = refused(settings(vec![100.0]));
+    assert!(
+        text.starts_with("the data determine no parameter: `standstill_velocity` leaves out"),
+        "{text}"
+    );
+    let text = refused(Settings {
+        decimation: 5000,
+        ..settings(Vec::new())
+    });
+    assert!(
+        text.contains("`decimation` makes one equation of 5000 samples"),
+        "{text}"
+    );
+}
+
+/// What a check says of friction of 20 N whose part that is there at a speed is told.
+fn said_of(friction: impl Fn(f64) -> f64) -> String {
+    let mut log = log();
+    let (positions, _) = log.load().expect("numbers");
+    let rate = |k: usize| FREQUENCY * (positions[k + 1] - positions[k - 1]) / 2.0;
+    let bend =
+        |k: usize| FREQUENCY.powi(2) * (positions[k + 1] - 2.0 * positions[k] + positions[k - 1]);
+    let mut state = 1_u64;
+    let torques = (0..positions.len()).map(|k| {
+        let k = k.clamp(1, positions.len() - 2);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        let noise = (state >> 33) as f64 / f64::from(1_u32 << 31) - 0.5;
+        let part = 20.0 * friction(rate(k).abs()) * rate(k).signum();
+        95.0 * bend(k) + 200.0 * rate(k) + part + 2.0 * noise
+    });
+    let torques: Vec<f64> = torques.collect();
+    log = Log::new("rubbing", FREQUENCY, 1, positions, torques, false).expect("a log");
+    let dataset = Dataset {
+        runs: std::slice::from_ref(&log),
+        validation: &[],
+        true_values: None,
+        variants: &[],
+    };
+    let settings = settings(vec![0.004]);
+    let result = identify(&EMPS, &dataset, &settings, &|_| {}).expect("an identification");
+    let mut checks = result.checks.iter().filter(|check| !check.passed);
+    let words = checks.find(|check| check.kind == CheckKind::MissingParameter);
+    words.map(|check| check.located()).unwrap_or_default()
+}
+
+#[test]
+fn friction_near_standstill_rises_or_falls() {
+    let rises = said_of(|speed| 1.0 + (-speed / 0.07).exp());
+    assert!(
+        rises.starts_with("the friction in the torque of joint 1 rises towards standstill by "),
+        "{rises}"
+    );
+    assert!(
+        rises.contains(" N beyond the model, over about ") && rises.contains("`stribeck`"),
+        "{rises}"
+    );
+    let falls = said_of(|speed| 1.0 - (-speed / 0.07).exp());
+    assert!(
+        falls.starts_with("the friction in the torque of joint 1 falls towards standstill by "),
+        "{falls}"
+    );
+    assert!(falls.contains("That is not Stribeck's friction"), "{falls}");
+    assert!(
+        falls.contains("Equations below `standstill_velocity`, 0.004 m/s, are left out"),
+        "{falls}"
+    );
 }
 
 #[test]

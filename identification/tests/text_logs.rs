@@ -165,7 +165,8 @@ fn columns_that_are_not_there_are_named_by_number() {
             b"0;0;0\n0,1;0;0\n0,2;a,b;0\n",
             &numbered(Time::Frequency(10.0))
         ),
-        "log.txt:3: column `$2`: `a,b` is not a number"
+        "log.txt:3: column `$2`: `a,b` is not a number\n  help: cut the log before or after this line, or fill \
+         the gap; overact invents no samples"
     );
 }
 

@@ -61,7 +61,9 @@ fn loops_of_mjcf_are_chains_on_a_skeleton() {
 fn of_table() -> Options {
     let lengths = [("L1", 0.2), ("D3", 0.5), ("L2", 0.52), ("L3", 0.25)];
     Options {
-        values: lengths.map(|(name, value)| (name.to_owned(), value)).to_vec(),
+        values: lengths
+            .map(|(name, value)| (name.to_owned(), value))
+            .to_vec(),
         ..Options::default()
     }
 }
@@ -90,7 +92,10 @@ fn a_table_of_opensymoro_closes_its_loops() {
     let rod = rod.expect("the rod's joint");
     let parameters = &mechanism.legs[rod.leg].joints[rod.joint].parameters;
     assert!(parameters.len() >= 10, "{parameters:?}");
-    assert!(text.contains("No virtual experiment"), "the rod's mass is not known: {text}");
+    assert!(
+        text.contains("No virtual experiment"),
+        "the rod's mass is not known: {text}"
+    );
 }
 
 #[test]
@@ -112,7 +117,9 @@ fn every_robot_has_runs_inside_the_limits_of_its_joints() {
         let own = run.terms.iter().filter(|term| term.index == 2);
         let largest = (0..1000).map(|at| {
             let phase = |harmonic: f64| f64::from(at) / 1000.0 * std::f64::consts::TAU * harmonic;
-            let values = own.clone().map(|term| term.amplitude * (phase(f64::from(term.harmonic)) + term.phase).sin());
+            let values = own
+                .clone()
+                .map(|term| term.amplitude * (phase(f64::from(term.harmonic)) + term.phase).sin());
             values.sum::<f64>().abs()
         });
         let largest = largest.fold(0.0, f64::max);

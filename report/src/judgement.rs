@@ -1,7 +1,7 @@
 //! Verdicts and checks in words that page and terminal share.
 
 use overact_identification::{
-    Check, CheckKind, Grade, Identification, ModelKind, Stage, significant,
+    Check, CheckKind, Grade, Identification, ModelKind, Stage, significant, titled,
 };
 
 /// The grade as what to do.
@@ -47,7 +47,8 @@ pub(crate) fn place(check: &Check) -> String {
         .stages
         .iter()
         .map(|stage| crate::choice::stage_name(*stage).to_owned());
-    let rest = check.run.iter().chain(&check.actuator).cloned();
+    let actuator = check.actuator.iter().map(|name| titled(name));
+    let rest = check.run.iter().cloned().chain(actuator);
     let parts: Vec<String> = models.chain(stages).chain(rest).collect();
     parts.join(", ")
 }

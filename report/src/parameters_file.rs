@@ -9,14 +9,15 @@ use std::fmt::Write;
 pub fn parameters_file(identification: &Identification) -> Option<String> {
     let consistent: &Consistent = identification.consistent.first()?;
     let mut text = format!(
-        "# Physically consistent standard parameters of {}, SI units.\n# They leave {} % of the torques of {} unexplained, the base parameters {} %.\n\n[parameters]\n",
+        "# Physically consistent standard parameters of {}, SI units.\n# They leave {} % of the torques of {} unexplained, the base parameters {} %.\nrobot = \"{}\"\n\n[parameters]\n",
         visible(&identification.robot),
         significant(consistent.relative_error_percent, 4),
         match identification.runs.len() {
             1 => String::from("a run"),
             count => format!("{count} runs"),
         },
-        significant(consistent.base_relative_error_percent, 4)
+        significant(consistent.base_relative_error_percent, 4),
+        visible(&identification.robot)
     );
     for one in &consistent.parameters {
         let _ = writeln!(text, "{} = {:e} # {}", one.name, one.value, one.unit);

@@ -2,7 +2,7 @@
 //! recommended parameters, and what to do next. All tables are in `terminal`.
 
 use crate::{
-    choice::{answers, projection, stage_name},
+    choice::{answers, of, projection, stage_name},
     intervals::{excludes_zero, half_width_percent, is_outside},
     judgement::{grade_words, passed},
     layout::{line, table},
@@ -10,7 +10,8 @@ use crate::{
     text::{fitted, visible},
 };
 use overact_identification::{
-    Estimate, Grade, Identification, ParameterEstimate, Verdict, objections, significant,
+    Estimate, Estimator, Grade, Identification, ParameterEstimate, Stage, Verdict, objections,
+    significant,
 };
 
 /// Characters of a line of prose.
@@ -110,10 +111,44 @@ fn model(identification: &Identification, estimate: &Estimate) -> String {
             sureness(estimate)
         ),
     );
+    if let Some(others) = other_stages(identification, estimate) {
+        paragraph(&mut text, "  ", &others);
+    }
     if let Some(verdict) = verdict {
         text.push_str(&reasons(identification, verdict));
     }
     text
+}
+
+/// What all base parameters leave, by weighted and by ordinary least squares, and those that the rule of r_σ
+/// leaves: one line.
+fn other_stages(identification: &Identification, shown: &Estimate) -> Option<String> {
+    let percent = |one: &Estimate| format!("{} %", significant(one.relative_error_percent, 4));
+    let base = of(identification, shown.model, Stage::Base)?;
+    if base.stage == shown.stage {
+        return None;
+    }
+    let mut ordinary = identification
+        .estimates
+        .iter()
+        .filter(|one| one.estimator == Estimator::OrdinaryLeastSquares && one.model == shown.model);
+    let errors = match ordinary.next() {
+        Some(ordinary) => format!(
+            "{} (weighted), {} (ordinary)",
+            percent(base),
+            percent(ordinary)
+        ),
+        None => percent(base),
+    };
+    let all = base.parameters.len();
+    let rule = of(identification, shown.model, Stage::Essential).map(|one| {
+        let count = one.parameters.len();
+        format!("; {count} by the r_sigma rule leave {}", percent(one))
+    });
+    Some(format!(
+        "{all} base parameters leave {errors}{}.",
+        rule.unwrap_or_default()
+    ))
 }
 
 /// How well held-out runs are predicted.
@@ -141,10 +176,14 @@ fn sureness(estimate: &Estimate) -> String {
     let signs = estimate.parameters.iter().filter(|one| excludes_zero(one));
     match all - signs.count() {
         0 => String::new(),
-        unsure => format!(
-            " {} of them are known to 10 % or better; of {unsure} not even the sign is known.",
-            count(10.0)
-        ),
+        unsure => {
+            let known = match count(10.0) {
+                0 => String::from("None of them is"),
+                1 => String::from("1 of them is"),
+                more => format!("{more} of them are"),
+            };
+            format!(" {known} known to 10 % or better; of {unsure} not even the sign is known.")
+        }
     }
 }
 
@@ -157,6 +196,19 @@ fn reasons(identification: &Identification, verdict: &Verdict) -> String {
             "  ",
             &format!("To be used: {}.", verdict.listed.join(", ")),
         );
+        let estimate = of(identification, verdict.model, verdict.stage);
+        let names = estimate.iter().flat_map(|one| &one.parameters);
+        let names = names.map(|one| one.name.as_str());
+        let others: Vec<&str> = names
+            .filter(|name| !verdict.listed.iter().any(|own| own == name))
+            .collect();
+        if !others.is_empty() {
+            paragraph(
+                &mut text,
+                "  ",
+                &format!("Not to be used: {}.", others.join(", ")),
+            );
+        }
     }
     let found = objections(&identification.checks, verdict.model, verdict.stage);
     for (_, check) in &found.told {

@@ -19,6 +19,8 @@ enum Kind {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Units {
     kinds: BTreeMap<String, Kind>,
+    /// Whether the robot has a platform, whose coordinates have names of their own.
+    has_platform: bool,
 }
 
 impl Units {
@@ -50,7 +52,16 @@ impl Units {
                 }
             }
         }
-        Self { kinds }
+        let of_platform = |name: &&str| ["x", "y", "z", "phi", "qw", "rx"].contains(name);
+        Self {
+            kinds,
+            has_platform: info.coordinates.iter().any(of_platform),
+        }
+    }
+
+    /// Whether the robot has a platform.
+    pub(crate) const fn has_platform(&self) -> bool {
+        self.has_platform
     }
 
     /// Unit of a position or a coordinate; empty where it is not known.

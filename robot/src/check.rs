@@ -57,8 +57,8 @@ pub fn check(path: &Path) -> Result<CheckedFile, Error> {
 pub fn check_text(source: Source) -> Result<CheckedFile, Error> {
     match checked(&source) {
         Ok(checked) => Ok(CheckedFile {
+            note: note(&source, &checked.description, &checked.mechanism),
             file: source.name,
-            note: note(&checked.description, &checked.mechanism),
             mechanism: checked.mechanism,
         }),
         Err(diagnostics) => Err(Error::Description {

@@ -56,13 +56,28 @@ impl CompiledFile {
     /// What the description says that may not be meant.
     #[must_use]
     pub fn note(&self) -> Option<String> {
-        note(&self.description, &self.model.mechanism)
+        note(&self.source, &self.description, &self.model.mechanism)
     }
 }
 
-/// What a description says that may not be meant: a motor marked by mistake looks like redundancy, so
-/// redundancy that the description does not speak of is worth a word.
-pub(crate) fn note(description: &Description, mechanism: &Mechanism) -> Option<String> {
+/// What a description says that may not be meant, a line for each.
+pub(crate) fn note(
+    source: &Source,
+    description: &Description,
+    mechanism: &Mechanism,
+) -> Option<String> {
+    let doubts = description.doubts.iter().map(|doubt| {
+        let line = source.position(&doubt.span).line;
+        format!("line {line}: {}", doubt.value)
+    });
+    let mut notes: Vec<String> = doubts.collect();
+    notes.extend(redundancy(description, mechanism));
+    (!notes.is_empty()).then(|| notes.join("\n"))
+}
+
+/// A motor marked by mistake looks like redundancy, so redundancy that the description does not speak of is worth a
+/// word.
+fn redundancy(description: &Description, mechanism: &Mechanism) -> Option<String> {
     let (n, r) = (mechanism.actuated().len(), mechanism.dof());
     let said = (description.platform.as_ref()).is_some_and(|p| p.redundancy.is_some());
     // A skeleton's description has no key to say it.
@@ -86,7 +101,10 @@ pub(crate) fn note(description: &Description, mechanism: &Mechanism) -> Option<S
 /// # Errors
 /// A file that can't be read or is not UTF-8.
 pub(crate) fn read(path: &Path) -> Result<Source, Error> {
-    read_or(path, "`overact new planar-4rrr my.toml` writes a first one")
+    read_or(
+        path,
+        "check the path; `overact new` lists templates, and `overact new TEMPLATE my.toml` writes a first description",
+    )
 }
 
 /// Reads a text, from standard input where the path is `-`; `origin` says what writes such a file, where there is none.

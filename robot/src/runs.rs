@@ -1,7 +1,9 @@
 //! The runs of an identification: measured logs, or the virtual experiment.
 
 use crate::{error::Error, experiment::VirtualExperiment, robot::Robot};
-use overact_codegen::description::Instruments;
+use overact::Model;
+use overact_codegen::description::{self, Instruments};
+use overact_codegen::diagnostic::Code;
 use overact_identification::{
     Gain, Log, Mapping,
     data::{self, Array},
@@ -42,9 +44,9 @@ impl Robot {
         let mapping = self.mapping();
         let (mut logs, mut errors) = (Vec::new(), Vec::new());
         for log in data::read_all(files, &mapping, progress) {
-            match log {
+            match log.and_then(|log| self.meant(log)) {
                 Ok(log) => logs.push(log),
-                Err(error) => errors.push(Error::from(error)),
+                Err(error) => errors.push(self.located(error).into()),
             }
         }
         if errors.is_empty()
@@ -72,7 +74,9 @@ impl Robot {
         payload: bool,
     ) -> Result<Log, Error> {
         let mapping = self.mapping();
-        let log = data::read_arrays(name, arrays, &mapping, payload)?;
+        let log = data::read_arrays(name, arrays, &mapping, payload);
+        let log = log.and_then(|log| self.meant(log));
+        let log = log.map_err(|error| self.located(error))?;
         match self.references(&mapping) {
             None => Ok(log),
             Some(mapping) => {
@@ -87,13 +91,65 @@ impl Robot {
     /// As [`read_logs`](Self::read_logs).
     pub fn log_of_bytes(&self, name: &str, bytes: Arc<[u8]>, payload: bool) -> Result<Log, Error> {
         let mapping = self.mapping();
-        let log = data::read_bytes(name, &bytes, &mapping, payload)?;
+        let log = data::read_bytes(name, &bytes, &mapping, payload);
+        let log = log.and_then(|log| self.meant(log));
+        let log = log.map_err(|error| self.located(error))?;
         match self.references(&mapping) {
             None => Ok(log),
             Some(mapping) => {
                 Ok(log.with_instruments(data::read_bytes(name, &bytes, &mapping, payload)?))
             }
         }
+    }
+
+    /// A log whose columns can be what the description calls them.
+    fn meant(&self, log: Log) -> Result<Log, overact_identification::Error> {
+        log.check_meaning(self.model().info().actuators)?;
+        Ok(log)
+    }
+
+    /// An error that says where the description names the columns that are wrong.
+    fn located(&self, error: overact_identification::Error) -> overact_identification::Error {
+        let mut error = error;
+        for problem in &mut error.problems {
+            let of_columns = [Code::LOG_COLUMNS, Code::SAME_COLUMN].contains(&problem.code);
+            if let (true, Some(column)) = (of_columns, &problem.column) {
+                let place = self.place_of_column(column);
+                let help = match problem.help.take() {
+                    Some(help) if help.ends_with('?') => {
+                        format!("{help} The names stand in {place}")
+                    }
+                    Some(help) => format!("{help}; columns are named in {place}"),
+                    None => format!("columns are named in {place}"),
+                };
+                problem.help = Some(help);
+            }
+        }
+        error
+    }
+
+    /// Where the description names a column, or one of its lists of columns, in words.
+    fn place_of_column(&self, column: &str) -> String {
+        let Some(data) = &self.description().data else {
+            return String::from(
+                "the table [data] of the description; without it they are `time`, `q_` and `tau_` with the actuator's name",
+            );
+        };
+        let lists = [
+            ("positions", &data.positions),
+            ("torques", &data.torques),
+            ("velocities", &data.velocities),
+        ];
+        let path = lists.into_iter().find_map(|(key, names)| {
+            let place = names.iter().position(|name| name == column);
+            let place = place.or_else(|| names.iter().position(|name| name.contains(column)));
+            let whole = (key == column).then(|| format!("data.{key}"));
+            whole.or_else(|| place.map(|place| format!("data.{key}[{place}]")))
+        });
+        let path = path.unwrap_or_else(|| String::from("data.time"));
+        let span = description::place(self.source(), &path);
+        let line = span.map_or(1, |span| self.source().position(&span).line);
+        format!("the table [data], {}:{line}", self.file())
     }
 
     /// Where the references of runs stand, if the robot is to be simulated along them.

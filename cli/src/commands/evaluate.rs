@@ -104,6 +104,24 @@ struct Document {
     results: Vec<BTreeMap<&'static str, Vec<f64>>>,
 }
 
+/// What states may hold: the inputs of all functions, and where forward kinematics starts.
+const QUANTITIES: [&str; 14] = [
+    "pose",
+    "twist",
+    "acceleration",
+    "joints",
+    "joint_velocities",
+    "joint_accelerations",
+    "actuators",
+    "actuator_velocities",
+    "actuator_accelerations",
+    "torques",
+    "parameters",
+    "base_parameters",
+    "preload",
+    "start",
+];
+
 /// Runs the command.
 ///
 /// # Errors
@@ -130,6 +148,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         ..
     } = input::compiled(&arguments.file, &request, as_json)?;
     let states = States::read(&arguments.states)?;
+    let unknown = states.unknown(&QUANTITIES);
+    tell_doubts(unknown.as_slice(), as_json);
     if let Some(names) = &arguments.kept {
         model = with_kept(model, names, &request)?;
     }

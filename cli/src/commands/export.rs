@@ -64,7 +64,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Usage(message));
     }
     let others = beside(file, output, &exported)?;
-    let all: Vec<&Path> = outputs.iter().copied().chain(others.iter().map(|(path, _)| path.as_path())).collect();
+    let all: Vec<&Path> = outputs
+        .iter()
+        .copied()
+        .chain(others.iter().map(|(path, _)| path.as_path()))
+        .collect();
     let inputs: Vec<&Path> = exported.inputs.iter().map(PathBuf::as_path).collect();
     check(&inputs, &all)?;
     tell(&exported);
@@ -79,10 +83,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Included files that changed, with the paths beside the output that stand to it as theirs to the file.
-fn beside(file: &Path, output: Option<&Path>, exported: &Exported) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+fn beside(
+    file: &Path,
+    output: Option<&Path>,
+    exported: &Exported,
+) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let place = |(path, text): &(PathBuf, String)| {
-        let inside = path.strip_prefix(folder).ok().filter(|p| p.components().all(|c| c.as_os_str() != ".."));
+        let inside = path
+            .strip_prefix(folder)
+            .ok()
+            .filter(|p| p.components().all(|c| c.as_os_str() != ".."));
         match (inside, output) {
             (Some(inside), Some(output)) => {
                 let to = output.parent().unwrap_or(Path::new("")).join(inside);

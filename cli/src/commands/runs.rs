@@ -99,6 +99,9 @@ impl Arguments {
     pub(super) fn runs(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
         if self.are_virtual() {
             self.made(robot, as_json)
+        } else if self.seed.is_some() {
+            let message = "`--seed` is for the noise of the virtual experiment: leave it out beside `--data` and `--payload-data`";
+            Err(Failure::Usage(message.to_owned()))
         } else {
             self.measured(robot, as_json)
         }

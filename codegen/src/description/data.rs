@@ -1,12 +1,13 @@
 //! The table `[data]`: how a measured log maps on the robot.
 
 use super::dimension::Dimension;
+use super::doubt;
 use super::experiment::position;
 use super::inventory::Inventory;
-use super::model::actuators;
+use super::model::{JointKind, actuators};
 use super::reader::{Item, Table};
 use super::transmission;
-use crate::diagnostic::{Code, Span};
+use crate::diagnostic::{Code, Diagnostic, Span};
 
 /// How a measured log maps on the robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,6 +60,9 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     let listed = |item: Item<'_, '_>| {
         let names = item.strings()?;
         check_count(&item, names.len(), count)?;
+        for element in item.list()? {
+            doubt::column(&element, element.value.as_str().unwrap_or_default());
+        }
         Some(names.into_iter().map(|name| name.value).collect::<Vec<_>>())
     };
     let columns = |key: &str| listed(table.require(key, "give one column for each actuator")?);
@@ -83,11 +87,17 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     let position_scale = position_scale.and_then(|scales| numbers(&table, &scales));
     let position_offset = offsets(&table, robot);
     let coordinates = table.get("coordinates");
+    let of_joints = gains_of_joints(&table, robot);
     let motors = coordinates.as_ref().and_then(|item| {
         let choice = item.choice(&[("joints", false), ("motors", true)])?;
         choice.value.then_some(item)
     });
     let transmission = motors.map_or(Some(Vec::new()), |item| transmission::matrix(item, robot));
+    if motors.is_none() {
+        of_joints
+            .into_iter()
+            .for_each(|error| table.context.report_once(error));
+    }
     table.finish();
     Some(Data {
         time: time?,
@@ -147,11 +157,9 @@ fn numbers(table: &Table<'_, '_>, scales: &[Factor]) -> Option<Vec<f64>> {
             let message = format!("`position_scale`: `{name}` is neither a number nor a constant");
             let span = table.get("position_scale").map(|item| item.span);
             let span = span.unwrap_or(table.span.clone());
-            table.context.report(crate::diagnostic::Diagnostic::new(
-                Code::SAME_NAME,
-                message,
-                span,
-            ));
+            table
+                .context
+                .report(Diagnostic::new(Code::SAME_NAME, message, span));
             None
         }
     };
@@ -189,6 +197,49 @@ pub(super) fn check_count(item: &Item<'_, '_>, found: usize, expected: usize) ->
     );
     item.context.report(item.error(Code::WRONG_COUNT, message));
     None
+}
+
+/// Gains of joints whose unit is that of the other kind of joint: newtons at a revolute one, newton metres at a
+/// prismatic one.
+fn gains_of_joints(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Diagnostic> {
+    let Some(item) = table.get("torque_gain") else {
+        return Vec::new();
+    };
+    let kinds = robot.actuator_kinds();
+    let list = match item.value.is_array() {
+        true => item.list().unwrap_or_default(),
+        false => vec![item.clone(); kinds.len()],
+    };
+    let other = |(item, kind): (&Item<'_, '_>, &JointKind)| {
+        let (own, other) = match kind {
+            JointKind::Prismatic => (Dimension::FORCE, Dimension::TORQUE),
+            _ => (Dimension::TORQUE, Dimension::FORCE),
+        };
+        // Names of variables have no dimension.
+        let text = item.value.as_str().unwrap_or_default().trim();
+        if super::scope::is_word(text) {
+            return None;
+        }
+        let value = item.evaluate(robot.scope)?;
+        let signals = [Dimension::NONE, Dimension::VOLTAGE, Dimension::CURRENT];
+        let mut wrong = signals
+            .iter()
+            .filter_map(|signal| other.times(signal.power(-1)?));
+        wrong.any(|wrong| wrong == value.dimension).then(|| {
+            let joint = match kind {
+                JointKind::Prismatic => "prismatic",
+                _ => "revolute",
+            };
+            let message = format!(
+                "`torque_gain`: the column of a {joint} joint becomes {}, this makes {} of it",
+                own.describe(),
+                other.describe()
+            );
+            let help = "give the factor from the column to N m (revolute) or N (prismatic), such as \"35 Nm/V\"";
+            item.error(Code::UNIT, message).help(help)
+        })
+    };
+    list.iter().zip(&kinds).filter_map(other).collect()
 }
 
 /// A bare identifier that is no constant is the name of a variable in the log. The unit of a log is

@@ -45,6 +45,9 @@ pub struct Description {
     pub prior: Prior,
     /// Settings of the identification.
     pub identification: Identification,
+    /// What the text says that may not be meant, in the order of the text: numbers without a unit that are
+    /// those of another one, for instance.
+    pub doubts: Vec<Spanned<String>>,
 }
 
 /// Which independent columns stand for the base parameters, among choices of equal rank.

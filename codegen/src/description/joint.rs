@@ -1,6 +1,7 @@
 //! The joints of a placed leg: geometry, and which joint follows which.
 
 use super::dimension::Dimension;
+use super::doubt;
 use super::friction;
 use super::model::{Joint, JointKind, Spanned};
 use super::reader::{Item, Table};
@@ -23,8 +24,13 @@ pub(super) fn read(
 ) -> Vec<Joint> {
     let mut scope = names.clone();
     for (index, joint) in shape.joints.iter().enumerate() {
-        if let Some(dimension) = dimension(joint.kind.value) {
-            scope.add(joint.variable(), Some(Value::variable(index, dimension)));
+        match dimension(joint.kind.value) {
+            Some(dimension) => {
+                scope.add(joint.variable(), Some(Value::variable(index, dimension)));
+            }
+            // Whoever actuates a fixed joint has been told so, and means a variable.
+            None if joint.actuated => scope.add(joint.variable(), None),
+            None => {}
         }
     }
     let joints = shape.joints.iter().enumerate();
@@ -142,11 +148,17 @@ impl Reader<'_, '_, '_> {
 
     fn angle(&self, item: Option<&Item<'_, '_>>, scope: &Scope) -> Spanned<Angle> {
         let value = item.and_then(|item| item.angle(scope));
+        if let (Some(item), Some(value)) = (item, &value) {
+            doubt::angle(item, value.value);
+        }
         value.unwrap_or_else(|| self.spanned(item, Angle::ZERO))
     }
 
     fn length(&self, item: Option<&Item<'_, '_>>, scope: &Scope) -> Spanned<Number> {
         let value = item.and_then(|item| item.number(Dimension::LENGTH, scope));
+        if let (Some(item), Some(value)) = (item, &value) {
+            doubt::length(item, value.value);
+        }
         value.unwrap_or_else(|| self.spanned(item, Number::ZERO))
     }
 
@@ -167,6 +179,11 @@ impl Reader<'_, '_, '_> {
         if let Some(problem) = self.problem(&value, item) {
             item.context.report_once(problem);
             return own;
+        }
+        match (dimension, value.scalar.to_angle()) {
+            (Dimension::LENGTH, _) => doubt::length(item, value.scalar.to_number()),
+            (_, Some(angle)) => doubt::angle(item, angle),
+            (_, None) => {}
         }
         (value.scalar, value.terms)
     }

@@ -14,6 +14,7 @@ mod controller;
 mod data;
 mod dimension;
 mod document;
+mod doubt;
 mod drives;
 mod excitation;
 mod experiment;

@@ -3,10 +3,10 @@
 use super::document::Description;
 use super::experiment::{TrueParameter, parameters};
 use super::inventory::Inventory;
-use super::reader::{Context, Table};
+use super::reader::{Context, Item, Table};
 use super::robot::syntax;
 use super::scope::Scope;
-use crate::diagnostic::{Diagnostics, Source};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source};
 use toml::de::DeTable;
 
 /// Reads a file with a table `[parameters]` of a robot's standard parameters, as an identification writes it.
@@ -34,7 +34,30 @@ pub fn parse_parameters(
         "parameters",
         "a table `[parameters]` with a value for each parameter",
     );
+    let of_other = table
+        .get("robot")
+        .and_then(|item| of_other(&item, description));
+    // Its parameters would be wrong one by one.
+    if let Some(of_other) = of_other {
+        return Err(of_other.into());
+    }
     let found = item.map(|item| parameters(&item, &robot));
     table.finish();
     context.into_errors().into_result(found.unwrap_or_default())
+}
+
+/// What is said of parameters of another robot than the described one.
+fn of_other(item: &Item<'_, '_>, description: &Description) -> Option<Diagnostic> {
+    let name = item.string()?;
+    let own = [description.name.value.clone(), description.type_name()];
+    if own.contains(&name.value) {
+        return None;
+    }
+    let message = format!(
+        "these are the parameters of `{}`, and the robot is `{}`",
+        name.value, own[0]
+    );
+    let error = Diagnostic::new(Code::PARAMETERS_FILE, message, name.span);
+    let help = "give the file of this robot; where another name is the same robot, leave the key `robot` out";
+    Some(error.help(help))
 }

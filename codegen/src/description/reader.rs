@@ -12,6 +12,8 @@ use toml::de::{DeTable, DeValue};
 pub(super) struct Context<'t> {
     source: &'t Source,
     errors: RefCell<Diagnostics>,
+    /// What may not be meant, though it can be read.
+    doubts: RefCell<Vec<Spanned<String>>>,
 }
 
 impl<'t> Context<'t> {
@@ -19,6 +21,7 @@ impl<'t> Context<'t> {
         Self {
             source,
             errors: RefCell::default(),
+            doubts: RefCell::default(),
         }
     }
 
@@ -36,6 +39,21 @@ impl<'t> Context<'t> {
         if !known {
             self.report(diagnostic);
         }
+    }
+
+    /// Notes what may not be meant, once for a place.
+    pub(super) fn doubt(&self, what: String, span: &Span) {
+        let mut doubts = self.doubts.borrow_mut();
+        if !doubts.iter().any(|known| known.span == *span) {
+            doubts.push(Spanned::new(what, span.clone()));
+        }
+    }
+
+    /// What may not be meant, in the order of the text.
+    pub(super) fn doubts(&self) -> Vec<Spanned<String>> {
+        let mut doubts = self.doubts.borrow().clone();
+        doubts.sort_by_key(|doubt| doubt.span.start);
+        doubts
     }
 
     /// Whether no error is known.

@@ -1,5 +1,6 @@
 //! The tables `[leg.NAME]`: legs written once, read without evaluating their expressions.
 
+use super::doubt;
 use super::model::{JointKind, Spanned};
 use super::motor::{self, MotorShape};
 use super::parameters::Owner;
@@ -278,6 +279,9 @@ fn joint<'c, 't>(
         table
             .context
             .report(item.error(Code::ACTUATED, "a fixed joint cannot be actuated"));
+    }
+    if kind.value == JointKind::Fixed {
+        doubt::payload(table.context, &name);
     }
     let owner = Owner::Joint(kind.value);
     let parameters = table

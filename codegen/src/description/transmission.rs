@@ -30,6 +30,10 @@ pub(super) fn matrix(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<V
         .collect();
     let help = "describe each motor as [[leg.NAME.motor]] with turns = \"q1\" and its gear's ratio";
     if rows.len() != actuated.len() {
+        // After another error nobody knows how many motors and joints were meant.
+        if !item.context.is_clean() {
+            return None;
+        }
         let message = format!(
             "a log of motors needs as many motors as actuated joints, {}, but {} are described",
             actuated.len(),

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::evidence::Evidence;
-use crate::{regression::projection::ModelKind, result::Stage};
+use crate::{called::titled, regression::projection::ModelKind, result::Stage};
 
 /// One result of one check. A check that found nothing wrong is a result, too: it allows
 /// [`Grade::Use`], and its words say what was seen.
@@ -342,7 +342,10 @@ impl Check {
     /// Its words behind the run and the actuator that they are about.
     #[must_use]
     pub fn located(&self) -> String {
-        let place = self.run.iter().chain(&self.actuator);
+        let actuator = self.actuator.iter().map(|name| titled(name));
+        // A joint that is but a number is called a joint, once.
+        let actuator = actuator.filter(|name| !self.words.contains(name) || !name.contains(' '));
+        let place = self.run.iter().cloned().chain(actuator);
         let mut text: String = place.map(|part| format!("{part}: ")).collect();
         text.push_str(&self.words);
         text

@@ -5,10 +5,10 @@
 
 use super::{
     expression::Expression,
-    problems::{legible, missing_columns, shown},
+    problems::{guesses, legible, missing_columns, no_columns, quoted, shown},
     table::Table,
 };
-use crate::error::{Error, Problem};
+use crate::error::{Error, Problem, suggestion};
 use overact::Code;
 
 /// Where a column is: number of the file, place in it.
@@ -69,22 +69,67 @@ impl<'a> Columns<'a> {
             Ok(expression) => expression,
             // A name of several words is no attempt at an expression.
             Err(_) if !text.contains(['+', '-', '*', '/', '^', '(', ')', '$', '\'']) => {
+                match self.with_unit(text) {
+                    Some(problem) => self.note(problem),
+                    None => self.is_missing(text),
+                }
+                nothing
+            }
+            // Names may have parentheses, as around a unit.
+            Err(_) if self.is_near(text) => {
                 self.is_missing(text);
                 nothing
             }
             Err(why) => {
-                let message = format!(
-                    "`{}` is neither a column nor an expression of columns: {why}",
-                    shown(text)
-                );
-                let problem = Problem::new(Code::LOG_COLUMNS, message)
-                    .file(self.run)
-                    .column(text);
-                let help = "put names with blanks or signs between single quotation marks: `'motor 1' / 50`";
-                self.note(problem.help(help));
+                self.note(self.broken(text, &why));
                 nothing
             }
         }
+    }
+
+    /// Whether a column has nearly this name, of which parentheses are a part.
+    fn is_near(&self, text: &str) -> bool {
+        let mut tables = self.tables.iter();
+        text.ends_with([')', ']'])
+            && tables.any(|table| {
+                let names = table.existing().names.into_iter();
+                suggestion(text, names.filter(|name| name.contains(['(', '[']))).is_some()
+            })
+    }
+
+    /// What is said of a text that is no expression.
+    fn broken(&self, text: &str, why: &str) -> Problem {
+        let message = format!(
+            "`{}` is neither a column nor an expression of columns: {why}",
+            shown(text)
+        );
+        let problem = Problem::new(Code::LOG_COLUMNS, message)
+            .file(self.run)
+            .column(text);
+        problem.help(way_out(text))
+    }
+
+    /// What is said of a column with a unit behind it.
+    fn with_unit(&self, text: &str) -> Option<Problem> {
+        let (name, unit) = text.trim().rsplit_once(char::is_whitespace)?;
+        let name = name.trim();
+        self.find(name).ok().flatten()?;
+        let message = format!(
+            "`{}`: behind the column `{}` stands `{}`",
+            shown(text),
+            shown(name),
+            shown(unit)
+        );
+        let help = match unit {
+            "deg" | "°" | "degrees" => {
+                format!("write `{name} * pi/180`, or `position_scale = \"1 deg\"` in [data]")
+            }
+            _ => String::from(
+                "give the unit of the columns as `position_scale` or `torque_gain` in [data], or multiply: `* 0.001`",
+            ),
+        };
+        let problem = Problem::new(Code::LOG_COLUMNS, message).file(self.run);
+        Some(problem.column(text).help(help))
     }
 
     /// All columns of this name, each in another file.
@@ -245,26 +290,132 @@ impl<'a> Columns<'a> {
     /// What is said of columns that are not there.
     fn missing(&self) -> Problem {
         let missing: Vec<&str> = self.missing.iter().map(String::as_str).collect();
-        let files = self.tables.iter().map(Table::existing);
-        let all = files.reduce(|mut all, own| {
-            all.names.extend(own.names);
-            all.columns += own.columns;
-            all
-        });
-        let Some(existing) = all else {
-            return Problem::new(Code::UNREADABLE_LOG, "the run has no file").file(self.run);
+        let problem = match self.tables {
+            [] => {
+                return Problem::new(Code::UNREADABLE_LOG, "the run has no file").file(self.run);
+            }
+            [first, others @ ..] if self.numbers.iter().all(|number| *number == 1) => {
+                let parts = others.iter().map(Table::existing);
+                let existing = parts.fold(first.existing(), |mut all, own| {
+                    all.names.extend(own.names);
+                    all.columns += own.columns;
+                    all
+                });
+                missing_columns(self.run, &missing, &existing)
+            }
+            _ => self.missing_in_several(&missing),
         };
-        let problem = missing_columns(self.run, &missing, &existing);
         let mut matrices = self.tables.iter().flat_map(|table| {
             let first = |name: &&str| table.first_column(name);
             missing.iter().filter_map(first)
         });
-        match matrices.next() {
-            Some(first) => problem.help(format!(
+        if let Some(first) = matrices.next() {
+            return problem.help(format!(
                 "of a matrix name the columns one by one, `{}` is the first",
                 shown(first)
-            )),
+            ));
+        }
+        let help = self
+            .missing_file(&missing)
+            .or_else(|| self.without_names(&missing))
+            .or_else(|| self.one_column());
+        match help {
+            Some(help) => problem.help(help),
             None => problem,
         }
     }
+
+    /// What is said of columns that none of several files has: those that there are, each with its file.
+    fn missing_in_several(&self, missing: &[&str]) -> Problem {
+        let (mut bare, mut full, mut columns) = (Vec::new(), Vec::new(), 0);
+        for (table, number) in self.tables.iter().zip(self.numbers) {
+            let own = table.existing();
+            columns += own.columns;
+            bare.extend(own.names.iter().copied());
+            let names = own.names.iter();
+            full.extend(names.map(|name| format!("file{number}.{name}")));
+        }
+        let full: Vec<&str> = full.iter().map(String::as_str).collect();
+        let all: Vec<&str> = full.iter().chain(&bare).copied().collect();
+        let what = self.tables[0].existing().what;
+        let existing = match full.is_empty() {
+            false => format!("the files have {}", quoted(full.iter().copied())),
+            true => format!("the files have {columns} columns, without names"),
+        };
+        let problem = no_columns(self.run, (missing, what), &existing);
+        if missing.iter().any(|name| name.starts_with('$')) {
+            problem.help(format!(
+                "the columns that can be called by number are `$1` to `${columns}`; where the others stand in another file of this run, give both as one, `a.csv+b.csv`"
+            ))
+        } else if let Some(guesses) = guesses(missing, &all) {
+            problem.help(guesses)
+        } else {
+            problem.help("name the columns in the table [data]")
+        }
+    }
+
+    /// The way out where a name speaks of a file that was not given.
+    fn missing_file(&self, missing: &[&str]) -> Option<String> {
+        let files = self.numbers.iter().max().copied().unwrap_or(0);
+        let of = |name: &&str| -> Option<usize> {
+            let (number, _) = name.strip_prefix("file")?.split_once('.')?;
+            number.parse().ok().filter(|number| *number > files)
+        };
+        let number = missing.iter().find_map(of)?;
+        let s = if files == 1 { "" } else { "s" };
+        Some(format!(
+            "`file{number}` is number {number} of the files of a run that are joined, `--data a.csv+b.csv`; this run has {files} file{s}"
+        ))
+    }
+
+    /// The way out where a file without names is asked for a name.
+    fn without_names(&self, missing: &[&str]) -> Option<String> {
+        let mut first = 1;
+        for (table, number) in self.tables.iter().zip(self.numbers) {
+            let own = table.existing();
+            let prefix = format!("file{number}.");
+            let is_asked = missing.iter().any(|name| name.starts_with(&prefix));
+            if is_asked && own.names.is_empty() && own.columns > 0 {
+                let last = first + own.columns - 1;
+                let file = shown(table.file());
+                return Some(format!(
+                    "{file} has no names: its columns are called by their numbers through all files, `${first}` to `${last}`"
+                ));
+            }
+            first += own.columns;
+        }
+        None
+    }
+
+    /// The way out where a text has one column only, whose name is many.
+    fn one_column(&self) -> Option<String> {
+        let is_many = |name: &&str| name.contains([':', '|', '/', '!']);
+        self.tables.iter().find_map(|table| {
+            let own = table.existing();
+            let name = own.names.iter().copied().find(is_many)?;
+            (own.columns == 1).then(|| {
+                format!(
+                    "{} has one column only, `{}`: separate columns by commas, semicolons, tabs or blanks",
+                    shown(table.file()),
+                    shown(name)
+                )
+            })
+        })
+    }
+}
+
+/// The way out of a text that is no expression.
+fn way_out(text: &str) -> String {
+    let angle = ["deg2rad(", "radians(", "rad("];
+    let back = ["rad2deg(", "degrees(", "deg("];
+    let has = |names: &[&str]| names.iter().any(|name| text.contains(name));
+    if has(&angle) {
+        return String::from(
+            "write `* pi/180` behind the column, or `position_scale = \"1 deg\"` in [data]",
+        );
+    }
+    if has(&back) {
+        return String::from("positions are to be in rad; without a function write `* 180/pi`");
+    }
+    String::from("put names with blanks or signs between single quotation marks: `'motor 1' / 50`")
 }

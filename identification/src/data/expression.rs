@@ -323,7 +323,12 @@ impl<'a> Parser<'a> {
         }
         let Some(&(_, function, count)) = known else {
             // A column of a matrix: all up to the parenthesis that closes.
-            self.while_is(|c| c != ')');
+            let place = self.while_is(|c| c != ')');
+            if place.contains(|c: char| c.is_alphabetic() || c == '$' || c == '\'') {
+                let known: Vec<&str> = FUNCTIONS.iter().map(|(name, ..)| *name).collect();
+                let known = known.join(", ");
+                return Err(format!("there is no function `{name}`; there are {known}"));
+            }
             self.expect(')')?;
             let end = self.place();
             return (self.column)(&self.text[start..end]);

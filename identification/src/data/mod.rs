@@ -23,6 +23,7 @@ mod mapping;
 mod mat_file;
 #[cfg(feature = "mcap")]
 mod mcap_file;
+mod meaning;
 mod medium;
 mod numpy;
 mod opening;

@@ -30,6 +30,8 @@ impl Files {
                 Err(error) => problems.extend(error.problems),
             }
         }
+        problems.extend(tables.iter().filter_map(Table::without_lines));
+        problems.extend(twice(files));
         Error::check(problems)?;
         Self::of_tables(name, (tables, numbers), mapping)
     }
@@ -205,6 +207,24 @@ impl Files {
             passed(rate, is_lower)
         ))
     }
+}
+
+/// What is said of one file that is to be joined with itself.
+fn twice(files: &[&Path]) -> Option<Problem> {
+    let places: Vec<_> = files
+        .iter()
+        .map(|file| std::fs::canonicalize(file).ok())
+        .collect();
+    let mut all = places.iter().enumerate();
+    let (number, _) = all.find(|(number, own)| own.is_some() && places[..*number].contains(own))?;
+    let message =
+        "the file is given twice in one run, so that its columns would stand for two things";
+    let problem = Problem::new(Code::LOG_FILES, message).file(display_name(files[number]));
+    Some(
+        problem.help(
+            "give the file once, or the other one that is meant: `positions.csv+torques.csv`",
+        ),
+    )
 }
 
 /// A rate with as many digits as matter.

@@ -51,14 +51,33 @@ pub(super) fn unreadable(file: &str, error: &std::io::Error) -> Problem {
     )
     .file(file);
     if error.kind() == std::io::ErrorKind::NotFound {
-        problem.help("check the path; it is taken from the folder in which the program was started")
+        problem.help(not_found(file))
     } else {
         problem
     }
 }
 
+/// The way out where there is no file of a name: pieces of it may be files.
+fn not_found(file: &str) -> String {
+    if file == "-" {
+        return String::from("standard input can't be joined with files: write it to a file first");
+    }
+    let pieces: Vec<&str> = file.split(['+', ',', ';', ' ']).map(str::trim).collect();
+    let pieces: Vec<&str> = pieces
+        .into_iter()
+        .filter(|piece| !piece.is_empty())
+        .collect();
+    if pieces.len() > 1 && pieces.iter().all(|piece| Path::new(piece).exists()) {
+        return format!(
+            "files of one run are joined by `+` without blanks: `{}`; of several runs give each file with its own --data",
+            pieces.join("+")
+        );
+    }
+    String::from("check the path; it is taken from the folder in which the program was started")
+}
+
 /// Several names between marks of quotation.
-fn quoted<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+pub(super) fn quoted<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let all: Vec<String> = names
         .into_iter()
         .map(|name| format!("`{}`", shown(name)))
@@ -114,43 +133,52 @@ pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<
         columns,
         what,
     } = existing;
-    let mut problem = Problem::new(
-        Code::LOG_COLUMNS,
-        format!(
-            "there {} no {what}{} {}; the file has {}",
-            if missing.len() == 1 { "is" } else { "are" },
-            if missing.len() == 1 { "" } else { "s" },
-            quoted(missing.iter().copied()),
-            match (names.is_empty(), columns) {
-                (false, _) => quoted(names.iter().copied()),
-                (true, 0) => String::from("none"),
-                (true, 1) => String::from("one column, without a name"),
-                (true, count) => format!("{count} columns, without names"),
-            }
-        ),
-    )
-    .file(file);
-    if let Some(first) = missing.first() {
-        problem = problem.column(*first);
-    }
-    let guesses: Vec<String> = missing
-        .iter()
-        .filter_map(|name| {
-            suggestion(name, names.iter().copied())
-                .map(|near| format!("`{}` for `{name}`", shown(near)))
-        })
-        .collect();
+    let problem = no_columns(
+        file,
+        (missing, what),
+        &match (names.is_empty(), columns) {
+            (false, _) => format!("the file has {}", quoted(names.iter().copied())),
+            (true, 0) => String::from("the file has none"),
+            (true, 1) => String::from("the file has one column, without a name"),
+            (true, count) => format!("the file has {count} columns, without names"),
+        },
+    );
     if *columns > 0 && missing.iter().any(|name| name.starts_with('$')) {
         problem.help(format!(
             "the columns that can be called by number are `$1` to `${columns}`; where the others stand in another file of this run, give both as one, `a.csv+b.csv`"
         ))
-    } else if !guesses.is_empty() {
-        problem.help(format!("did you mean {}?", guesses.join(", ")))
+    } else if let Some(guesses) = guesses(missing, names) {
+        problem.help(guesses)
     } else if names.is_empty() && *columns > 0 {
         problem.help(
             "name the columns in the table [data] by their numbers: `$1` is the first one, `$2` the next",
         )
     } else {
-        problem.help("name the columns in the mapping")
+        problem.help("name the columns in the table [data]")
     }
+}
+
+/// The error that names columns that are missing, and what there is in their place.
+pub(super) fn no_columns(file: &str, (missing, what): (&[&str], &str), existing: &str) -> Problem {
+    let (is, s) = match missing.len() {
+        1 => ("is", ""),
+        _ => ("are", "s"),
+    };
+    let names = quoted(missing.iter().copied());
+    let message = format!("there {is} no {what}{s} {names}; {existing}");
+    let problem = Problem::new(Code::LOG_COLUMNS, message).file(file);
+    match missing.first() {
+        Some(first) => problem.column(*first),
+        None => problem,
+    }
+}
+
+/// Names that may have been meant by those that are missing.
+pub(super) fn guesses(missing: &[&str], names: &[&str]) -> Option<String> {
+    let near = missing.iter().filter_map(|name| {
+        let near = suggestion(name, names.iter().copied())?;
+        Some(format!("`{}` for `{}`", shown(near), shown(name)))
+    });
+    let near: Vec<String> = near.collect();
+    (!near.is_empty()).then(|| format!("did you mean {}?", near.join(", ")))
 }

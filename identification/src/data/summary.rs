@@ -4,7 +4,8 @@ use super::{
     clock::Clock, mapping::Time, problems::LARGEST_NUMBER_OF_PROBLEMS, rows::Rows,
     samples::Samples, source::Files, spill::Spill, table::Table,
 };
-use crate::error::Error;
+use crate::error::{Error, Problem};
+use overact::Code;
 
 /// Numbers of one run that are kept in memory (8 MB); arrays are in memory anyhow.
 const LARGEST_IN_MEMORY: usize = 1 << 20;
@@ -61,7 +62,17 @@ impl Files {
                     last = time;
                 }
                 Ok(false) => break,
-                Err(error) => problems.extend(error.problems),
+                Err(error) => {
+                    // A line too many or too few makes files end apart; it has been told itself.
+                    let follows =
+                        |one: &Problem| !problems.is_empty() && one.code == Code::LOG_FILES;
+                    let own: Vec<Problem> = error
+                        .problems
+                        .into_iter()
+                        .filter(|one| !follows(one))
+                        .collect();
+                    problems.extend(own);
+                }
             }
             if rows.has_ended() || problems.len() >= LARGEST_NUMBER_OF_PROBLEMS {
                 break;

@@ -18,6 +18,7 @@ use super::{
     text::{self, Text},
 };
 use crate::error::{Error, Problem};
+use overact::Code;
 
 /// A file that has been opened, or one of its parts.
 #[derive(Debug, Clone)]
@@ -159,6 +160,16 @@ impl Table {
         {
             stored.set_origin(origin);
         }
+    }
+
+    /// What is said of a text without a line.
+    pub(super) fn without_lines(&self) -> Option<Problem> {
+        let Self::Text(text) = self else {
+            return None;
+        };
+        let problem = Problem::new(Code::LOG_TOO_SHORT, "the file is empty").file(text.file());
+        let help = "give a log with the samples of a whole motion";
+        (text.columns() == 0).then(|| problem.help(help))
     }
 
     /// What a file of this format is called.

@@ -167,7 +167,13 @@ pub(crate) fn fit(
     if unknowns == 0 || equations <= unknowns {
         return Err(Problem::new(
             Code::NOTHING_DETERMINED,
-            format!("{equations} equations do not determine {unknowns} parameters"),
+            format!(
+                "{equations} equations do not determine {unknowns} parameters{}",
+                match settings.decimation {
+                    0 | 1 => String::new(),
+                    kept => format!(": `decimation` makes one equation of {kept} samples"),
+                }
+            ),
         )
         .help(
             "record longer runs, lower `decimation` of [identification] or list fewer `parameters`",

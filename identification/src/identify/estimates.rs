@@ -414,12 +414,7 @@ fn on_data(
         ));
     }
     if found.kept.is_empty() {
-        return Err(Problem::new(
-            Code::NOTHING_DETERMINED,
-            "the data determine no parameter: the robot stands still",
-        )
-        .help("record runs in which the robot moves")
-        .into());
+        return Err(nothing_moves(prepared, system).into());
     }
     let names = found
         .kept
@@ -427,6 +422,24 @@ fn on_data(
         .map(|&column| name(column).to_owned())
         .collect();
     Ok((found.kept, names))
+}
+
+/// What is said of data without a motion, or of which every motion was left out.
+fn nothing_moves(prepared: &Prepared, system: &System) -> Problem {
+    let still = prepared.left_out();
+    let left: usize = system.lines.iter().map(Factor::equations).sum();
+    let problem = |message: String| Problem::new(Code::NOTHING_DETERMINED, message);
+    if still == 0 {
+        return problem(String::from(
+            "the data determine no parameter: the robot stands still",
+        ))
+        .help("record runs in which the robot moves");
+    }
+    problem(format!(
+        "the data determine no parameter: `standstill_velocity` leaves out {still} of {} equations",
+        still + left
+    ))
+    .help("lower `standstill_velocity` of [identification], or check the unit of the positions, `position_scale` of [data]")
 }
 
 /// What is wrong with a system or its estimate.

@@ -16,6 +16,7 @@ use crate::{
     prior::Prior,
     regression::{
         columns::ColumnSet,
+        factor::Factor,
         observation::{Observer, Seen},
         projection::Projection,
         shares::Shares,
@@ -112,6 +113,12 @@ impl Prepared {
             .iter()
             .filter_map(|&index| columns.get(index));
         named.map(|column| column.name.clone()).collect()
+    }
+
+    /// Equations of all runs that were left out at standstill.
+    pub(super) fn left_out(&self) -> usize {
+        let runs = self.runs.iter();
+        runs.flat_map(|run| &run.standstill_equations).sum()
     }
 
     /// The standard parameters that a robot can have and that explain the inputs best, for one of the
@@ -257,6 +264,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
             },
         ));
     }
+    warnings.extend(mostly_still(prepared));
     for other in others {
         if let Some(name) = other.payload_name()
             && prepared.payload != PayloadUse::Absent
@@ -286,4 +294,17 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
         }
     }
     warnings
+}
+
+/// What is said where standstill leaves little of the data: positions in another unit look like standstill.
+fn mostly_still(prepared: &Prepared) -> Option<String> {
+    let still = prepared.left_out();
+    let system = prepared.systems.iter().find_map(|one| one.as_ref().ok())?;
+    let left: usize = system.lines.iter().map(Factor::equations).sum();
+    (still > left).then(|| {
+        format!(
+            "{still} of {} equations are left out at standstill: check the unit of the positions, `position_scale` of [data], and `standstill_velocity` of [identification]",
+            still + left
+        )
+    })
 }

@@ -10,7 +10,7 @@ use super::{
 };
 
 use crate::text::escape;
-use overact_identification::{Identification, Normalisation, Settings, significant};
+use overact_identification::{Identification, Normalisation, significant};
 
 /// The runs and the settings.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
@@ -18,7 +18,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     Section {
         id: "data",
         title: "Data and settings",
-        body: runs(identification) + &settings(&identification.settings),
+        body: runs(identification) + &settings(identification),
     }
 }
 
@@ -81,7 +81,8 @@ fn runs(identification: &Identification) -> String {
 }
 
 /// The settings in words.
-fn settings(settings: &Settings) -> String {
+fn settings(identification: &Identification) -> String {
+    let settings = &identification.settings;
     let yes = |flag: bool| String::from(if flag { "yes" } else { "no" });
     let rows = [
         (
@@ -107,6 +108,10 @@ fn settings(settings: &Settings) -> String {
                 settings.skip_start, settings.skip_end
             ),
         ),
+        (
+            "Equations left out at standstill",
+            standstill(identification),
+        ),
         ("Weighted least squares", yes(settings.weighted)),
         (
             "Friction of its own for each direction",
@@ -131,4 +136,16 @@ fn settings(settings: &Settings) -> String {
             .collect(),
     }
     .html()
+}
+
+/// At which velocities equations are left out, and how many.
+fn standstill(identification: &Identification) -> String {
+    let limits = &identification.settings.standstill_velocity;
+    let runs = identification.runs.iter();
+    let count: usize = runs.flat_map(|run| &run.standstill_equations).sum();
+    if limits.is_empty() {
+        return String::from("none");
+    }
+    let limits: Vec<String> = limits.iter().map(|one| significant(*one, 4)).collect();
+    format!("{count}, below {} rad/s or m/s", limits.join(", "))
 }

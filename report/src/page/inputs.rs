@@ -13,7 +13,7 @@ use crate::{
     units::Units,
     units::with_unit,
 };
-use overact_identification::{PredictionFigures, Series, significant};
+use overact_identification::{ModelKind, PredictionFigures, Series, significant};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
@@ -48,7 +48,13 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
     Section {
         id: "inputs",
-        title: "Measured and predicted torques, projected",
+        title: match answers(identification)
+            .iter()
+            .all(|one| one.model == ModelKind::Joints)
+        {
+            true => "Measured and predicted torques",
+            false => "Measured and predicted torques, projected",
+        },
         body,
     }
 }

@@ -148,6 +148,37 @@ fn no_name_reaches_the_terminal_but_as_text() {
 }
 
 #[test]
+fn what_there_is_not_is_not_spoken_of() {
+    let mut identification = identification();
+    let of = |identification: &Identification, units: &Units| {
+        page(&Contents {
+            identification,
+            units,
+            summary: None,
+            source: None,
+            drawing: None,
+            published: None,
+            attachments: &[],
+        })
+    };
+    identification.settings.standstill_velocity = vec![0.0625];
+    identification.runs[0].standstill_equations = vec![17];
+    let html = of(&identification, &Units::default());
+    assert!(html.contains("runs that were held out are predicted no worse"));
+    assert!(html.contains("Equations left out at standstill"));
+    assert!(html.contains("17, below 0.0625 rad/s or m/s"));
+    assert!(!html.contains("turn the platform"), "there is none");
+    identification.cross_validation.clear();
+    let html = of(&identification, &Units::default());
+    assert!(!html.contains("runs that were held out are predicted no worse"));
+    let told = summary(&identification, None);
+    assert!(
+        told.contains("base parameters leave ") && told.contains("by the r_sigma rule leave "),
+        "{told}"
+    );
+}
+
+#[test]
 fn the_verdict_stands_first_and_names_what_to_trust() {
     let html = full(&identification());
     let document = parsed(&html);

@@ -25,7 +25,12 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         if plots.is_empty() {
             continue;
         }
-        let (id, what) = if identified {
+        let (id, what) = if identified && !contents.units.has_platform() {
+            (
+                "figure-trajectories",
+                "The runs identified from. They should use the whole range of all joints, and accelerate: where nothing accelerates, no inertia shows.",
+            )
+        } else if identified {
             (
                 "figure-trajectories",
                 "The runs identified from. They should use the whole workspace, turn the platform as well as move it, and accelerate: where nothing accelerates, no inertia shows.",

@@ -112,6 +112,27 @@ fn data() {
 }
 
 #[test]
+fn gains_are_those_of_the_kind_of_joint() {
+    let columns = "[data]\ntime = \"t\"\npositions = [\"q\"]\ntorques = [\"i\"]\n";
+    let found = |gain: &str| errors(&format!("{columns}torque_gain = {gain}"));
+    for good in [
+        "\"35 Nm/V\"",
+        "[\"0.2 N m/A\"]",
+        "3.5",
+        "\"k\"",
+        "\"1 mNm\"",
+    ] {
+        assert_eq!(found(good), Vec::<String>::new(), "{good}");
+    }
+    for bad in ["\"35 N/V\"", "[\"2 N/A\"]", "\"1 N\""] {
+        let found = found(bad);
+        assert_eq!(found.len(), 1, "{bad}: {found:?}");
+        let expected = "`torque_gain`: the column of a revolute joint becomes a torque (N m), this makes a force (N) of it";
+        assert!(found[0].contains(expected), "{found:?}");
+    }
+}
+
+#[test]
 fn logs_have_a_column_of_the_time_or_a_frequency() {
     let columns = "positions = [\"$1\"]\ntorques = [\"$2\"]\n";
     let data = |text: &str| good(&single(text, "")).data.unwrap();
@@ -329,6 +350,8 @@ fn parameters_of_a_file() {
     let all = read("[parameters]\nzz_1 = 0.5\nfv_1 = \"0.1 N m s\"\n").expect("good");
     let values: Vec<f64> = all.iter().map(|one| one.value).collect();
     assert_eq!(values, [0.5, 0.1]);
+    let own = read("robot = \"Arm\"\n[parameters]\nzz_1 = 0.5").expect("of this robot");
+    assert_eq!(own.len(), 1);
     for (text, expected) in [
         ("zz_1 = 0.5", "unknown key `zz_1`"),
         (
@@ -337,6 +360,10 @@ fn parameters_of_a_file() {
         ),
         ("[parameters]\nzz_1 = 1\nzz_1 = 2", "this is no TOML"),
         ("parameters = 3", "parameters.toml:1:14"),
+        (
+            "robot = \"Other\"\n[parameters]\nzz_9 = 0.5",
+            "these are the parameters of `Other`, and the robot is `Arm`",
+        ),
     ] {
         let errors = read(text).expect_err(text);
         let errors = errors.render_plain(&Source::new("parameters.toml", text));

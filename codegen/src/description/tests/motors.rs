@@ -106,6 +106,28 @@ fn logs_of_motors_need_motors_that_determine_the_joints() {
 }
 
 #[test]
+fn a_slip_in_one_motor_is_told_alone() {
+    for (slip, expected) in [
+        ("turns = \"q3\"", "unknown name `q3`"),
+        (
+            "turns = \"q2\"\nratio = \"45 deg\"",
+            "`ratio`: expected a plain number",
+        ),
+        ("turns = \"q2\"\nratio = 0", "a gear of ratio 0"),
+    ] {
+        let all = listed(&arm(&format!(
+            "[[leg.arm.motor]]\nturns = \"q1\"\n[[leg.arm.motor]]\n{slip}"
+        )));
+        assert_eq!(all.len(), 1, "{slip}: {all:#?}");
+        assert!(all[0].contains(expected), "{all:#?}");
+    }
+    // A joint that is made fixed and stays actuated has no variable, which is not told once more.
+    let fixed = arm(BOTH).replacen("\"revolute\"", "\"fixed\"", 1);
+    let all = listed(&fixed);
+    assert_eq!(all, ["4:12 a fixed joint cannot be actuated"]);
+}
+
+#[test]
 fn robots_with_a_platform_have_no_motors_of_their_own() {
     let text = "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
                 [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\n\

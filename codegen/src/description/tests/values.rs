@@ -184,3 +184,55 @@ fn a_fixed_axis_is_slid_along_or_turned_about() {
     let expected = "4:36 `motion`: expected \"translation\" or \"rotation\", found \"screw\"";
     assert_eq!(errors, [expected]);
 }
+
+#[test]
+fn numbers_of_another_unit_are_doubted() {
+    let doubts = |joint: &str| -> Vec<String> {
+        let doubts = good(&single("", joint)).doubts.into_iter();
+        doubts.map(|doubt| doubt.value).collect()
+    };
+    for fine in [
+        "alpha = \"-90 deg\"\nr = \"0.32 m\"",
+        "alpha = 1.5707\ntheta = \"q + 0.3\"",
+        "theta = \"q - 7 rad\"\nd = 49.9",
+    ] {
+        assert_eq!(doubts(fine), Vec::<String>::new(), "{fine}");
+    }
+    let found = doubts("alpha = -90\nr = 320\ntheta = \"q + 90\"");
+    assert_eq!(
+        found,
+        [
+            "`alpha`: a number without a unit is in rad, and -90 rad are more than a turn: -90 deg?",
+            "`r` is 320 m long, and a number without a unit is in m: 320 mm?",
+            "`theta`: a number without a unit is in rad, and 90 rad are more than a turn: 90 deg?",
+        ]
+    );
+}
+
+#[test]
+fn a_payload_with_a_capital_is_doubted() {
+    let with = |name: &str| {
+        let joint = format!("\n[[leg.arm.joint]]\ntype = \"fixed\"\nname = \"{name}\"");
+        good(&single("", &joint)).doubts
+    };
+    assert_eq!(with("payload"), []);
+    assert_eq!(with("tool"), []);
+    let found = with("Payload");
+    assert!(
+        found[0].value.contains("did you mean `payload`"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn columns_that_are_no_expressions_are_doubted_at_their_line() {
+    let data = "[data]\ntime = \"t\"\npositions = [\"q\"]\ntorques = [\n  \"i *\"\n]\n";
+    let text = single(data, "");
+    let found = good(&text).doubts;
+    assert_eq!(found.len(), 1);
+    assert_eq!(&text[found[0].span.clone()], "\"i *\"");
+    assert!(
+        found[0].value.contains("something is missing at its end"),
+        "{found:?}"
+    );
+}

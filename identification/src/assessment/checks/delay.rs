@@ -73,17 +73,38 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         |name| format!("the torque of `{name}` alone comes"),
     );
     let words = format!(
-        "{whose} {} ms {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder, and shift the columns of the log against each other",
+        "{whose} {} ms {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder; no key shifts them: {}, or give the two their own times in two files",
         number(size.abs()),
         if size > 0.0 { "behind" } else { "before" },
         number(deviation),
-        harm.words()
+        harm.words(),
+        shifted(size, context)
     );
     let check = Check { words, ..check }.because(&harm);
     Ok(vec![match name {
         Some(name) => check.of_actuator(name),
         None => check,
     }])
+}
+
+/// How the columns of a log are shifted against a delay of the torques, ms.
+fn shifted(delay: f64, context: &Context<'_>) -> String {
+    let rate = context
+        .dataset
+        .runs
+        .first()
+        .map_or(0.0, crate::data::Log::sampling_frequency);
+    let samples = (1e-3 * delay.abs() * rate).round();
+    let direction = if delay > 0.0 { "up" } else { "down" };
+    match samples >= 1.0 {
+        true => format!(
+            "move the torques' columns of the log {direction} by {samples} {} before it is read",
+            if samples == 1.0 { "line" } else { "lines" }
+        ),
+        false => String::from(
+            "interpolate the torques' columns of the log at earlier or later times before it is read",
+        ),
+    }
 }
 
 /// What delays are held against.

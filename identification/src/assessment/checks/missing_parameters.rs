@@ -12,6 +12,7 @@ use crate::{
         evidence::{Axis, Curve, Evidence},
         suspects::{Group, Shape, Suspect},
     },
+    called::called,
     error::Error,
     significant,
 };
@@ -62,14 +63,24 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let name = name.copied().unwrap_or_default();
     let harm = worst_harm(context, scores, (&found, worst), level);
-    let words = format!(
-        "the {what} `{name}` depends on {} beyond the model, by {} ({:.1} standard deviations), which explains {} % of the residual's square; {}. Add what is missing to the description, or look for what else differs from it",
-        shape.words(),
-        significant(worst.accused.largest(), 3),
-        ratio(worst),
-        significant(100.0 * worst.accused.explained, 2),
-        harm.words()
-    );
+    let told = Told {
+        what: format!("{what} {}", called(name)),
+        size: worst.accused.largest(),
+        strength: ratio(worst),
+        rest: format!(
+            "which explains {} % of the residual's square; {}",
+            significant(100.0 * worst.accused.explained, 2),
+            harm.words()
+        ),
+    };
+    let words = match suspect {
+        Suspect::Torque(actuator, Shape::Stribeck) => told.near_standstill(context, actuator),
+        Suspect::Torque(actuator, _) => {
+            let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
+            told.words(shape, shape.unit(revolute))
+        }
+        _ => told.words(shape, ""),
+    };
     let check = Check { words, ..check }
         .measured(ratio(worst), "standard deviations")
         .against(worst.accused.quantile(level), origin(tests))
@@ -78,6 +89,72 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         Suspect::Torque(..) => check.of_actuator(name),
         _ => check,
     }])
+}
+
+/// What was found.
+struct Told {
+    /// What depends on something.
+    what: String,
+    /// δ, with its sign.
+    size: f64,
+    /// δ by its deviation.
+    strength: f64,
+    /// What follows from it.
+    rest: String,
+}
+
+impl Told {
+    /// The sentences on a shape whose size has a unit.
+    fn words(&self, shape: Shape, unit: &str) -> String {
+        let size = format!("{} {unit}", significant(self.size, 3));
+        format!(
+            "the {} depends on {} beyond the model, by {} ({:.1} standard deviations), {}. Add what is missing to the description, or look for what else differs from it",
+            self.what,
+            shape.words(),
+            size.trim_end(),
+            self.strength,
+            self.rest
+        )
+    }
+
+    /// The sentences on friction that is other near standstill: only one that rises is Stribeck's.
+    fn near_standstill(&self, context: &Context<'_>, actuator: usize) -> String {
+        let info = context.model.info();
+        let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
+        let (unit, rate) = match revolute {
+            true => ("N m", "rad/s"),
+            false => ("N", "m/s"),
+        };
+        let identified = context.watched.iter().take(context.dataset.runs.len());
+        let speeds = identified.filter_map(|one| one.monitor.speeds().get(actuator).copied());
+        let fading = significant(Shape::fading(speeds.fold(0.0, f64::max)), 2);
+        let limits = &context.settings.standstill_velocity;
+        let left_out = match limits.get(actuator) {
+            Some(limit) if *limit > 0.0 => format!(
+                " Equations below `standstill_velocity`, {} {rate}, are left out, so that nothing nearer to standstill is seen.",
+                significant(*limit, 2)
+            ),
+            _ => String::new(),
+        };
+        let (does, advice) = if self.size > 0.0 {
+            (
+                "rises",
+                "Give the joint `stribeck`, the velocity over which its friction rises, or look for what else differs near standstill",
+            )
+        } else {
+            (
+                "falls",
+                "That is not Stribeck's friction, which rises there: look at how low velocities are measured and filtered, at a dry friction that is reached gradually, or leave out more equations by `standstill_velocity`",
+            )
+        };
+        format!(
+            "the friction in the {} {does} towards standstill by {} {unit} beyond the model, over about {fading} {rate} ({:.1} standard deviations), {}.{left_out} {advice}",
+            self.what,
+            significant(self.size.abs(), 3),
+            self.strength,
+            self.rest
+        )
+    }
 }
 
 /// Size by deviation of all that was tried, shape by shape.

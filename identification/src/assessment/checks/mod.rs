@@ -24,6 +24,7 @@ use overact::Model;
 
 use super::{check::Check, suspects::Scores};
 use crate::{
+    called::with_joints,
     data::{Dataset, Log},
     error::Error,
     estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
@@ -122,5 +123,8 @@ pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         all.extend(check(context)?);
     }
     all.extend(relative_error::silent(context, &all));
+    for check in &mut all {
+        check.words = with_joints(&check.words);
+    }
     Ok(all)
 }

@@ -119,7 +119,7 @@ impl Shape {
             }
             Self::Drag => "the square of the velocity, as drag",
             Self::Stribeck => {
-                "the sign of the velocity near standstill, as friction that rises there (Stribeck)"
+                "the sign of the velocity near standstill, where friction rises or falls"
             }
             Self::Load => {
                 "the magnitude of the torque and the sign of the velocity, as friction that grows with the load"
@@ -136,6 +136,39 @@ impl Shape {
             Self::GainTime => "time and the torque, as a gain that drifts",
             Self::Waves => "the position in waves, as cogging or an error of a gear",
         }
+    }
+
+    /// The unit of its size where it is a torque (of a revolute actuator) or a force.
+    pub(crate) const fn unit(self, revolute: bool) -> &'static str {
+        match (self, revolute) {
+            (Self::Constant | Self::Sign | Self::Stribeck | Self::Waves, false) => "N",
+            (
+                Self::Constant
+                | Self::Sign
+                | Self::Stribeck
+                | Self::Waves
+                | Self::Cosine
+                | Self::Sine,
+                _,
+            ) => "N m",
+            (Self::Velocity | Self::Speed, true) => "N m s/rad",
+            (Self::Velocity | Self::Speed, false) => "N s/m",
+            (Self::Drag, true) => "N m s^2/rad^2",
+            (Self::Drag, false) => "N s^2/m^2",
+            (Self::Acceleration, true) => "kg m^2",
+            (Self::Acceleration, false) => "kg",
+            (Self::Position | Self::PositionSign, true) => "N m/rad",
+            (Self::Position | Self::PositionSign, false) => "N/m",
+            (Self::Time | Self::TimeSign, true) => "N m/s",
+            (Self::Time | Self::TimeSign, false) => "N/s",
+            (Self::GainTime, _) => "1/s",
+            (Self::Load, _) => "",
+        }
+    }
+
+    /// The velocity over which friction near standstill fades, where the fastest one is this (m/s, rad/s).
+    pub(crate) fn fading(speed: f64) -> f64 {
+        STRIBECK * speed
     }
 
     /// Its value at a motion within a reach. Waves are no single value: they are added where signals have

@@ -19,10 +19,11 @@ fn is_blank(byte: u8) -> bool {
 }
 
 /// Puts the numbers of a line into `values`: of each cell in `wanted`, in rising order, to a place among them.
-/// `false` where a cell is not there or is no finite number; nothing is said of the values then.
+/// `false` where a cell is not there or is no finite number, or where there are more than `most` cells; nothing is
+/// said of the values then.
 pub(super) fn read(
     line: &[u8],
-    separator: u8,
+    (separator, most): (u8, usize),
     wanted: &[(usize, usize)],
     values: &mut [f64],
 ) -> bool {
@@ -44,6 +45,14 @@ pub(super) fn read(
         };
         last = Some((cell, value));
         values[place] = value;
+    }
+    while let Some(next) = cells.next {
+        if next >= most {
+            return false;
+        }
+        if cells.pass().is_none() {
+            break;
+        }
     }
     true
 }
@@ -123,7 +132,7 @@ mod tests {
 
     fn numbers(line: &str, separator: u8, wanted: &[(usize, usize)]) -> Option<Vec<f64>> {
         let mut values = vec![f64::NAN; wanted.len()];
-        read(line.as_bytes(), separator, wanted, &mut values).then_some(values)
+        read(line.as_bytes(), (separator, 5), wanted, &mut values).then_some(values)
     }
 
     #[test]
@@ -136,6 +145,15 @@ mod tests {
         assert_eq!(numbers("1  x \t-2.5e-3\t7", b' ', &wanted), expected);
         assert_eq!(split(b"1  x \t-2.5e-3\t7", b' ').len(), 4);
         assert_eq!(split(b"1;; 2", b';'), [&b"1"[..], b"", b" 2"]);
+    }
+
+    #[test]
+    fn more_cells_than_others_have_are_left_to_a_closer_look() {
+        let wanted = [(0, 0), (1, 1)];
+        assert_eq!(numbers("1,2,a,b,5", b',', &wanted), Some(vec![1.0, 2.0]));
+        assert_eq!(numbers("1,2,a,b,5,", b',', &wanted), None);
+        assert_eq!(numbers("1 2 3 4 5", b' ', &wanted), Some(vec![1.0, 2.0]));
+        assert_eq!(numbers("1 2 3 4 5 6", b' ', &wanted), None);
     }
 
     #[test]

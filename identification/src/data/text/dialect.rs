@@ -33,6 +33,8 @@ pub(super) struct Dialect {
     pub(super) names: Vec<String>,
     /// Number of columns.
     pub(super) columns: usize,
+    /// Cells of the first line, empty ones at its end as well: those of others are not more.
+    pub(super) most: usize,
 }
 
 impl Dialect {
@@ -63,15 +65,40 @@ impl Dialect {
             has_header,
             names: Vec::new(),
             columns,
+            most: records.first().map_or(0, |(_, first)| first.len()),
         };
         if has_header {
             let (_, header) = &records[0];
-            check_widths(file, separator, header, records.get(1))?;
             dialect.names = header.iter().map(str::to_owned).collect();
+            if let Some((line, second)) = records.get(1)
+                && width(second) > dialect.most
+            {
+                return Err(dialect.wider(file, *line as usize, width(second)).into());
+            }
         } else {
             dialect.names = names_in_comments(text, &dialect, &is_value);
         }
         Ok(dialect)
+    }
+
+    /// What is said of a line with more cells than the first one: they would be those of other columns.
+    pub(super) fn wider(&self, file: &str, line: usize, cells: usize) -> Problem {
+        let names = self.most;
+        let message = match self.has_header {
+            true => format!("the line has {cells} columns, but the header names {names}"),
+            false => format!("the line has {cells} columns, but the first one has {names}"),
+        };
+        let problem = Problem::new(Code::LOG_SHAPE, message).file(file).line(line);
+        problem.help(match (self.separator, self.has_header) {
+            (b',', _) => {
+                "if decimals stand behind commas, separate the columns by semicolons or tabs; else name every column"
+            }
+            (_, false) => "give every line the same columns",
+            (b' ', true) => {
+                "name every column, without blanks in the names, or separate them by semicolons"
+            }
+            (_, true) => "name every column",
+        })
     }
 
     /// A reader of the text's records, all of them, a header as well.
@@ -222,34 +249,6 @@ fn has_header(records: &[(u64, StringRecord)], is_value: &dyn Fn(&str) -> bool) 
         }
         None => first.iter().any(is_word),
     }
-}
-
-/// Checks that the lines have no more cells than there are names: they would be those of other columns.
-fn check_widths(
-    file: &str,
-    separator: u8,
-    header: &StringRecord,
-    second: Option<&(u64, StringRecord)>,
-) -> Result<(), Error> {
-    let Some((line, second)) = second else {
-        return Ok(());
-    };
-    let (names, cells) = (header.len(), width(second));
-    if cells <= names {
-        return Ok(());
-    }
-    let message = format!("the line has {cells} columns, but the header names {names}");
-    let problem = Problem::new(Code::LOG_SHAPE, message)
-        .file(file)
-        .line(*line as usize);
-    let help = match separator {
-        b',' => {
-            "if decimals stand behind commas, separate the columns by semicolons or tabs; else name every column"
-        }
-        b' ' => "name every column, without blanks in the names, or separate them by semicolons",
-        _ => "name every column",
-    };
-    Err(problem.help(help).into())
 }
 
 /// The names in the last comment before the numbers that has as many words as there are columns.

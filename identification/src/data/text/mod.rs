@@ -5,6 +5,7 @@
 //! row by row, whenever its run is gone through.
 
 mod cells;
+mod closely;
 mod dialect;
 mod lines;
 mod rows;

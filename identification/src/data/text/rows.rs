@@ -2,19 +2,16 @@
 //! record with all that quotation marks allow.
 
 use csv::{ByteRecord, Trim};
-use overact::Code;
 use std::io::{Read, Result as IoResult};
 
 use super::{
     BUFFER, Text, cells,
-    dialect::{self, Dialect},
+    closely::{Row, Told},
+    dialect::Dialect,
     lines::{Lines, Next, Rest},
     squeeze::Squeeze,
 };
-use crate::{
-    data::{medium::Opened, problems::shown},
-    error::{Error, Problem},
-};
+use crate::{data::medium::Opened, error::Error};
 
 /// The rows of a text that is being read.
 #[derive(Debug)]
@@ -29,6 +26,7 @@ pub(in crate::data) struct Rows<'a> {
     line: usize,
     /// Whether nothing more can be read.
     is_broken: bool,
+    told: Told,
 }
 
 /// Where rows come from.
@@ -56,6 +54,7 @@ impl<'a> Rows<'a> {
             source: Source::Lines(Lines::new(input, bytes)),
             line: 0,
             is_broken: false,
+            told: Told::new(),
         };
         if text.dialect.has_header {
             rows.pass_header()?;
@@ -84,7 +83,8 @@ impl<'a> Rows<'a> {
     /// Puts the numbers of the next row into `values`; `false` at the end.
     ///
     /// # Errors
-    /// Every cell of the row that is no finite number, or a file that can't be read on.
+    /// Every cell of the row that is no finite number, cells that are more than those of other rows, or a
+    /// file that can't be read on.
     pub(in crate::data) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         let Dialect {
             separator,
@@ -107,12 +107,18 @@ impl<'a> Rows<'a> {
                 continue;
             }
             self.line = lines.passed();
-            if !decimal_comma && cells::read(line, separator, &self.order, values) {
+            let form = (separator, self.text.dialect.most);
+            if !decimal_comma && cells::read(line, form, &self.order, values) {
+                self.told.is_first = false;
                 return Ok(true);
             }
             let cells = cells::split(line, separator);
-            let place = (self.text, self.line);
-            return taken(place, &self.wanted, |cell| cells.get(cell).copied(), values);
+            let row = Row {
+                text: self.text,
+                line: self.line,
+                cells: &cells,
+            };
+            return self.told.read(&row, &self.wanted, values);
         }
         if !self.advance()? {
             return Ok(false);
@@ -120,8 +126,13 @@ impl<'a> Rows<'a> {
         let Source::Records(records) = &self.source else {
             return Ok(false);
         };
-        let place = (self.text, self.line);
-        taken(place, &self.wanted, |cell| records.record.get(cell), values)
+        let cells: Vec<&[u8]> = records.record.iter().collect();
+        let row = Row {
+            text: self.text,
+            line: self.line,
+            cells: &cells,
+        };
+        self.told.read(&row, &self.wanted, values)
     }
 
     /// Passes the names of the columns.
@@ -180,32 +191,6 @@ impl<'a> Rows<'a> {
         self.is_broken = true;
         self.text.broken(error, None).into()
     }
-}
-
-/// Takes the numbers of a row, in a line of the text, from its cells.
-fn taken<'c>(
-    (text, line): (&Text, usize),
-    wanted: &[(usize, &str)],
-    cell: impl Fn(usize) -> Option<&'c [u8]>,
-    values: &mut [f64],
-) -> Result<bool, Error> {
-    let mut problems = Vec::new();
-    for (&(place, name), value) in wanted.iter().zip(values) {
-        match number(cell(place), text.dialect.decimal_comma) {
-            Ok(found) => *value = found,
-            Err(message) => {
-                *value = f64::NAN;
-                problems.push(
-                    Problem::new(Code::NOT_A_NUMBER, format!("column `{name}`: {message}"))
-                        .file(text.file.as_str())
-                        .line(line)
-                        .column(name),
-                );
-            }
-        }
-    }
-    Error::check(problems)?;
-    Ok(true)
 }
 
 /// A line without the blanks around it, where blanks separate columns.
@@ -276,19 +261,5 @@ impl Records {
         let before = self.record.position().map_or(0, csv::Position::line);
         let behind = self.reader.position().line().saturating_sub(1);
         Ok(Some(self.lines + before.max(behind) as usize))
-    }
-}
-
-/// A cell as a finite number, or what is wrong with it.
-fn number(cell: Option<&[u8]>, decimal_comma: bool) -> Result<f64, String> {
-    let Some(cell) = cell else {
-        return Err(String::from("the line ends before this column"));
-    };
-    let text = String::from_utf8_lossy(cell.trim_ascii());
-    match dialect::parse(&text, decimal_comma) {
-        Some(value) if value.is_finite() => Ok(value),
-        Some(_) => Err(format!("`{}` is not a finite number", shown(&text))),
-        None if text.is_empty() => Err(String::from("the cell is empty")),
-        None => Err(format!("`{}` is not a number", shown(&text))),
     }
 }

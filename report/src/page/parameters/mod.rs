@@ -25,7 +25,10 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     let answers = answers(identification);
     let mut body = String::new();
     if let Some(first) = answers.first() {
-        body.push_str(&paragraph(introduction(first.stage)));
+        body.push_str(&paragraph(introduction(
+            first.stage,
+            !identification.cross_validation.is_empty(),
+        )));
         body.push_str(&table(identification, &answers));
         body.push_str(&bars::figure(identification, &answers));
         body.push_str(&essential(identification, &answers));
@@ -43,10 +46,13 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
 }
 
 /// What the first table shows.
-const fn introduction(stage: Stage) -> &'static str {
+const fn introduction(stage: Stage, is_held_out: bool) -> &'static str {
     match stage {
-        Stage::Recommended => {
+        Stage::Recommended if is_held_out => {
             "The recommended parameters are the fewest that these data do not refute: all the others could be zero together, and runs that were held out are predicted no worse without them."
+        }
+        Stage::Recommended => {
+            "The recommended parameters are the fewest that these data do not refute: all the others could be zero together."
         }
         Stage::Base => {
             "All base parameters: those that a motion of the robot can tell apart. None was cancelled."

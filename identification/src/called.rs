@@ -1,0 +1,57 @@
+//! How actuators and joints are called in a sentence.
+
+/// The name of an actuator in a sentence: between marks, and with a word before it where it is but a number, as
+/// joints of a serial robot without names have.
+#[must_use]
+pub fn called(name: &str) -> String {
+    let is_number = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
+    match is_number {
+        true => format!("joint {name}"),
+        false => format!("`{name}`"),
+    }
+}
+
+/// The name of an actuator as a heading.
+#[must_use]
+pub fn titled(name: &str) -> String {
+    called(name).replace('`', "")
+}
+
+/// A sentence in which names that are but numbers have a word before them.
+pub(crate) fn with_joints(words: &str) -> String {
+    let marks = words.matches('`').count();
+    let mut text = String::new();
+    for (number, piece) in words.split('`').enumerate() {
+        match number % 2 {
+            0 => text.push_str(piece),
+            // A mark without another one behind it.
+            _ if number == marks => text.extend(["`", piece]),
+            _ => text.push_str(&called(piece)),
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{called, titled, with_joints};
+
+    #[test]
+    fn sentences_keep_all_but_bare_numbers() {
+        let words = "the torques of `3` and `leg2` by `fv_3`";
+        assert_eq!(
+            with_joints(words),
+            "the torques of joint 3 and `leg2` by `fv_3`"
+        );
+        assert_eq!(with_joints("a lone ` stays"), "a lone ` stays");
+        assert_eq!(titled("leg2"), "leg2");
+        assert_eq!(titled("12"), "joint 12");
+    }
+
+    #[test]
+    fn a_bare_number_is_a_joint() {
+        assert_eq!(called("3"), "joint 3");
+        assert_eq!(called("leg3"), "`leg3`");
+        assert_eq!(called("1_2"), "`1_2`");
+    }
+}
