@@ -1,6 +1,6 @@
 //! Pools of records: what they tell, whatever the order and the place in which records come.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
@@ -22,16 +22,19 @@ fn records(seed: u64, runs: usize) -> Vec<Record> {
     for run in 0..runs {
         let mut slow = 0.0;
         for part in 0..5 {
-            let mut lines = [Factor::new(3), Factor::new(3)];
+            let mut lines = [Vec::new(), Vec::new()];
             for _ in 0..40 {
                 slow = 0.8 * slow + 0.6 * normal();
-                for (line, size) in lines.iter_mut().zip([0.1, 1.0]) {
-                    let w = DVector::from_fn(3, |_, _| normal());
-                    let y = w.dot(&DVector::from_row_slice(&TRUE)) + size * (slow + 0.3 * normal());
-                    line.push(&DMatrix::from_row_slice(1, 4, &[w[0], w[1], w[2], y]));
+                for (rows, size) in lines.iter_mut().zip([0.1, 1.0]) {
+                    let w = [normal(), normal(), normal()];
+                    let explained: f64 = w.iter().zip(TRUE).map(|(w, value)| w * value).sum();
+                    rows.extend(w);
+                    rows.push(explained + size * (slow + 0.3 * normal()));
                 }
             }
-            for (line, factor) in lines.into_iter().enumerate() {
+            for (line, rows) in lines.into_iter().enumerate() {
+                let mut factor = Factor::new(3);
+                factor.push_rows(&rows);
                 all.push(Record {
                     like: 1,
                     content: u128::from(seed) << 80 | (run as u128) << 64 | 5,
