@@ -8,7 +8,7 @@ use crate::{
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
     Log, Progress, Settings,
-    factors::{self, FromFactors, Gathered, Origin, RunFactors},
+    factors::{self, Factory, FromFactors, Gathered, Origin, RunFactors},
 };
 
 impl Robot {
@@ -32,6 +32,16 @@ impl Robot {
             equations,
             progress,
         )?)
+    }
+
+    /// What makes factors of runs one by one, of many robots.
+    ///
+    /// # Errors
+    /// Settings that do not fit; a description that asks for what factors can't give.
+    pub fn factory<'a>(&'a self, settings: &'a Settings) -> Result<Factory<'a>, Error> {
+        self.check_factors()?;
+        let text = self.source().text.as_str();
+        Ok(Factory::new(self.model(), text, settings)?)
     }
 
     /// What factors must be like to be those of this description, with these settings.

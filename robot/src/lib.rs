@@ -38,7 +38,7 @@
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
 //! - `kept`: kept actuators of case 2 by name;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators;
-//! - `factors`: runs as factor files, and the parameters from them.
+//! - `factors`: runs as factor files, and the parameters from them; `fleet`: runs of many virtual robots.
 
 /// The programs of the page that shows languages side by side.
 #[cfg(doctest)]
@@ -55,6 +55,7 @@ mod error;
 mod excitation;
 mod experiment;
 mod factors;
+mod fleet;
 mod gravity;
 mod identifier;
 pub mod inspection;

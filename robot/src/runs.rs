@@ -193,23 +193,28 @@ impl VirtualExperiment<'_> {
         let records = self.records(progress)?.into_iter();
         let (validation, identified): (Vec<Record>, Vec<Record>) =
             records.partition(|record| held_out.contains(&record.name));
-        let log = |record: Record| {
-            let load = self
-                .robot()
-                .payload_of(&record.name)
-                .filter(|_| record.payload);
-            let own = log(record)?;
-            Ok::<_, Error>(match load {
-                Some(name) => own.with_payload_name(name),
-                None => own,
-            })
+        let logs = |records: Vec<Record>| {
+            let logs = records.into_iter().map(|record| self.log_of(record));
+            logs.collect::<Result<Vec<_>, _>>()
         };
-        let logs =
-            |records: Vec<Record>| records.into_iter().map(log).collect::<Result<Vec<_>, _>>();
         Ok(Runs {
             identified: logs(identified)?,
             validation: logs(validation)?,
             true_values: self.robot().true_values(),
+        })
+    }
+
+    /// A record as a log, with the name of the payload that its run carries.
+    ///
+    /// # Errors
+    /// A record with numbers that are not finite.
+    pub fn log_of(&self, record: Record) -> Result<Log, Error> {
+        let load = self.robot().payload_of(&record.name);
+        let load = load.filter(|_| record.payload);
+        let own = log(record)?;
+        Ok(match load {
+            Some(name) => own.with_payload_name(name),
+            None => own,
         })
     }
 }

@@ -22,6 +22,7 @@
 //! - `plant`: the robot's motion under torques that are held between samples;
 //! - `sensors`: encoder delay and quantisation, torque noise;
 //! - [`run`]: the loop, over all runs; [`log`]: the record as CSV;
+//! - [`fleet`]: many robots over many days;
 //! - [`cascade`]: the loops of an industrial drive along a recorded reference.
 //!
 //! ```
@@ -50,6 +51,7 @@ mod controller;
 pub mod drives;
 pub mod error;
 pub mod experiment;
+pub mod fleet;
 pub mod log;
 mod plant;
 mod reference;
@@ -68,6 +70,7 @@ pub use controller::{Control, Desired};
 pub use drives::Drives;
 pub use error::{Cause, Error, Problem, RunError, Stage};
 pub use experiment::{Experiment, Run};
+pub use fleet::{Fault, Fleet, Member};
 pub use log::write_csv;
 pub use reference::{Sampled, sample};
 pub use run::{Record, actuator_inertias, simulate, simulate_controlled};

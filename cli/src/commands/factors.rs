@@ -151,9 +151,47 @@ pub(super) fn instant(text: &str) -> Result<i64, Failure> {
     Ok((((days * 24 + hour) * 60 + minute) * 60 + second) * 1_000_000)
 }
 
+/// The day of an instant, µs since 1970: `2026-03-02`, in UTC.
+pub(super) fn date(instant: i64) -> String {
+    let mut rest = instant.div_euclid(86_400_000_000);
+    let mut year = 1970 + rest.div_euclid(366);
+    // The first guess is early; a day of a later year moves on.
+    while days(year + 1, 1, 1).is_some_and(|next| next <= rest) {
+        year += 1;
+    }
+    rest -= days(year, 1, 1).unwrap_or(0);
+    let lengths = (1..=12).map(|month| {
+        (28..=31)
+            .rev()
+            .find(|day| days(year, month, *day).is_some())
+    });
+    let mut month = 1;
+    for length in lengths.flatten() {
+        if rest < length {
+            break;
+        }
+        rest -= length;
+        month += 1;
+    }
+    format!("{year:04}-{month:02}-{:02}", rest + 1)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::instant;
+    use super::{date, instant};
+
+    #[test]
+    fn days_are_those_of_their_instants() {
+        for day in [
+            "1970-01-01",
+            "2000-02-29",
+            "2026-03-02",
+            "2027-12-31",
+            "2100-03-01",
+        ] {
+            assert_eq!(instant(day).ok().map(date).as_deref(), Some(day));
+        }
+    }
 
     #[test]
     fn instants_are_counted_from_1970() {

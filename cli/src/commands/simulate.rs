@@ -1,4 +1,6 @@
-//! `overact simulate`: the virtual experiment of a description, as logs.
+//! `overact simulate`: the virtual experiment of a description, as logs; `fleet`: of many robots.
+
+mod fleet;
 
 use crate::{
     failure::{Failure, Problem},
@@ -39,6 +41,8 @@ pub(crate) struct Arguments {
     /// Seed of all noise [default: the description's]
     #[arg(long)]
     seed: Option<u64>,
+    #[command(flatten)]
+    fleet: fleet::Arguments,
 }
 
 /// What is told of a run.
@@ -69,6 +73,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     if let Some(seed) = arguments.seed {
         experiment.plan_mut().seed = seed;
+    }
+    if arguments.fleet.fleet.is_some() {
+        let folder = arguments.output.as_deref().unwrap_or(Path::new("."));
+        warn(experiment.without_effect(), as_json);
+        return fleet::run(&arguments.fleet, (&robot, &experiment), folder, as_json);
     }
     let files = files(experiment.plan(), output::file(arguments.output.as_ref()))?;
     let outputs: Vec<&Path> = files.iter().flatten().map(PathBuf::as_path).collect();

@@ -56,6 +56,7 @@ pub use dataset::{Dataset, Variant};
 pub use load::Load;
 pub use log::{Log, Reader};
 pub use mapping::{Gain, Mapping, Time};
+pub use parquet_file::write_parquet;
 pub use periods::Periods;
 use rayon::prelude::*;
 pub use samples::Samples;

@@ -162,6 +162,19 @@ pub(crate) fn fit(
     selected: &[usize],
     settings: &Settings,
 ) -> Result<Estimation, Error> {
+    fit_with(
+        system,
+        selected,
+        (settings.weighted, settings.normalisation),
+    )
+}
+
+/// [`fit`] with lines that are weighted or not, and one of the rules for σ_ρ.
+pub(crate) fn fit_with(
+    system: &System,
+    selected: &[usize],
+    (weighted, normalisation): (bool, Normalisation),
+) -> Result<Estimation, Error> {
     let unknowns = selected.len();
     let equations: usize = system.lines.iter().map(Factor::equations).sum();
     if unknowns == 0 || equations <= unknowns {
@@ -180,7 +193,7 @@ pub(crate) fn fit(
         )
         .into());
     }
-    let weights = if settings.weighted {
+    let weights = if weighted {
         weights(system, selected)
     } else {
         vec![1.0; system.lines.len()]
@@ -196,7 +209,7 @@ pub(crate) fn fit(
         (equations, unknowns),
         residual_norm,
         sum.sum(),
-        settings.normalisation,
+        normalisation,
     );
     let standard_deviations: Vec<f64> = inverse
         .row_iter()

@@ -27,8 +27,8 @@ pub struct LeftOut {
 pub enum Reason {
     /// The file is cut off, or holds no factors.
     Unreadable,
-    /// The file is of a version of the format that is not known.
-    NewerVersion,
+    /// The file is of another version of the format.
+    OtherVersion,
     /// Numbers that are not those that were written, or not finite.
     Damaged,
     /// Another description, or other settings.
@@ -48,8 +48,8 @@ impl LeftOut {
         };
         let help = match self.reason {
             Reason::Unreadable => "copy or write the file again; `--skip-bad` goes on without it",
-            Reason::NewerVersion => {
-                "use the program that wrote it; `--skip-bad` goes on without it"
+            Reason::OtherVersion => {
+                "use the program that wrote it, or factor the logs again; `--skip-bad` goes on without it"
             }
             Reason::Damaged => "factor the log again; `--skip-bad` goes on without the run",
             _ => "factor the log with this description; `--skip-bad` goes on without the run",

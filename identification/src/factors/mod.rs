@@ -21,6 +21,8 @@
 //!
 //! - `run`: what is kept of a run; `packed`: numbers as bytes; `content`: their hash.
 //! - `observe`: from a log.
+//! - `record`: the equations of a line of a part as bytes that stand alone; `pool`, `pool_bytes`: those of many runs
+//!   gathered in bounded memory, in any order and in several places, for a database; `pooled`: its estimate.
 //! - `schema`, `write`, `read`: as Parquet, a row for each line of a part.
 //! - `left_out`: what can't be used, and why; `gather`: files together, nothing twice, nothing unlike.
 //! - `restore`, `estimate`: back to a system, and its estimates.
@@ -31,16 +33,27 @@ mod gather;
 mod left_out;
 mod observe;
 mod packed;
+mod pool;
+mod pool_bytes;
+mod pooled;
 mod read;
+mod record;
 mod restore;
 mod run;
 mod schema;
 mod write;
 
+pub use crate::estimation::intervals::distributions::student_tail;
 pub use estimate::{Deviations, FromFactors, identify_factors};
 pub use gather::{Gathered, gather};
 pub use left_out::{LeftOut, Reason};
-pub use observe::{Origin, factor_runs, likeness};
+pub use observe::{Factory, Origin, factor_runs, likeness};
+pub use pool::{Pool, PoolError};
+pub use pooled::{Comparison, Pooled, PooledParameter, compare};
 pub use read::{Damaged, ReadFactors, read_factors};
+pub use record::{NoRecord, Record};
 pub use run::{ModelFactors, RunFactors};
 pub use write::write_factors;
+
+#[cfg(test)]
+mod tests;

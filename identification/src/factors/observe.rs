@@ -1,5 +1,7 @@
 //! From logs to factors.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use overact::Model;
 
 use super::{
@@ -53,6 +55,81 @@ pub fn likeness(description: &str, settings: &Settings) -> String {
     hash(format!("{}\n{settings:?}", lines.join("\n")).as_bytes())
 }
 
+/// Makes factors of runs one by one.
+pub struct Factory<'a> {
+    model: &'a dyn Model,
+    settings: &'a Settings,
+    like: String,
+    /// Columns by what a run carries.
+    known: Mutex<Vec<(Load, Arc<Columns>)>>,
+    /// Values of successive equations that a run may keep; none where none are to be kept.
+    budget: Option<usize>,
+}
+
+/// What a run carries: nothing, something without a name, or something with one.
+type Load = Option<Option<String>>;
+
+impl<'a> Factory<'a> {
+    /// One for runs of a robot with this `description`.
+    ///
+    /// # Errors
+    /// Settings that do not fit the model.
+    pub fn new(
+        model: &'a dyn Model,
+        description: &str,
+        settings: &'a Settings,
+    ) -> Result<Self, Error> {
+        settings.check(&model.info())?;
+        Ok(Self {
+            model,
+            settings,
+            like: likeness(description, settings),
+            known: Mutex::new(Vec::new()),
+            budget: None,
+        })
+    }
+
+    /// The factors of a run of the robot with this serial number that began at this time, µs since 1970 (UTC).
+    ///
+    /// # Errors
+    /// A log that does not fit, or can't be used.
+    pub fn run(&self, log: &Log, serial: &str, time_us: Option<i64>) -> Result<RunFactors, Error> {
+        kinematics::check(self.model, log, self.settings)?;
+        self.factors(log, (serial, time_us), &|_| ())
+    }
+
+    fn factors(
+        &self,
+        log: &Log,
+        origin: (&str, Option<i64>),
+        progress: &dyn Fn(Progress<'_>),
+    ) -> Result<RunFactors, Error> {
+        let columns = self.columns(log, progress)?;
+        let about = About {
+            like: &self.like,
+            origin,
+            budget: self.budget,
+        };
+        let made = columns.factors((self.model, log), self.settings, &about, progress);
+        made.map_err(|error| assessment::explained(self.model, log, error))
+    }
+
+    /// The columns of a run, told once for all runs that carry the same.
+    fn columns(&self, log: &Log, progress: &dyn Fn(Progress<'_>)) -> Result<Arc<Columns>, Error> {
+        let load: Load = log.payload().then(|| log.payload_name().map(str::to_owned));
+        // A thread that panicked left whole entries behind.
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, columns)) = known.iter().find(|(own, _)| *own == load) {
+            return Ok(Arc::clone(columns));
+        }
+        progress(Progress::Base);
+        let name = load.as_ref().map(Option::as_deref);
+        let columns = Arc::new(Columns::new(self.model, name, self.settings)?);
+        known.push((load, Arc::clone(&columns)));
+        Ok(columns)
+    }
+}
+
 /// The factors of runs; with `equations` the successive equations, too, where these are few.
 ///
 /// # Errors
@@ -64,39 +141,19 @@ pub fn factor_runs(
     equations: bool,
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Vec<RunFactors>, Error> {
-    let info = model.info();
-    settings.check(&info)?;
-    PayloadUse::of(&info, logs)?;
+    let mut factory = Factory::new(model, description, settings)?;
+    factory.budget = equations.then(|| LARGEST_STRETCHES / logs.len().max(1));
+    PayloadUse::of(&model.info(), logs)?;
     let checks = logs
         .iter()
         .filter_map(|log| kinematics::check(model, log, settings).err());
     Error::check(checks.flat_map(|error| error.problems).collect())?;
-    let like = likeness(description, settings);
-    let budget = match equations {
-        true => LARGEST_STRETCHES / logs.len().max(1),
-        false => 0,
-    };
     let (mut runs, mut problems) = (Vec::new(), Vec::new());
-    let mut known: Vec<(Option<Option<&str>>, Columns)> = Vec::new();
     for (number, log) in logs.iter().enumerate() {
-        let load = log.payload().then(|| log.payload_name());
-        if !known.iter().any(|(own, _)| *own == load) {
-            progress(Progress::Base);
-            known.push((load, Columns::new(model, load, settings)?));
-        }
-        let Some((_, columns)) = known.iter().find(|(own, _)| *own == load) else {
-            continue;
-        };
-        let about = About {
-            like: &like,
-            origin,
-            number,
-            budget,
-            equations,
-        };
-        match columns.factors((model, log), settings, &about, progress) {
+        let time = origin.times_us.get(number).copied().flatten();
+        match factory.factors(log, (&origin.serial, time), progress) {
             Ok(run) => runs.push(run),
-            Err(error) => problems.extend(assessment::explained(model, log, error).problems),
+            Err(error) => problems.extend(error.problems),
         }
     }
     Error::check(problems)?;
@@ -106,13 +163,13 @@ pub fn factor_runs(
 /// What a run is told beside its log.
 struct About<'a> {
     like: &'a str,
-    origin: &'a Origin,
-    number: usize,
-    budget: usize,
-    equations: bool,
+    /// Serial number and time.
+    origin: (&'a str, Option<i64>),
+    budget: Option<usize>,
 }
 
 /// The columns of runs that carry the same.
+#[derive(Debug)]
 struct Columns {
     all: ColumnSet,
     /// Those that may be columns of base parameters, whatever other runs carry.
@@ -169,11 +226,11 @@ impl Columns {
         };
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
-        let (systems, seen) = observer.run(0, (log, None), about.budget, &report)?;
+        let (systems, seen) = observer.run(0, (log, None), about.budget.unwrap_or(0), &report)?;
         let models = projections.iter().zip(systems);
         let models = models.map(|(projection, observed)| {
             let lines = projection.line_names(&info);
-            kept((projection, lines), observed, about.equations)
+            kept((projection, lines), observed, about.budget.is_some())
         });
         let names = self
             .chosen
@@ -181,8 +238,8 @@ impl Columns {
             .filter_map(|&at| self.all.as_slice().get(at));
         let mut run = RunFactors {
             robot: info.name.to_owned(),
-            serial: about.origin.serial.clone(),
-            time_us: about.origin.times_us.get(about.number).copied().flatten(),
+            serial: about.origin.0.to_owned(),
+            time_us: about.origin.1,
             like: about.like.to_owned(),
             content: String::new(),
             summary: RunSummary::new(log, &seen),

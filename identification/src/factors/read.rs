@@ -10,7 +10,8 @@ use parquet::{
 use super::{
     content::content,
     left_out::Reason,
-    packed::{from_rows, from_triangle, numbers},
+    packed::from_rows,
+    record::Record,
     run::{ModelFactors, RunFactors},
     schema::{Place, Row, SCHEMA, VERSION},
 };
@@ -89,13 +90,13 @@ pub fn read_factors(path: &Path) -> Result<ReadFactors, Damaged> {
         }
         rows.push(own);
     }
-    let newer = rows.iter().find(|row| row.version > VERSION);
-    if let Some(newer) = newer {
+    let other = rows.iter().find(|row| row.version != VERSION);
+    if let Some(other) = other {
         let message = format!(
             "the file has version {} of the format, this program reads version {VERSION}",
-            newer.version
+            other.version
         );
-        return Err(Damaged::file(Reason::NewerVersion, message));
+        return Err(Damaged::file(Reason::OtherVersion, message));
     }
     let mut read = ReadFactors {
         runs: Vec::new(),
@@ -247,10 +248,11 @@ fn of_model(rows: &[Row], columns: usize) -> Result<ModelFactors, Damaged> {
 /// What is said of bytes that are no factor.
 const NOT_NUMBERS: &str = "a factor of it has numbers that are not finite, or too few or too many";
 
+/// The factor of a row, whose record must be one of this run.
 fn of_factor(row: &Row, columns: usize) -> Option<Factor> {
-    let r = from_triangle(&row.factor, columns + 1)?;
-    let sums = numbers(&row.sums, columns + 1)?;
-    let finite = r.iter().chain(&sums).all(|value| value.is_finite());
-    let equations = usize::try_from(row.equations).ok()?;
-    finite.then(|| Factor::of(r, equations, sums))
+    let own = Record::one(&row.factor)?;
+    let same = own.factor.parameters() == columns
+        && own.columns == row.columns
+        && format!("{:032x}", own.content) == row.content;
+    same.then_some(own.factor)
 }

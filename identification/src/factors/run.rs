@@ -1,7 +1,9 @@
 //! What is kept of a run.
 
+use super::record::Record;
 use crate::{
     regression::{
+        factor::Factor,
         projection::ModelKind,
         system::{Part, PartitionCondition, Stretch},
     },
@@ -56,5 +58,37 @@ impl RunFactors {
             true => self.summary.name.clone(),
             false => format!("{} of {}", self.summary.name, self.serial),
         }
+    }
+
+    /// The factors of all models as records.
+    #[must_use]
+    pub fn records(&self) -> Vec<Record> {
+        let models = self.models.iter();
+        models.flat_map(|model| self.records_of(model)).collect()
+    }
+
+    /// Those of one of its models.
+    pub(super) fn records_of(&self, model: &ModelFactors) -> Vec<Record> {
+        let number = |text: &str| u128::from_str_radix(text, 16).unwrap_or(0);
+        let summary = &self.summary;
+        let load = summary.payload_name.clone().unwrap_or_default();
+        let load = summary.payload.then_some(load);
+        let parts = model.parts.as_deref().unwrap_or_default();
+        let lines = parts.iter().enumerate().flat_map(|(part, own)| {
+            let lines = own.lines.iter().enumerate();
+            lines.map(move |(line, factor)| (part, line, factor))
+        });
+        let record = |(part, line, factor): (usize, usize, &Factor)| Record {
+            like: number(&self.like),
+            content: number(&self.content),
+            model: model.model,
+            load: load.clone(),
+            part: part as u16,
+            line: line as u16,
+            line_name: model.lines.get(line).cloned().unwrap_or_default(),
+            columns: self.columns.join(","),
+            factor: factor.clone(),
+        };
+        lines.map(record).collect()
     }
 }

@@ -2,8 +2,8 @@
 //! every row, so that a database groups and selects without other tables. What repeats is written once by
 //! Parquet's dictionaries.
 
-/// Version of the format; a reader refuses files of higher ones.
-pub(super) const VERSION: i64 = 1;
+/// Version of the format; a reader refuses files of others. In version 1 factors were no records.
+pub(super) const VERSION: i64 = 2;
 
 /// A row.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -46,10 +46,8 @@ pub(super) struct Row {
     pub(super) crossings: i64,
     /// Why there is no factor.
     pub(super) problem: String,
-    /// The upper triangle of R row by row, or equations row by row: doubles, lowest byte first.
+    /// A record of the factor, or equations row by row: doubles, lowest byte first.
     pub(super) factor: Vec<u8>,
-    /// Sums of the columns and of Y.
-    pub(super) sums: Vec<u8>,
 }
 
 /// The schema, in the order of the fields of a row.
@@ -83,7 +81,6 @@ pub(super) const SCHEMA: &str = "message factors {
   required int64 crossings;
   required binary problem (UTF8);
   required binary factor;
-  required binary sums;
 }";
 
 /// A value of a row on its way into a file.
@@ -137,7 +134,6 @@ impl Row {
             Whole(self.crossings),
             Bytes(self.problem.as_bytes()),
             Bytes(&self.factor),
-            Bytes(&self.sums),
         ]
     }
 
@@ -174,7 +170,6 @@ impl Row {
             "crossings" => Whole(&mut self.crossings),
             "problem" => Text(&mut self.problem),
             "factor" => Bytes(&mut self.factor),
-            "sums" => Bytes(&mut self.sums),
             _ => return None,
         })
     }

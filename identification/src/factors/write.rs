@@ -12,14 +12,12 @@ use parquet::{
 };
 
 use super::{
-    packed::{rows, triangle, values},
+    packed::rows,
+    record::Record,
     run::{ModelFactors, RunFactors},
     schema::{Cell, Row, SCHEMA, VERSION},
 };
-use crate::{
-    error::{Error, Problem},
-    regression::factor::Factor,
-};
+use crate::error::{Error, Problem};
 
 /// The bytes of a factor file of runs. The same runs give the same bytes.
 ///
@@ -117,12 +115,12 @@ fn of_run(run: &RunFactors) -> Vec<Row> {
     };
     run.models
         .iter()
-        .flat_map(|model| of_model(&all, model))
+        .flat_map(|model| of_model(run, &all, model))
         .collect()
 }
 
 /// The rows of a model, for each line of a part, then of a stretch; one that says why there are none.
-fn of_model(run: &Row, model: &ModelFactors) -> Vec<Row> {
+fn of_model(run: &RunFactors, row: &Row, model: &ModelFactors) -> Vec<Row> {
     let partition = model.partition.as_ref();
     let all = Row {
         model: model.model.name().to_owned(),
@@ -130,32 +128,19 @@ fn of_model(run: &Row, model: &ModelFactors) -> Vec<Row> {
         condition_sample: partition.map_or(0, |own| own.sample as i64),
         condition_time: partition.map_or(0.0, |own| own.time),
         crossings: partition.map_or(0, |own| own.crossings as i64),
-        ..run.clone()
+        ..row.clone()
     };
-    let parts = match &model.parts {
-        Ok(parts) => parts,
-        Err(why) => {
-            let (kind, problem) = ("missing".to_owned(), why.clone());
-            return vec![Row {
-                kind,
-                problem,
-                ..all
-            }];
-        }
-    };
-    let name = |line: usize| model.lines.get(line).cloned().unwrap_or_default();
-    let mut rows_of_model = Vec::new();
-    for (part, own) in parts.iter().enumerate() {
-        for (line, factor) in own.lines.iter().enumerate() {
-            rows_of_model.push(Row {
-                kind: "factor".to_owned(),
-                part: part as i64,
-                line: line as i64,
-                line_name: name(line),
-                ..of_factor(&all, factor)
-            });
-        }
+    if let Err(why) = &model.parts {
+        let (kind, problem) = ("missing".to_owned(), why.clone());
+        return vec![Row {
+            kind,
+            problem,
+            ..all
+        }];
     }
+    let name = |line: usize| model.lines.get(line).cloned().unwrap_or_default();
+    let records = run.records_of(model);
+    let mut rows_of_model: Vec<Row> = records.iter().map(|own| of_record(&all, own)).collect();
     for (part, own) in model.stretches.iter().enumerate() {
         for (line, equations) in own.lines.iter().enumerate() {
             rows_of_model.push(Row {
@@ -172,14 +157,18 @@ fn of_model(run: &Row, model: &ModelFactors) -> Vec<Row> {
     rows_of_model
 }
 
-fn of_factor(all: &Row, factor: &Factor) -> Row {
+fn of_record(all: &Row, record: &Record) -> Row {
+    let factor = &record.factor;
     let last = factor.parameters();
     Row {
+        kind: "factor".to_owned(),
+        part: i64::from(record.part),
+        line: i64::from(record.line),
+        line_name: record.line_name.clone(),
         equations: factor.equations() as i64,
         residual_norm: factor.matrix()[(last, last)].abs(),
         measured_norm: factor.measured_norm(),
-        factor: triangle(factor.matrix()),
-        sums: values(factor.sums()),
+        factor: record.to_bytes(),
         ..all.clone()
     }
 }

@@ -9,6 +9,7 @@ mod kind;
 mod packed;
 mod pages;
 mod rows;
+mod writing;
 
 use overact::Code;
 use std::sync::Arc;
@@ -17,6 +18,8 @@ use parquet::{
     basic::Type,
     file::metadata::{FileMetaData, ParquetMetaData, ParquetMetaDataReader},
 };
+
+pub use writing::write_parquet;
 
 use self::{
     durations::durations,

@@ -37,7 +37,7 @@ pub(crate) fn student_quantile(probability: f64, freedom: f64) -> f64 {
 
 /// The probability that a variable of Student's distribution exceeds `value` in magnitude.
 #[must_use]
-pub(crate) fn student_tail(value: f64, freedom: f64) -> f64 {
+pub fn student_tail(value: f64, freedom: f64) -> f64 {
     fisher_tail(value * value, 1.0, freedom)
 }
 

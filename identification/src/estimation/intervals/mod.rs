@@ -134,6 +134,16 @@ impl Intervals {
         }
     }
 
+    /// The covariance of the estimates.
+    pub(crate) const fn covariance(&self) -> &DMatrix<f64> {
+        &self.covariance
+    }
+
+    /// The degrees of freedom of each variance.
+    pub(crate) fn freedoms(&self) -> &[f64] {
+        &self.freedoms
+    }
+
     /// The interval of a column in a model of so many of the parameters; none that was not estimated.
     pub(crate) fn of(&self, column: usize, parameters: usize) -> Option<[f64; 2]> {
         let place = self.columns.iter().position(|own| *own == column)?;

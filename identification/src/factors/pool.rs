@@ -1,0 +1,259 @@
+//! Factors of many runs gathered one by one, in any order and in several places at once: what an aggregate of a
+//! database keeps between its rows. Its size is bounded, however many runs there are.
+//!
+//! The estimate needs the sum of all factors alone. Its honest deviation needs groups that are independent of each
+//! other (`estimation/intervals/parts.rs`): the parts of the runs, as long as there are few. Beyond, parts are
+//! taken together at random, by the leading bits of a hash of run and part: sums over groups of independent parts
+//! are independent, too. Which parts go together depends on all parts alone and not on the order in which they
+//! came, so pools of several places merge into what one place would have gathered.
+//!
+//! A run counts once. Where a record comes again to the same place, it is left out and counted; where two places
+//! have gathered the same record, their sums can't be told apart any more, which is an error.
+
+use std::collections::BTreeMap;
+
+use twox_hash::XxHash3_128;
+
+use super::record::{NoRecord, Record};
+use crate::regression::{factor::Factor, projection::ModelKind};
+
+/// Kinds of factors that are kept apart, at most: who mixes more has no group in mind.
+const MOST_KINDS: usize = 8;
+
+/// What can't be gathered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PoolError {
+    /// The same run has been gathered in two places.
+    Twice,
+    /// The bytes are no pool.
+    Damaged,
+}
+
+/// Factors of many runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pool {
+    /// Groups of parts, at most.
+    pub(super) limit: usize,
+    /// By [`Record::kind`].
+    pub(super) kinds: BTreeMap<u128, Kind>,
+    /// Records that had been counted already.
+    pub(super) twice: u64,
+    /// Records that were not what was written, or not finite.
+    pub(super) damaged: u64,
+    /// Records of further kinds.
+    pub(super) others: u64,
+}
+
+/// Factors of one kind.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Kind {
+    pub(super) like: u128,
+    pub(super) model: ModelKind,
+    pub(super) load: Option<String>,
+    pub(super) columns: String,
+    pub(super) line_names: BTreeMap<u16, String>,
+    /// Which parts and lines of which runs are in it: by the leading bits of the run's hash 8 x 8 of them.
+    pub(super) seen: BTreeMap<u64, u64>,
+    /// Bits of the hash by which parts are grouped.
+    pub(super) bits: u32,
+    /// Factors of the lines of each group, by these bits.
+    pub(super) groups: BTreeMap<u64, BTreeMap<u16, Factor>>,
+}
+
+impl Kind {
+    fn of(record: &Record) -> Self {
+        Self {
+            like: record.like,
+            model: record.model,
+            load: record.load.clone(),
+            columns: record.columns.clone(),
+            line_names: BTreeMap::new(),
+            seen: BTreeMap::new(),
+            bits: u64::BITS,
+            groups: BTreeMap::new(),
+        }
+    }
+
+    /// Whether a record is new, and notes it.
+    fn note(&mut self, record: &Record) -> bool {
+        let (key, bit) = place(record);
+        let seen = self.seen.entry(key).or_default();
+        let new = *seen & bit == 0;
+        *seen |= bit;
+        new
+    }
+
+    fn add(&mut self, limit: usize, record: Record) -> bool {
+        if !self.note(&record) {
+            return false;
+        }
+        let mut bytes = record.content.to_le_bytes().to_vec();
+        bytes.extend(record.part.to_le_bytes());
+        let group = (XxHash3_128::oneshot(&bytes) as u64) >> (u64::BITS - self.bits);
+        self.line_names
+            .entry(record.line)
+            .or_insert(record.line_name);
+        add_line(
+            self.groups.entry(group).or_default(),
+            record.line,
+            &record.factor,
+        );
+        self.shrink(limit);
+        true
+    }
+
+    /// Takes groups together until there are few enough.
+    fn shrink(&mut self, limit: usize) {
+        while self.groups.len() > limit && self.bits > 1 {
+            self.coarsen(self.bits - 1);
+        }
+    }
+
+    fn coarsen(&mut self, bits: u32) {
+        let shift = self.bits.saturating_sub(bits);
+        self.bits = self.bits.min(bits);
+        if shift == 0 {
+            return;
+        }
+        let own = std::mem::take(&mut self.groups);
+        for (group, lines) in own {
+            let to = self.groups.entry(group >> shift).or_default();
+            for (line, factor) in &lines {
+                add_line(to, *line, factor);
+            }
+        }
+    }
+
+    fn merge(&mut self, limit: usize, mut other: Self) -> Result<(), PoolError> {
+        for (key, bits) in &other.seen {
+            let own = self.seen.entry(*key).or_default();
+            if *own & bits != 0 {
+                return Err(PoolError::Twice);
+            }
+            *own |= bits;
+        }
+        let bits = self.bits.min(other.bits);
+        self.coarsen(bits);
+        other.coarsen(bits);
+        for (group, lines) in &other.groups {
+            let to = self.groups.entry(*group).or_default();
+            for (line, factor) in lines {
+                add_line(to, *line, factor);
+            }
+        }
+        for (line, name) in other.line_names {
+            self.line_names.entry(line).or_insert(name);
+        }
+        self.shrink(limit);
+        Ok(())
+    }
+
+    /// Number of runs.
+    pub(super) fn runs(&self) -> usize {
+        self.seen.len()
+    }
+
+    /// Number of columns.
+    pub(super) fn parameters(&self) -> usize {
+        let names = self.columns.split(',');
+        names.filter(|name| !name.is_empty()).count()
+    }
+}
+
+fn add_line(lines: &mut BTreeMap<u16, Factor>, line: u16, factor: &Factor) {
+    match lines.get_mut(&line) {
+        Some(own) => own.add(factor),
+        None => {
+            lines.insert(line, factor.clone());
+        }
+    }
+}
+
+/// Where a record is noted: runs of more than 8 x 8 parts and lines have several places.
+fn place(record: &Record) -> (u64, u64) {
+    let block = u64::from(record.part / 8) << 16 | u64::from(record.line / 8);
+    let key = (record.content >> 64) as u64 ^ block.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let bit = u32::from(record.part % 8) * 8 + u32::from(record.line % 8);
+    (key, 1 << bit)
+}
+
+impl Pool {
+    /// A pool that keeps at most so many groups of parts apart; at least four.
+    #[must_use]
+    pub fn new(limit: usize) -> Self {
+        Self {
+            limit: limit.max(4),
+            kinds: BTreeMap::new(),
+            twice: 0,
+            damaged: 0,
+            others: 0,
+        }
+    }
+
+    /// Adds all records that some bytes hold. What is no record is counted.
+    pub fn push(&mut self, bytes: &[u8]) {
+        for record in Record::all(bytes) {
+            match record {
+                Ok(record) => self.add(record),
+                Err(NoRecord::Damaged | NoRecord::NotFinite) => self.damaged += 1,
+            }
+        }
+    }
+
+    /// How many groups of parts are kept apart from now on, at most; at least four.
+    pub fn limit(&mut self, limit: usize) {
+        self.limit = limit.max(4);
+    }
+
+    /// Adds a record.
+    pub fn add(&mut self, record: Record) {
+        let key = record.kind();
+        let full = self.kinds.len() >= MOST_KINDS && !self.kinds.contains_key(&key);
+        if full {
+            self.others += 1;
+            return;
+        }
+        let kind = self.kinds.entry(key).or_insert_with(|| Kind::of(&record));
+        if !kind.add(self.limit, record) {
+            self.twice += 1;
+        }
+    }
+
+    /// Adds what another pool has gathered.
+    ///
+    /// # Errors
+    /// A run that both have.
+    pub fn merge(&mut self, other: Self) -> Result<(), PoolError> {
+        // An empty pool has not been told yet how many groups are wanted.
+        self.limit = match self.kinds.is_empty() {
+            true => other.limit,
+            false => self.limit.min(other.limit),
+        };
+        self.twice += other.twice;
+        self.damaged += other.damaged;
+        self.others += other.others;
+        for (key, own) in other.kinds {
+            let full = self.kinds.len() >= MOST_KINDS;
+            match self.kinds.get_mut(&key) {
+                Some(kind) => kind.merge(self.limit, own)?,
+                None if full => self.others += own.runs() as u64,
+                None => {
+                    self.kinds.insert(key, own);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Bytes of memory, about.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        let kinds = self.kinds.values().map(|kind| {
+            let factors: usize = kind.groups.values().map(BTreeMap::len).sum();
+            let size = kind.parameters() + 1;
+            factors * (8 * size * (size + 1) + 64) + kind.seen.len() * 24
+        });
+        size_of::<Self>() + kinds.sum::<usize>()
+    }
+}

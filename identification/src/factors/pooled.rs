@@ -1,0 +1,255 @@
+//! The estimate of a pool of factors, and whether two of them differ.
+//!
+//! It is the weighted least-squares estimate (44), (48) of all columns that are independent on the data, in the
+//! order of the columns. Factors hold base parameters, so that these are what an identification of the logs tells
+//! in its base model. Where none but unloaded runs of a robot with payload are in a pool, the columns that its
+//! loaded runs would need are found to be combinations of others, and are named.
+//!
+//! Two estimates from different runs are independent. Of q parameters the difference d has the covariance
+//! V = V_1 + V_2, and dᵀ V^-1 d/q is compared with Fisher's distribution of q and ν degrees of freedom, ν the least
+//! of what Welch's rule (*Biometrika* 34, 1947) gives for the variances of the single parameters.
+
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+use super::pool::{Kind, Pool};
+use crate::{
+    error::Error,
+    estimation::{
+        estimate::{Estimation, fit_with},
+        intervals::{Intervals, distributions::fisher_tail},
+    },
+    regression::{
+        elimination::eliminate,
+        factor::{DATA_RANK_TOLERANCE, Factor},
+        projection::Projection,
+        system::{Part, System},
+    },
+    settings::Normalisation,
+};
+
+/// What a pool of factors tells.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[non_exhaustive]
+pub struct Pooled {
+    /// Why there is no estimate; empty where there is one.
+    pub problem: String,
+    /// Runs that count.
+    pub runs: u64,
+    /// Equations of all lines.
+    pub equations: u64,
+    /// Independent groups that the deviations are from.
+    pub groups: u64,
+    /// Records that had been counted already, and count once.
+    pub twice: u64,
+    /// Records that were damaged or not finite.
+    pub damaged: u64,
+    /// Runs of another description, with other settings, or beyond the kinds that are kept apart.
+    pub unlike: u64,
+    /// 100 ||ρ||/||Y||.
+    pub relative_error_percent: f64,
+    /// The parameters.
+    pub parameters: Vec<PooledParameter>,
+    /// Names of columns that are zero, or combinations of others, on these data.
+    pub not_determined: Vec<String>,
+    /// The covariance of the parameters: its upper triangle, row by row.
+    pub covariance: Vec<f64>,
+}
+
+/// A parameter that a pool tells.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[non_exhaustive]
+pub struct PooledParameter {
+    /// Its name.
+    pub name: String,
+    /// Its estimate (SI units).
+    pub value: f64,
+    /// Its deviation, whatever the residual is like within a part of a run.
+    pub deviation: f64,
+    /// The degrees of freedom of that deviation.
+    pub freedom: f64,
+    /// Its deviation if residuals are white, (47).
+    pub white_deviation: f64,
+}
+
+/// Whether parameters of two estimates differ.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Comparison {
+    /// dᵀ V^-1 d/q.
+    pub ratio: f64,
+    /// q.
+    pub parameters: u64,
+    /// ν.
+    pub freedom: f64,
+    /// The probability of such a ratio, or a larger one, if they are the same.
+    pub probability: f64,
+}
+
+impl Pool {
+    /// The estimate of the runs of which there are most of one kind.
+    #[must_use]
+    pub fn estimate(&self) -> Pooled {
+        let mut told = Pooled {
+            twice: self.twice,
+            damaged: self.damaged,
+            unlike: self.others,
+            ..Pooled::default()
+        };
+        // Of equally many the first; the order is that of a hash and so depends on nothing else.
+        let most = self.kinds.values().map(Kind::runs).max();
+        let Some(kind) = self.kinds.values().find(|kind| Some(kind.runs()) == most) else {
+            told.problem = "no run is left".to_owned();
+            return told;
+        };
+        let others = self.kinds.values().filter(|other| *other != kind);
+        let mixed = others.clone().any(|other| other.like == kind.like);
+        told.unlike += others.map(|other| other.runs() as u64).sum::<u64>();
+        if mixed {
+            told.problem =
+                "runs of several models, or with and without payload: group by `model`, `loaded` and `payload`"
+                    .to_owned();
+            return told;
+        }
+        if let Err(error) = kind.estimate(&mut told) {
+            let messages = error.problems.into_iter().map(|one| one.message);
+            told.problem = messages.collect::<Vec<_>>().join("; ");
+        }
+        told
+    }
+
+    /// Number of runs, of all kinds.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.kinds.values().map(|kind| kind.runs() as u64).sum()
+    }
+}
+
+impl Kind {
+    /// Its equations as a system; a line that a group lacks has no equations in it.
+    fn system(&self) -> System {
+        let size = self.parameters();
+        let empty = Factor::new(size);
+        let names = &self.line_names;
+        let parts: Vec<Part> = { self.groups.values() }
+            .map(|lines| Part {
+                run: 0,
+                lines: { names.keys() }
+                    .map(|line| lines.get(line).unwrap_or(&empty).clone())
+                    .collect(),
+            })
+            .collect();
+        let mut lines = vec![empty.clone(); names.len()];
+        for part in &parts {
+            for (all, own) in lines.iter_mut().zip(&part.lines) {
+                all.add(own);
+            }
+        }
+        System {
+            projection: Projection::Joints,
+            line_names: names.values().cloned().collect(),
+            lines,
+            parts,
+            stretches: Vec::new(),
+            partition: None,
+            instruments: Vec::new(),
+        }
+    }
+
+    fn estimate(&self, told: &mut Pooled) -> Result<(), Error> {
+        let system = self.system();
+        told.runs = self.runs() as u64;
+        told.groups = system.parts.len() as u64;
+        told.equations = system
+            .lines
+            .iter()
+            .map(|line| line.equations() as u64)
+            .sum();
+        let names: Vec<&str> = self.columns.split(',').collect();
+        let name = |place: usize| names.get(place).map_or("", |name| *name).to_owned();
+        let all = Factor::merged(&system.lines, &vec![1.0; system.lines.len()]);
+        let places: Vec<usize> = (0..self.parameters()).collect();
+        let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
+        let dependent = found.dependent.iter().map(|(place, _)| *place);
+        let missing = found.zero.iter().copied().chain(dependent);
+        told.not_determined = missing.map(name).collect();
+        let estimation = fit_with(&system, &found.kept, (true, Normalisation::Unbiased))?;
+        let intervals = Intervals::new(&system, &found.kept, &estimation);
+        told.relative_error_percent = estimation.relative_error_percent;
+        told.parameters = parameters(
+            &estimation,
+            &intervals,
+            found.kept.iter().map(|at| name(*at)),
+        );
+        let matrix = intervals.covariance();
+        let size = matrix.nrows();
+        let places = (0..size).flat_map(|row| (row..size).map(move |column| (row, column)));
+        told.covariance = places.map(|place| matrix[place]).collect();
+        Ok(())
+    }
+}
+
+fn parameters(
+    estimation: &Estimation,
+    intervals: &Intervals,
+    names: impl Iterator<Item = String>,
+) -> Vec<PooledParameter> {
+    let deviations = intervals.deviations();
+    let of = |(place, name): (usize, String)| PooledParameter {
+        name,
+        value: estimation.values[place],
+        deviation: deviations[place],
+        freedom: intervals.freedoms()[place],
+        white_deviation: estimation.standard_deviations[place],
+    };
+    names.enumerate().map(of).collect()
+}
+
+impl Pooled {
+    /// Values, covariance and degrees of freedom of parameters; none that is not estimated.
+    fn of(&self, names: &[&str]) -> Option<(DVector<f64>, DMatrix<f64>, Vec<f64>)> {
+        let place = |name: &&str| self.parameters.iter().position(|own| own.name == **name);
+        let places: Vec<usize> = names.iter().map(place).collect::<Option<_>>()?;
+        let count = self.parameters.len();
+        let entry = |a: usize, b: usize| {
+            let (row, column) = (a.min(b), a.max(b));
+            let before = row * count - row * row.saturating_sub(1) / 2;
+            self.covariance.get(before + column - row).copied()
+        };
+        let size = places.len();
+        let mut covariance = DMatrix::zeros(size, size);
+        for (i, j) in (0..size).flat_map(|i| (0..size).map(move |j| (i, j))) {
+            covariance[(i, j)] = entry(places[i], places[j])?;
+        }
+        let own = || places.iter().map(|place| &self.parameters[*place]);
+        let values = DVector::from_iterator(size, own().map(|one| one.value));
+        Some((values, covariance, own().map(|one| one.freedom).collect()))
+    }
+}
+
+/// Whether parameters of two estimates from different runs differ; none where one of them lacks one, or where
+/// their covariance is singular.
+#[must_use]
+pub fn compare(a: &Pooled, b: &Pooled, names: &[&str]) -> Option<Comparison> {
+    let (first, of_first, freedoms) = a.of(names)?;
+    let (second, of_second, others) = b.of(names)?;
+    let covariance = &of_first + &of_second;
+    let scales = covariance.diagonal().map(|variance| 1.0 / variance.sqrt());
+    let scaled = DMatrix::from_fn(names.len(), names.len(), |i, j| {
+        covariance[(i, j)] * scales[i] * scales[j]
+    });
+    let difference = (first - second).component_mul(&scales);
+    let solved = scaled.cholesky()?.solve(&difference);
+    let ratio = difference.dot(&solved) / names.len() as f64;
+    let welch = (0..names.len()).map(|i| {
+        let (a, b) = (of_first[(i, i)], of_second[(i, i)]);
+        (a + b).powi(2) / (a * a / freedoms[i] + b * b / others[i])
+    });
+    let freedom = welch.fold(f64::INFINITY, f64::min);
+    ratio.is_finite().then(|| Comparison {
+        ratio,
+        parameters: names.len() as u64,
+        freedom,
+        probability: fisher_tail(ratio, names.len() as f64, freedom),
+    })
+}

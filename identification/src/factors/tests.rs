@@ -1,0 +1,216 @@
+//! Pools of records: what they tell, whatever the order and the place in which records come.
+
+use nalgebra::DMatrix;
+use rand::RngExt;
+use rand_pcg::Pcg64;
+
+use super::{Pool, PoolError, Pooled, Record, compare};
+use crate::{
+    estimation::intervals::distributions::student_quantile,
+    regression::{factor::Factor, projection::ModelKind},
+};
+
+const TRUE: [f64; 3] = [2.0, -0.5, 0.1];
+
+/// Records of runs with two lines and five parts each; noise of the second line is tenfold, and successive
+/// equations of both share a slow part of it.
+fn records(seed: u64, runs: usize) -> Vec<Record> {
+    let mut random = Pcg64::new(seed.into(), 7);
+    // Twelve uniform variables are normal enough.
+    let mut normal = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+    let mut all = Vec::new();
+    for run in 0..runs {
+        let mut slow = 0.0;
+        for part in 0..5 {
+            let mut lines = [Vec::new(), Vec::new()];
+            for _ in 0..40 {
+                slow = 0.8 * slow + 0.6 * normal();
+                for (rows, size) in lines.iter_mut().zip([0.1, 1.0]) {
+                    let w = [normal(), normal(), normal()];
+                    let explained: f64 = w.iter().zip(TRUE).map(|(w, value)| w * value).sum();
+                    rows.extend(w);
+                    rows.push(explained + size * (slow + 0.3 * normal()));
+                }
+            }
+            for (line, rows) in lines.into_iter().enumerate() {
+                let mut factor = Factor::new(3);
+                factor.push_rows(&rows);
+                all.push(Record {
+                    like: 1,
+                    content: u128::from(seed) << 80 | (run as u128) << 64 | 5,
+                    model: ModelKind::Joints,
+                    load: None,
+                    part,
+                    line: line as u16,
+                    line_name: format!("line {line}"),
+                    columns: "a,b,c".to_owned(),
+                    factor,
+                });
+            }
+        }
+    }
+    all
+}
+
+fn pooled<'a>(records: impl IntoIterator<Item = &'a Record>, limit: usize) -> Pool {
+    let mut pool = Pool::new(limit);
+    for record in records {
+        pool.push(&record.to_bytes());
+    }
+    pool
+}
+
+fn same(a: &Pooled, b: &Pooled) {
+    assert_eq!(
+        (a.runs, a.equations, a.groups),
+        (b.runs, b.equations, b.groups)
+    );
+    assert_eq!(a.parameters.len(), 3, "{}", a.problem);
+    for (a, b) in a.parameters.iter().zip(&b.parameters) {
+        let near = |a: f64, b: f64| assert!((a - b).abs() <= 1e-12 * a.abs(), "{a} and {b}");
+        near(a.value, b.value);
+        near(a.white_deviation, b.white_deviation);
+        near(a.deviation, b.deviation);
+        near(a.freedom, b.freedom);
+    }
+}
+
+#[test]
+fn order_and_place_do_not_matter() {
+    let all = records(1, 12);
+    for limit in [16, 1000] {
+        let whole = pooled(&all, limit).estimate();
+        assert_eq!(whole.runs, 12);
+        assert!(whole.groups <= limit as u64 && whole.groups > limit.min(60) as u64 / 3);
+        same(&whole, &pooled(all.iter().rev(), limit).estimate());
+        let mut places = [0, 1, 2].map(|place| pooled(all.iter().skip(place).step_by(3), limit));
+        let [first, others @ ..] = &mut places;
+        for other in others {
+            // As between two processes.
+            let moved = Pool::from_bytes(&other.to_bytes()).expect("a pool");
+            assert_eq!(&moved, other);
+            first.merge(moved).expect("other runs");
+        }
+        same(&whole, &first.estimate());
+    }
+}
+
+#[test]
+fn it_is_the_weighted_least_squares_estimate_of_all_equations() {
+    let all = records(2, 3);
+    let told = pooled(&all, 100).estimate();
+    // Each line by itself says how its equations are weighted; then the normal equations of both.
+    let line = |number: u16| {
+        let mut sum = DMatrix::zeros(4, 4);
+        let mut equations = 0;
+        for record in all.iter().filter(|record| record.line == number) {
+            sum += record.factor.matrix().tr_mul(record.factor.matrix());
+            equations += record.factor.equations();
+        }
+        let solve = |sum: &DMatrix<f64>| {
+            let w = sum.view((0, 0), (3, 3)).clone_owned();
+            w.lu()
+                .solve(&sum.view((0, 3), (3, 1)).clone_owned())
+                .expect("regular")
+        };
+        let own = solve(&sum);
+        let rest = sum[(3, 3)] - own.dot(&sum.view((0, 3), (3, 1)));
+        (sum, rest / (equations - 3) as f64)
+    };
+    let ((a, of_a), (b, of_b)) = (line(0), line(1));
+    let both = a / of_a + b / of_b;
+    let w = both.view((0, 0), (3, 3)).clone_owned();
+    let values = w
+        .lu()
+        .solve(&both.view((0, 3), (3, 1)).clone_owned())
+        .expect("regular");
+    for (own, value) in told.parameters.iter().zip(values.iter()) {
+        assert!(
+            (own.value - value).abs() < 1e-12 * value.abs(),
+            "{} and {value}",
+            own.value
+        );
+    }
+}
+
+#[test]
+fn nothing_counts_twice_and_nothing_damaged_counts() {
+    let all = records(3, 4);
+    let good = pooled(&all, 16);
+    let mut twice = pooled(all.iter().chain(&all[..10]), 16);
+    assert_eq!(twice.estimate().twice, 10);
+    same(&good.estimate(), &twice.estimate());
+    let other = pooled(&all[..1], 16);
+    assert_eq!(twice.merge(other), Err(PoolError::Twice));
+
+    let mut spoiled = pooled(&all, 16);
+    let bytes = all[0].to_bytes();
+    for at in [0, 5, 9, 20, bytes.len() - 1] {
+        let mut wrong = bytes.clone();
+        wrong[at] ^= 1;
+        spoiled.push(&wrong);
+    }
+    spoiled.push(&bytes[..bytes.len() - 3]);
+    assert_eq!(spoiled.estimate().damaged, 6);
+    same(&good.estimate(), &spoiled.estimate());
+    let mut infinite = all[0].clone();
+    infinite.content += 1 << 70;
+    infinite.factor = Factor::of(DMatrix::identity(4, 4) * f64::INFINITY, 9, vec![0.0; 4]);
+    spoiled.push(&infinite.to_bytes());
+    assert_eq!(spoiled.estimate().damaged, 7);
+    let pool = good.to_bytes();
+    assert_eq!(
+        Pool::from_bytes(&pool[..pool.len() - 1]),
+        Err(PoolError::Damaged)
+    );
+    assert_eq!(Pool::from_bytes(&[]), Err(PoolError::Damaged));
+}
+
+#[test]
+fn only_like_with_like() {
+    let mut all = records(4, 3);
+    for record in &mut all[..10] {
+        record.like = 2;
+    }
+    let told = pooled(&all, 16).estimate();
+    assert_eq!((told.runs, told.unlike, told.problem.as_str()), (2, 1, ""));
+    all[10..20]
+        .iter_mut()
+        .for_each(|record| record.load = Some(String::new()));
+    let mixed = pooled(&all[10..], 16).estimate();
+    assert!(mixed.problem.contains("payload") && mixed.parameters.is_empty());
+    let mut singular = records(5, 1);
+    for record in &mut singular {
+        let mut r = record.factor.matrix().clone_owned();
+        r.column_mut(1).fill(0.0);
+        record.factor = Factor::of(r, record.factor.equations(), vec![0.0; 4]);
+    }
+    let told = pooled(&singular, 16).estimate();
+    assert_eq!(told.not_determined, ["b"]);
+    assert_eq!(told.parameters.len(), 2);
+    assert_eq!(pooled(&[], 16).estimate().problem, "no run is left");
+}
+
+#[test]
+fn intervals_cover_and_equal_parameters_are_told_apart_as_often_as_said() {
+    let draws = overact_tier::by_tier([200, 2000]);
+    let (mut covered, mut white, mut apart) = (0, 0, 0);
+    let mut last = None;
+    for seed in 0..draws {
+        let told = pooled(&records(100 + seed, 3), 16).estimate();
+        for (own, truth) in told.parameters.iter().zip(TRUE) {
+            let off = (own.value - truth).abs();
+            covered += u64::from(off < student_quantile(0.05, own.freedom) * own.deviation);
+            white += u64::from(off < 1.96 * own.white_deviation);
+        }
+        if let Some(last) = last.replace(told.clone()) {
+            let compared = compare(&last, &told, &["a", "c"]).expect("both have them");
+            apart += u64::from(compared.probability < 0.05);
+        }
+        assert!(compare(&told, &told, &["d"]).is_none());
+    }
+    let part = covered as f64 / (3 * draws) as f64;
+    assert!((0.92..0.98).contains(&part), "{part}; white {white}");
+    let part = apart as f64 / draws as f64;
+    assert!((0.01..0.10).contains(&part), "{part}");
+}

@@ -1,0 +1,50 @@
+//! Runs of a fleet of virtual robots.
+
+use crate::{error::Error, experiment::VirtualExperiment};
+use overact::Model;
+use overact_simulation::{Fleet, Member, Record};
+use rayon::prelude::*;
+
+impl VirtualExperiment<'_> {
+    /// A robot of a fleet around the parameters of the experiment.
+    #[must_use]
+    pub fn member(&self, fleet: &Fleet, number: usize) -> Member {
+        let info = self.robot().model().info();
+        fleet.member(number, &info, &self.plan().parameters)
+    }
+
+    /// The run that a robot of a fleet makes on a day: the runs of the experiment in turn, with the controller of
+    /// a robot that has the parameters of the experiment.
+    ///
+    /// # Errors
+    /// An experiment that can't be made, a run that could not be finished.
+    pub fn day(&self, fleet: &Fleet, member: &Member, day: usize) -> Result<Record, Error> {
+        let mut own = self.clone();
+        let plan = own.plan_mut();
+        let nominal = plan.nominal_parameters.take();
+        plan.nominal_parameters = nominal.or_else(|| Some(plan.parameters.clone()));
+        plan.parameters = fleet.on(member, day);
+        plan.seed = fleet.noise(member, day);
+        let turn = day % plan.runs.len().max(1);
+        plan.runs = plan.runs.drain(..).skip(turn).take(1).collect();
+        let mut records = own.records(&|_, _| ())?;
+        // An experiment has at least one run, and each gives a record or an error.
+        let mut record = records.swap_remove(0);
+        fleet.spoil(member, day, &mut record);
+        Ok(record)
+    }
+}
+
+impl VirtualExperiment<'_> {
+    /// What many robots record on a day, robot by robot; `made` makes something of each record.
+    pub fn days<T: Send>(
+        &self,
+        fleet: &Fleet,
+        members: &[Member],
+        day: usize,
+        made: &(dyn Fn(&Member, Record) -> Result<T, Error> + Sync),
+    ) -> Vec<Result<T, Error>> {
+        let one = |member: &Member| made(member, self.day(fleet, member, day)?);
+        members.par_iter().map(one).collect()
+    }
+}
