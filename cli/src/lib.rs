@@ -9,6 +9,7 @@
 //! - [`drawing`]: a robot as SVG;
 //! - `guarded`: a defect of the program is told as such;
 //! - `effort`: how hard the generator searches;
+//! - `forms`: in which form a function is meant;
 //! - `functions`: which functions are generated;
 //! - `input`: descriptions with a bar, standard input;
 //! - `names`: names of results in names of files;
@@ -21,6 +22,7 @@ mod commands;
 pub mod drawing;
 mod effort;
 pub mod failure;
+mod forms;
 mod functions;
 mod guarded;
 mod input;

@@ -20,6 +20,7 @@ const HOUSES: [House; 7] = [
         order: &[
             "parallel",
             "effort",
+            "runtime",
             "diagnostic",
             "cas",
             "description",
