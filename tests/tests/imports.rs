@@ -152,6 +152,7 @@ const HOUSES: [House; 7] = [
             "input",
             "output",
             "effort",
+            "forms",
             "functions",
             "states",
             "drawing",
