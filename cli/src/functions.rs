@@ -1,6 +1,7 @@
-//! The option `--functions`.
+//! The options `--functions`, `--from` and `--columns`: what is generated.
 
 use crate::failure::{Failure, Problem};
+use crate::forms::{ColumnsOf, Source};
 use overact_codegen::Choice;
 use overact_codegen::diagnostic::Code;
 
@@ -12,6 +13,12 @@ pub(crate) struct Arguments {
     /// `identification` and `kinematics`
     #[arg(long, value_name = "NAME,NAME", value_delimiter = ',')]
     functions: Vec<String>,
+    /// Only functions that are evaluated from these, and what they call
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "FROM,FROM")]
+    from: Vec<Source>,
+    /// Only models with these columns, and dynamics that take the values of these parameters
+    #[arg(long, value_enum)]
+    columns: Option<ColumnsOf>,
 }
 
 impl Arguments {
@@ -20,26 +27,44 @@ impl Arguments {
     /// # Errors
     /// Every name that no robot's function has.
     pub(crate) fn choice(&self) -> Result<Option<Choice>, Failure> {
-        if self.functions.is_empty() {
-            return Ok(None);
+        let mut choice = match self.functions.is_empty() {
+            true => Choice::all(),
+            false => self.named()?,
+        };
+        if !self.from.is_empty() {
+            choice = choice.evaluated_from(self.from.iter().map(|source| source.from()));
         }
-        match Choice::new(self.functions.iter().map(String::as_str)) {
-            Ok(choice) => Ok(Some(choice)),
-            Err(unknown) => {
-                let unknown = unknown.into_iter();
-                let problems = unknown.map(|one| {
-                    Problem::new(Code::NO_SUCH_FUNCTION, one.to_string()).help(one.help)
-                });
-                Err(problems.collect::<Vec<_>>().into())
-            }
+        if let Some(columns) = self.columns {
+            choice = choice.with_columns(columns.columns());
         }
+        Ok((choice != Choice::all()).then_some(choice))
     }
 
-    /// The option as it stands on the command line.
+    fn named(&self) -> Result<Choice, Failure> {
+        Choice::new(self.functions.iter().map(String::as_str)).map_err(|unknown| {
+            let unknown = unknown.into_iter();
+            let problems = unknown
+                .map(|one| Problem::new(Code::NO_SUCH_FUNCTION, one.to_string()).help(one.help));
+            problems.collect::<Vec<_>>().into()
+        })
+    }
+
+    /// The options as they stand on the command line.
     pub(crate) fn words(&self) -> String {
-        match self.functions.is_empty() {
-            true => String::new(),
-            false => format!(" --functions {}", self.functions.join(",")),
-        }
+        let from: Vec<&str> = self
+            .from
+            .iter()
+            .map(|source| source.from().name())
+            .collect();
+        let columns = self.columns.map(|columns| columns.columns().name());
+        let options = [
+            ("functions", self.functions.join(",")),
+            ("from", from.join(",")),
+            ("columns", columns.unwrap_or_default().to_owned()),
+        ];
+        let given = options.iter().filter(|(_, value)| !value.is_empty());
+        given
+            .map(|(name, value)| format!(" --{name} {value}"))
+            .collect()
     }
 }

@@ -8,6 +8,7 @@
 //! - `progress`: long work shows a bar on a terminal and nothing in a pipe;
 //! - `guarded`: a defect of the program is told as such;
 //! - `effort`: how hard the generator searches;
+//! - `forms`: in which form a function is meant;
 //! - `functions`: which functions are generated;
 //! - `input`: descriptions with a bar, standard input;
 //! - `names`: names of results in names of files;
@@ -19,6 +20,7 @@
 mod commands;
 mod effort;
 pub mod failure;
+mod forms;
 mod functions;
 mod guarded;
 mod input;

@@ -213,7 +213,25 @@ fn only_what_is_chosen_is_written_and_what_it_calls() {
         "pose_from_actuators",
     ];
     assert_eq!(from_actuators, called);
-    assert!(generate(&["--functions", "identification"]).contains("::overact::Model for"));
+    let identification = generate(&["--functions", "identification", "--crate", "my::facade"]);
+    assert!(identification.contains("impl my::facade::Model for"));
+    assert!(!identification.contains("::overact"));
+    let forms = [
+        "--functions",
+        "idm_red_platform,inverse_dynamics",
+        "--from",
+        "joints",
+        "--columns",
+        "base",
+    ];
+    let forms = generate(&forms);
+    let wanted = [
+        "idm_red_platform_base_from_joints",
+        "inverse_dynamics_base_from_joints",
+    ];
+    assert_eq!(functions(&forms), wanted);
+    let header = "--functions idm_red_platform,inverse_dynamics --from joints --columns base";
+    assert!(forms.contains(header));
     generate(&["--functions", "control", "--lang", "c", "-o", "c"]);
     compiles(&bench.path("c"), "dualv");
     generate(&[
@@ -233,6 +251,19 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
     let said = bench.bad(&quick(&["--functions", "inverse_dynamic,mass_matrix,bais"]));
     assert!(said.contains("did you mean `inverse_dynamics`?"), "{said}");
     assert!(said.contains("did you mean `bias`?"), "{said}");
+    let said = bench.bad(&quick(&["--columns", "bases"]));
+    assert!(said.contains("standard, base"), "{said}");
+    let said = bench.bad(&quick(&[
+        "--functions",
+        "bias_base",
+        "--columns",
+        "standard",
+    ]));
+    assert!(said.contains("ask for `bias`"), "{said}");
+    let said = bench.bad(&quick(&["--lang", "c", "--crate", "my::facade", "-o", "c"]));
+    assert!(said.contains("C calls no crate"), "{said}");
+    let said = bench.bad(&quick(&["--crate", "my facade"]));
+    assert!(said.contains("no path of the crate"), "{said}");
     let said = bench.bad(&quick(&[
         "--functions",
         "null_space,jacobian,idm_red_payload",
@@ -264,6 +295,13 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
         said.contains("has no function `idm_red_platform`: where the parameters are known"),
         "{said}"
     );
+    let said = bench.bad(&quick(&[
+        "--parameters",
+        "parameters.toml",
+        "--columns",
+        "base",
+    ]));
+    assert!(said.contains("leave out `columns`"), "{said}");
 }
 
 /// The programs of documents compile and say what they shall.

@@ -1,6 +1,6 @@
 //! The stages of the generator, in order.
 
-use crate::choice::Chosen;
+use crate::choice::{Chosen, Missing};
 use crate::derivation::{Underivable, function_name, inventory};
 use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
@@ -51,6 +51,12 @@ pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotMo
     derived(mechanism, request.effort_for(None), request)
 }
 
+/// What was chosen and is not there.
+fn not_offered(missing: Vec<Missing>) -> Underivable {
+    let told = missing.into_iter().map(|one| (one.sentence, one.help));
+    Underivable::NotOffered(told.collect())
+}
+
 /// Selects form and columns, then derives and lowers one function after the other.
 fn derived(
     mechanism: Mechanism,
@@ -80,9 +86,12 @@ fn derived(
         selection.values.is_none() || !is_told
     });
     let chosen = match request.functions {
+        Some(choice) if selection.values.is_some() && choice.columns().is_some() => {
+            return Err(not_offered(vec![Missing::of_known_parameters()]));
+        }
         Some(choice) => choice
             .of_robot(&mechanism, selection.joints, &offered)
-            .map_err(Underivable::NotOffered)?,
+            .map_err(not_offered)?,
         None => Chosen::all(&offered),
     };
     offered.retain(|&(function, from)| {
@@ -103,5 +112,6 @@ fn derived(
         base,
         forward_kinematics: chosen.forward,
         is_model: chosen.is_model,
+        runtime: request.runtime.cloned().unwrap_or_default(),
     })
 }

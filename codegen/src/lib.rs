@@ -40,6 +40,7 @@ pub mod mechanism;
 mod model;
 mod parallel;
 mod request;
+mod runtime;
 mod selection;
 mod whole;
 mod writing;
@@ -50,6 +51,11 @@ pub use compile::{Compiled, compile, compile_with, model_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use effort::Effort;
 pub use model::{CompiledFunction, RobotModel};
+pub use overact_core::Columns;
 pub use request::{Progress, Request};
+pub use runtime::{NotAPath, Runtime};
 pub use selection::BaseParameter;
 pub use whole::{Iteration, WholeCost};
+
+/// Versions of the crates that decide what is generated.
+pub const VERSIONS: [&str; 2] = [env!("CARGO_PKG_VERSION"), overact_core::VERSION];

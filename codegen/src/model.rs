@@ -3,6 +3,7 @@
 use crate::derivation::{BodyParameter, JointsBy, MotionInput, Selection, function_name};
 use crate::lowering::Program;
 use crate::mechanism::{JointKind, Mechanism, StandardParameter};
+use crate::runtime::Runtime;
 use crate::selection::{self, BaseParameter};
 use overact_core::{Columns, Function};
 use std::collections::BTreeMap;
@@ -55,6 +56,8 @@ pub struct RobotModel {
     pub forward_kinematics: bool,
     /// Whether no function was left out that `overact::Model` is asked for.
     pub is_model: bool,
+    /// Under which path generated Rust finds the runtime crate.
+    pub runtime: Runtime,
 }
 
 impl RobotModel {

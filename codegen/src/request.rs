@@ -4,6 +4,7 @@ use crate::choice::Choice;
 use crate::derivation::MotionInput;
 use crate::effort::Effort;
 use crate::mechanism::Mechanism;
+use crate::runtime::Runtime;
 use overact_core::Function;
 use std::collections::BTreeMap;
 
@@ -43,6 +44,8 @@ pub struct Request<'a> {
     /// constants, those that are missing as zero. Identification models, which tell them, are left out, and
     /// the code is no `overact::Model`.
     pub parameters: Option<&'a BTreeMap<String, f64>>,
+    /// Under which path generated Rust finds the runtime crate, where it is not `::overact`.
+    pub runtime: Option<&'a Runtime>,
     /// Is told how far the work is: large robots take minutes.
     pub progress: Watcher<'a>,
 }
@@ -55,6 +58,7 @@ impl Default for Request<'_> {
             wanted: &|_, _, _| true,
             functions: None,
             parameters: None,
+            runtime: None,
             progress: &|_| {},
         }
     }

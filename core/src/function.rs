@@ -21,6 +21,13 @@ impl Columns {
         }
     }
 
+    /// The columns with this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let all = [Self::Standard, Self::Base];
+        all.into_iter().find(|columns| columns.name() == name)
+    }
+
     const fn extent(self) -> Extent {
         match self {
             Self::Standard => Extent::Parameters,

@@ -24,3 +24,6 @@ pub use function::{Columns, Condition, Function};
 pub use parameter::StandardParameter;
 pub use singular::SINGULAR;
 pub use size::{Extent, Input, Sizes};
+
+/// Version of the crate.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,27 +1,37 @@
 //! The attribute macro `#[redundant_robot("robot.toml")]`.
 //!
 //! It reads the description, whose path is relative to the crate's manifest, and puts the generated
-//! items behind the struct. With `effort = "thorough"` operations are searched harder, with
-//! `functions = ["control"]` only some are generated. The description is named to the compiler as an input, so
-//! a changed file rebuilds the crate. Errors of the description are shown with their lines.
+//! items behind the struct. The description is named to the compiler as an input, so a changed file rebuilds
+//! the crate. Errors of the description are shown with their lines. What was generated is kept beside what is
+//! built of this crate (`expansions`), as the compiler asks for it whenever a line of the user's crate changes.
 
-use overact_codegen::{Choice, Effort, Request, Source, compile_with, emission};
+mod arguments;
+mod expansions;
+
+use arguments::Arguments;
+use expansions::Expansion;
+use overact_codegen::{Request, Source, VERSIONS, compile_with, emission};
 use proc_macro::TokenStream;
 use quote::quote;
-use syn::parse::{Parse, ParseStream};
 use syn::punctuated::Punctuated;
-use syn::{Attribute, Ident, Item, ItemStruct, LitStr, Path, Token, bracketed, parse_quote};
+use syn::{Attribute, Item, ItemStruct, Path, Token, parse_quote};
 
 /// Derives a robot's model from its description: `#[redundant_robot("robots/dualv.toml")] struct DualV;`
 ///
-/// With `effort = "thorough"` behind the path the generator searches longer for fewer operations; the
-/// description can say the same. With `functions = ["inverse_dynamics", "mass_matrix"]` the struct gets these
-/// functions and what they call; the groups `control`, `identification` and `kinematics` stand for several.
+/// Behind the path can stand, in any order:
+///
+/// | key | what |
+/// |---|---|
+/// | `effort = "thorough"` | searches longer for fewer operations (`"none"`, `"quick"`); the description can say the same |
+/// | `functions = ["inverse_dynamics", "jacobian"]` | only these functions and what they call; the groups `control`, `identification` and `kinematics` stand for several |
+/// | `from = ["joints"]` | only functions that are evaluated from these (`"pose"`, `"joints"`, `"actuators"`); one that is named, as `inverse_dynamics`, is meant in each of these forms |
+/// | `columns = "base"` | models with the columns, and dynamics that take the values, of the base parameters alone, or of all `"standard"` ones |
+/// | `crate = "::my::overact"` | the path under which the generated code finds this crate |
 ///
 /// The struct gets the constants and functions of the robot, the documentation and the derives of a generated
 /// file (`Debug`, `Clone`, `Copy`, `PartialEq`, `Eq`, `Default`; one that the struct asks for itself stands
-/// below this attribute), and implements `overact::Model`, unless `functions` leaves something out that such a
-/// model is asked for: all of `identification` is enough.
+/// below this attribute), and implements `overact::Model`, unless something is left out that such a model is
+/// asked for: all of `identification` is enough.
 #[proc_macro_attribute]
 pub fn redundant_robot(attribute: TokenStream, item: TokenStream) -> TokenStream {
     let (arguments, robot) = match read(attribute, item) {
@@ -36,85 +46,6 @@ pub fn redundant_robot(attribute: TokenStream, item: TokenStream) -> TokenStream
             quote!(#robot #error).into()
         }
     }
-}
-
-/// What the attribute says.
-struct Arguments {
-    path: LitStr,
-    effort: Option<Effort>,
-    functions: Option<Choice>,
-}
-
-impl Parse for Arguments {
-    fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
-        let mut arguments = Self {
-            path: input.parse()?,
-            effort: None,
-            functions: None,
-        };
-        while input.parse::<Option<Token![,]>>()?.is_some() && !input.is_empty() {
-            let key: Ident = input.parse()?;
-            let is_given = match key.to_string().as_str() {
-                "effort" => arguments.effort.is_some(),
-                "functions" => arguments.functions.is_some(),
-                _ => {
-                    return Err(syn::Error::new(
-                        key.span(),
-                        "expected `effort` or `functions`",
-                    ));
-                }
-            };
-            if is_given {
-                return Err(syn::Error::new(
-                    key.span(),
-                    format!("`{key}` is given twice"),
-                ));
-            }
-            input.parse::<Token![=]>()?;
-            match key == "effort" {
-                true => arguments.effort = Some(effort(input)?),
-                false => arguments.functions = Some(functions(input)?),
-            }
-        }
-        match input.is_empty() {
-            true => Ok(arguments),
-            false => Err(input.error("expected `,`")),
-        }
-    }
-}
-
-fn effort(input: ParseStream<'_>) -> syn::Result<Effort> {
-    let name: LitStr = input.parse()?;
-    let message = "expected \"none\", \"quick\" or \"thorough\"";
-    Effort::named(&name.value()).ok_or_else(|| syn::Error::new(name.span(), message))
-}
-
-/// A list of names; each one that no function has is an error at its place.
-fn functions(input: ParseStream<'_>) -> syn::Result<Choice> {
-    let list;
-    let bracket = bracketed!(list in input);
-    let names = Punctuated::<LitStr, Token![,]>::parse_terminated(&list);
-    let message = "expected names of functions in quotes, `[\"control\", \"jacobian\"]`";
-    let names = names.map_err(|e| syn::Error::new(e.span(), message))?;
-    let texts: Vec<String> = names.iter().map(LitStr::value).collect();
-    if texts.is_empty() {
-        let message = "name at least one function, or leave `functions` out for all of them";
-        return Err(syn::Error::new(bracket.span.join(), message));
-    }
-    Choice::new(texts.iter().map(String::as_str)).map_err(|unknown| {
-        let errors = unknown.into_iter().map(|one| {
-            let message = format!("{one}; {}", one.help);
-            let span = names
-                .get(one.index)
-                .map_or(bracket.span.join(), LitStr::span);
-            syn::Error::new(span, message)
-        });
-        let combined = errors.reduce(|mut all, next| {
-            all.combine(next);
-            all
-        });
-        combined.unwrap_or_else(|| syn::Error::new(bracket.span.join(), "unknown functions"))
-    })
 }
 
 /// The attribute's arguments and the struct.
@@ -152,29 +83,18 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
         syn::Error::new(path.span(), message)
     })?;
     let source = Source::new(path.value(), text);
-    let request = Request {
-        effort: arguments.effort,
-        functions: arguments.functions.as_ref(),
-        ..Request::default()
-    };
-    let compiled = compile_with(&source, &request).map_err(|errors| {
-        let count = errors.len();
-        let noun = if count == 1 { "error" } else { "errors" };
-        let list = errors.render_plain(&source);
+    let expansion = expansion(arguments, robot, &source)?;
+    let items: proc_macro2::TokenStream = expansion.items.parse().map_err(|_| {
+        // Only what a generator of our own has written gets here.
         syn::Error::new(
             path.span(),
-            format!("{count} {noun} in the robot's description\n\n{list}"),
+            "internal error of overact: the generated code is no Rust",
         )
     })?;
-    let emission::Robot {
-        documentation,
-        items,
-        ..
-    } = emission::robot(&compiled.model, &robot.ident);
     let mut robot = robot.clone();
     let is_documented = robot.attrs.iter().any(|a| a.path().is_ident("doc"));
-    let summary = (!is_documented).then(|| emission::summary(&compiled.model));
-    let lines = summary.iter().chain(&documentation);
+    let summary = (!is_documented).then_some(&expansion.summary);
+    let lines = summary.into_iter().chain(&expansion.documentation);
     let lines = lines.map(|line| -> Attribute { parse_quote!(#[doc = #line]) });
     let derives = derives(&robot);
     let attributes: Vec<Attribute> = lines.chain(derives).collect();
@@ -186,6 +106,52 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
         const _: &[::core::primitive::u8] = ::core::include_bytes!(#watched);
         #items
     })
+}
+
+/// The generated code, which may be there already.
+fn expansion(arguments: &Arguments, robot: &ItemStruct, source: &Source) -> syn::Result<Expansion> {
+    let Arguments {
+        effort,
+        functions,
+        runtime,
+        path,
+    } = arguments;
+    let folder = expansions::folder();
+    let generator = (VERSIONS, env!("OVERACT_GENERATOR"));
+    let wanted = (robot.ident.to_string(), effort, functions, runtime);
+    let key = format!("{generator:?}\n{wanted:?}\n{}", source.text);
+    if let Some(expansion) = folder.as_deref().and_then(|at| expansions::read(at, &key)) {
+        return Ok(expansion);
+    }
+    let request = Request {
+        effort: *effort,
+        functions: functions.as_ref(),
+        runtime: runtime.as_ref(),
+        ..Request::default()
+    };
+    let compiled = compile_with(source, &request).map_err(|errors| {
+        let count = errors.len();
+        let noun = if count == 1 { "error" } else { "errors" };
+        let list = errors.render_plain(source);
+        syn::Error::new(
+            path.span(),
+            format!("{count} {noun} in the robot's description\n\n{list}"),
+        )
+    })?;
+    let emission::Robot {
+        documentation,
+        items,
+        ..
+    } = emission::robot(&compiled.model, &robot.ident);
+    let expansion = Expansion {
+        summary: emission::summary(&compiled.model),
+        documentation,
+        items: items.to_string(),
+    };
+    if let Some(folder) = folder {
+        expansions::keep(&folder, &key, &expansion);
+    }
+    Ok(expansion)
 }
 
 /// The derives of a generated file that the struct does not ask for itself.

@@ -20,6 +20,7 @@ const HOUSES: [House; 7] = [
         order: &[
             "parallel",
             "effort",
+            "runtime",
             "diagnostic",
             "cas",
             "description",
@@ -171,6 +172,7 @@ const HOUSES: [House; 7] = [
             "input",
             "output",
             "effort",
+            "forms",
             "functions",
             "states",
             "report",

@@ -5,12 +5,12 @@ mod resolve;
 
 use crate::{
     failure::{Failure, Problem},
+    forms::{ColumnsOf, Source},
     input,
     note::tell_doubts,
     output,
     states::States,
 };
-use clap::ValueEnum;
 use overact::Model;
 use overact::{Columns, Function};
 use overact_codegen::diagnostic::Code;
@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     from: Option<Source>,
     /// Which columns an identification model has, or which parameters dynamics take [default: standard]
     #[arg(long, value_enum)]
-    columns: Option<Choice>,
+    columns: Option<ColumnsOf>,
     /// Kept actuators of case 2 [default: those of the description]
     #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
     kept: Option<Vec<String>>,
@@ -54,45 +54,6 @@ pub(crate) struct Arguments {
     /// Write to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-}
-
-/// What a function is evaluated from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Source {
-    /// Platform motion
-    Pose,
-    /// Joint positions with the platform's twist
-    Joints,
-    /// Actuator motion; forward kinematics starts from `start`, the previous state or home
-    Actuators,
-}
-
-/// Columns of an identification model, or parameters that a function takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Choice {
-    /// All standard parameters
-    Standard,
-    /// Base parameters only
-    Base,
-}
-
-impl Source {
-    const fn from(self) -> MotionInput {
-        match self {
-            Self::Pose => MotionInput::Pose,
-            Self::Joints => MotionInput::Joints,
-            Self::Actuators => MotionInput::Actuators,
-        }
-    }
-}
-
-impl Choice {
-    const fn columns(self) -> Columns {
-        match self {
-            Self::Standard => Columns::Standard,
-            Self::Base => Columns::Base,
-        }
-    }
 }
 
 /// The document with `--json`.

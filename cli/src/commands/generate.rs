@@ -12,7 +12,7 @@ use crate::{
 };
 use module::Module;
 use overact_codegen::diagnostic::Code;
-use overact_codegen::{Choice, Progress as Step, Request, mechanism::Mechanism};
+use overact_codegen::{Choice, Progress as Step, Request, Runtime, mechanism::Mechanism};
 use overact_robot::CompiledFile;
 use std::{
     fs,
@@ -42,6 +42,9 @@ pub(crate) struct Arguments {
     /// description with these as constants, without the identification models
     #[arg(long, value_name = "TOML")]
     parameters: Option<PathBuf>,
+    /// The path under which the Rust finds the crate `overact` [default: ::overact]
+    #[arg(long = "crate", value_name = "PATH", value_parser = Runtime::new)]
+    runtime: Option<Runtime>,
     #[command(flatten)]
     functions: functions::Arguments,
     #[command(flatten)]
@@ -80,7 +83,9 @@ impl Arguments {
             Language::Rust => "",
             Language::C => " --lang c",
         };
-        format!("{language}{}", self.functions.words())
+        let path = self.runtime.as_ref().map(Runtime::path);
+        let path = path.map_or_else(String::new, |path| format!(" --crate {path}"));
+        format!("{language}{path}{}", self.functions.words())
     }
 
     /// What of the arguments does not go together.
@@ -88,6 +93,10 @@ impl Arguments {
         let is_printed = self.output.is_none() && !as_json;
         if is_printed && self.lang == Language::C {
             let message = "C is a header and a source file: add `-o FOLDER` to write them to";
+            return Some(message.to_owned());
+        }
+        if self.runtime.is_some() && self.lang == Language::C {
+            let message = "C calls no crate: leave out `--crate`, or write Rust";
             return Some(message.to_owned());
         }
         if is_printed && self.files.len() > 1 {
@@ -195,6 +204,7 @@ fn load_all(
         };
         let request = Request {
             functions: choice,
+            runtime: arguments.runtime.as_ref(),
             progress: &watch,
             ..arguments.effort.request()
         };

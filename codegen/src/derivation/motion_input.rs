@@ -12,6 +12,9 @@ pub enum MotionInput {
 }
 
 impl MotionInput {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Pose, Self::Joints, Self::Actuators];
+
     /// `pose`, `joints` or `actuators`.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -20,5 +23,11 @@ impl MotionInput {
             Self::Joints => "joints",
             Self::Actuators => "actuators",
         }
+    }
+
+    /// What has this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|from| from.name() == name)
     }
 }

@@ -26,8 +26,9 @@ pub enum Underivable {
     },
     /// The Jacobian of the kept actuators has no structural inverse.
     SingularPartition,
-    /// Functions were chosen that the robot has not got: `has no function ...` for each.
-    NotOffered(Vec<String>),
+    /// Functions were chosen that the robot has not got: for each a sentence, `has no function ...`, and a way
+    /// out.
+    NotOffered(Vec<(String, String)>),
     /// A bug of the generator.
     Internal(InternalError),
 }
@@ -82,11 +83,11 @@ impl Underivable {
             Self::NotOffered(sentences) => {
                 let name = &description.name;
                 let mut all = Diagnostics::default();
-                for sentence in sentences {
+                for (sentence, help) in sentences {
                     let message = format!("the robot `{}` {sentence}", name.value);
                     let diagnostic =
                         Diagnostic::new(Code::NO_SUCH_FUNCTION, message, name.span.clone());
-                    all.push(diagnostic.help("`overact inspect` lists the functions that it has"));
+                    all.push(diagnostic.help(help.as_str()));
                 }
                 return all;
             }

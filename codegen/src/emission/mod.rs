@@ -18,6 +18,7 @@ mod function;
 mod inverse;
 mod layout;
 mod model_impl;
+mod runtime;
 
 use crate::model::RobotModel;
 use crate::writing::{labels::Labels, legend, operations, text};
@@ -78,7 +79,7 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     }
     Robot {
         documentation,
-        items,
+        items: runtime::renamed(items, &model.runtime),
         sections: functions.into_iter().map(|f| f.sections).collect(),
     }
 }

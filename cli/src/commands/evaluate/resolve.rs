@@ -1,8 +1,9 @@
 //! Which function is meant.
 
-use super::{Arguments, Choice};
+use super::Arguments;
 use crate::{
     failure::{Failure, Problem},
+    forms::ColumnsOf,
     states::States,
 };
 use overact::Columns;
@@ -32,7 +33,9 @@ pub(super) fn function<'m>(
     if named.is_empty() {
         return by_full_name(model, name);
     }
-    let columns = arguments.columns.map_or(Columns::Standard, Choice::columns);
+    let columns = arguments
+        .columns
+        .map_or(Columns::Standard, ColumnsOf::columns);
     let is_meant = |f: &&CompiledFunction| {
         let of = f.computes.columns().or(f.computes.parameters());
         of.is_none_or(|of| of == columns)

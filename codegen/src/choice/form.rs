@@ -1,0 +1,206 @@
+//! Which forms of the named functions a robot is given: from what they are evaluated, with which columns.
+
+use super::group::Group;
+use super::name::{Meant, meant, reason};
+use crate::derivation::{MotionInput, function_name};
+use crate::mechanism::Mechanism;
+use overact_core::{Columns, Extent, Function};
+
+/// A function of the table, and what it is evaluated from.
+type Form = (Function, MotionInput);
+
+/// A name that a robot has no function for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Missing {
+    /// What the robot has not got: `has no function ...`.
+    pub(crate) sentence: String,
+    /// A way out.
+    pub(crate) help: String,
+}
+
+impl Missing {
+    /// Columns that are chosen where no function has any.
+    pub(crate) fn of_known_parameters() -> Self {
+        Self {
+            sentence: "has the numbers of its parameters in it, and no function with columns or \
+                       parameters of which `columns` could choose"
+                .to_owned(),
+            help: "leave out `columns`, or the values of the parameters".to_owned(),
+        }
+    }
+
+    /// With the way out that always leads on.
+    fn of(sentence: String) -> Self {
+        Self {
+            sentence,
+            help: "`overact inspect` lists the functions that it has".to_owned(),
+        }
+    }
+}
+
+/// The forms that are wanted of a robot with this inventory.
+pub(super) struct Forms<'a> {
+    pub(super) mechanism: &'a Mechanism,
+    pub(super) tree: bool,
+    /// None for each function's own.
+    pub(super) from: &'a [MotionInput],
+    pub(super) columns: Option<Columns>,
+    pub(super) inventory: &'a [Form],
+}
+
+impl Forms<'_> {
+    /// Whether functions may be evaluated from this. The state of a tree are its joints, whatever they are
+    /// called.
+    pub(super) fn has_source(&self, from: MotionInput) -> bool {
+        self.tree || self.from.is_empty() || self.from.contains(&from)
+    }
+
+    fn takes(&self, (function, from): Form) -> bool {
+        let is_wanted = |own| self.columns.is_none_or(|wanted| wanted == own);
+        self.has_source(from) && kind(function).is_none_or(is_wanted)
+    }
+
+    /// All functions of the robot in these forms.
+    ///
+    /// # Errors
+    /// There is none.
+    pub(super) fn all(&self) -> Result<Vec<Form>, Missing> {
+        let all = self.filtered(|_| true);
+        match all.is_empty() {
+            true => Err(Missing::of(format!("has no function {}", self.described()))),
+            false => Ok(all),
+        }
+    }
+
+    /// What a name stands for.
+    ///
+    /// # Errors
+    /// A function that this robot has not got in the form that is wanted.
+    pub(super) fn wanted(&self, name: &str, found: Option<Meant>) -> Result<Vec<Form>, Missing> {
+        let wanted = match found {
+            Some(Meant::Forward) => return Ok(Vec::new()),
+            Some(Meant::Group(group)) => self.filtered(|form| self.is_of(group, form)),
+            Some(Meant::Form(function, from)) => return self.form(name, function, from),
+            Some(Meant::Forms(function)) => self.filtered(|form| form.0 == function),
+            None => Vec::new(),
+        };
+        match (found, wanted.is_empty()) {
+            (_, false) => Ok(wanted),
+            (Some(Meant::Group(_)), _) => {
+                let sentence =
+                    format!("has no function of the group `{name}` {}", self.described());
+                Err(Missing::of(sentence))
+            }
+            (Some(Meant::Forms(function)), _) => Err(self.absent(name, function)),
+            _ => {
+                let reason = meant(name, !self.tree).map_or("", |m| reason(m, self.tree));
+                Err(Missing::of(format!("has no function `{name}`{reason}")))
+            }
+        }
+    }
+
+    fn filtered(&self, is_wanted: impl Fn(Form) -> bool) -> Vec<Form> {
+        let forms = self.inventory.iter().copied();
+        forms
+            .filter(|&form| self.takes(form) && is_wanted(form))
+            .collect()
+    }
+
+    /// Groups name plain forms with standard columns, which stand for those that are wanted instead.
+    fn is_of(&self, group: Group, (function, from): Form) -> bool {
+        let function = match self.columns {
+            Some(Columns::Base) => with(function, Columns::Standard).unwrap_or(function),
+            _ => function,
+        };
+        let has = |from| group.has(self.mechanism, function, from);
+        match self.from.is_empty() {
+            true => has(from),
+            false => MotionInput::ALL.into_iter().any(has),
+        }
+    }
+
+    /// The forms of a function that is named, by itself or with a form of its own.
+    fn form(
+        &self,
+        name: &str,
+        function: Function,
+        from: MotionInput,
+    ) -> Result<Vec<Form>, Missing> {
+        let is_base = function.is_of_base_parameters();
+        if is_base && self.columns == Some(Columns::Standard) {
+            return Err(Missing {
+                sentence: format!("can't have `{name}` with standard columns"),
+                help: format!("leave out `columns`, or ask for `{}`", function.name()),
+            });
+        }
+        let function = match (self.columns, kind(function)) {
+            (Some(columns), Some(_)) => with(function, columns).ok_or_else(|| Missing {
+                sentence: format!("has `{name}` with standard parameters only"),
+                help:
+                    "leave out `columns`, or name base forms one by one, as `inverse_dynamics_base`"
+                        .to_owned(),
+            })?,
+            _ => function,
+        };
+        let plain = function_name(function, MotionInput::Joints, true);
+        let is_plain = [plain.as_str(), function.name()].contains(&name);
+        if !is_plain && !self.has_source(from) {
+            return Err(Missing {
+                sentence: format!("can't have `{name}` {}", self.sources()),
+                help: format!("leave out `from`, or ask for `{plain}`"),
+            });
+        }
+        let mut wanted = match is_plain && !self.tree && !self.from.is_empty() {
+            true => self.from.iter().map(|&from| (function, from)).collect(),
+            false => vec![(function, from)],
+        };
+        wanted.retain(|form| self.inventory.contains(form));
+        match wanted.is_empty() {
+            true => Err(self.absent(name, function)),
+            false => Ok(wanted),
+        }
+    }
+
+    /// Why a function is not there: not at all, or not from this.
+    fn absent(&self, name: &str, function: Function) -> Missing {
+        let others = self.inventory.iter().filter(|form| form.0 == function);
+        let others: Vec<&str> = others.map(|form| form.1.name()).collect();
+        match others.is_empty() {
+            true => {
+                let reason = reason(Meant::Forms(function), self.tree);
+                Missing::of(format!("has no function `{name}`{reason}"))
+            }
+            false => Missing {
+                sentence: format!("has no function `{name}` {}", self.sources()),
+                help: format!("it is evaluated from {}", others.join(", ")),
+            },
+        }
+    }
+
+    /// What was asked for.
+    fn described(&self) -> String {
+        let columns = self.columns.map(|c| format!("with {} columns", c.name()));
+        let sources = (!self.from.is_empty()).then(|| self.sources());
+        let both: Vec<String> = columns.into_iter().chain(sources).collect();
+        both.join(" ")
+    }
+
+    fn sources(&self) -> String {
+        let names: Vec<&str> = self.from.iter().map(|from| from.name()).collect();
+        format!("from {}", names.join(", "))
+    }
+}
+
+/// Standard or base: of its columns, or of the parameters whose values it takes. A payload's columns are its own.
+fn kind(function: Function) -> Option<Columns> {
+    match function.extents().1 {
+        Some(Extent::PayloadParameters) => None,
+        _ => function.columns().or(function.parameters()),
+    }
+}
+
+/// The function of the same name with other columns.
+fn with(function: Function, columns: Columns) -> Option<Function> {
+    let is_it = |other: &Function| other.name() == function.name() && kind(*other) == Some(columns);
+    Function::ALL.into_iter().find(is_it)
+}

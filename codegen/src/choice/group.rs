@@ -1,0 +1,112 @@
+//! Groups of functions by what they are for.
+
+use crate::derivation::MotionInput;
+use crate::mechanism::Mechanism;
+use overact_core::{Columns, Function};
+
+/// Functions for one purpose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Group {
+    /// Pose from actuators, twist, inverse dynamics with internal torques, mass matrix and bias.
+    Control,
+    /// What `overact::Model` is asked for, and all forms of the identification models from the pose.
+    Identification,
+    /// Positions, rates and Jacobians, in all forms.
+    Kinematics,
+}
+
+impl Group {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Control, Self::Identification, Self::Kinematics];
+
+    /// The name in attributes and on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Control => "control",
+            Self::Identification => "identification",
+            Self::Kinematics => "kinematics",
+        }
+    }
+
+    /// Whether a form of a function is one of the group, where no other forms are asked for.
+    pub(super) fn has(self, mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
+        let is_plain = from == plain(mechanism);
+        match self {
+            Self::Control => is_plain && is_for_control(function),
+            Self::Identification => {
+                let is_model =
+                    function.columns().is_some() || function == Function::ProjectActuators;
+                serves_model(mechanism, function, from) || (is_plain && is_model)
+            }
+            Self::Kinematics => is_kinematic(function),
+        }
+    }
+}
+
+const fn is_for_control(function: Function) -> bool {
+    matches!(
+        function,
+        Function::ActuatorPositions
+            | Function::InverseJacobian
+            | Function::TwistFromActuators
+            | Function::InverseDynamics(Columns::Standard)
+            | Function::InverseDynamicsPreloaded
+            | Function::MassMatrix(Columns::Standard)
+            | Function::Bias(Columns::Standard)
+            | Function::ProjectTorques
+            | Function::NullSpace
+    )
+}
+
+const fn is_kinematic(function: Function) -> bool {
+    matches!(
+        function,
+        Function::PoseInClosedForm
+            | Function::Joints
+            | Function::ActuatorPositions
+            | Function::InverseJacobian
+            | Function::Jacobian
+            | Function::LegsJacobian
+            | Function::LegsPlatformJacobian
+            | Function::ClosurePlatformJacobian
+            | Function::ClosureActuatorJacobian
+            | Function::ClosureError
+            | Function::JointVelocities
+            | Function::JointAccelerations
+            | Function::TwistFromActuators
+            | Function::AccelerationFromActuators
+    )
+}
+
+/// From what functions are evaluated that are given plain states.
+fn plain(mechanism: &Mechanism) -> MotionInput {
+    match mechanism.is_tree() {
+        false => MotionInput::Pose,
+        true => MotionInput::Joints,
+    }
+}
+
+/// Whether identification and simulation ask a model for a function, or it serves to find pose and joints.
+#[must_use]
+pub fn serves_model(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
+    match function {
+        Function::PoseInClosedForm => true,
+        Function::ClosureError | Function::LegsJacobian | Function::ClosureActuatorJacobian => {
+            from == MotionInput::Joints
+        }
+        Function::Jacobian
+        | Function::LegsPlatformJacobian
+        | Function::ClosurePlatformJacobian
+        | Function::IdmRedPlatform(Columns::Base)
+        | Function::IdmRedActuators(_)
+        | Function::IdmRedPayloadActuators
+        | Function::ProjectActuators
+        | Function::InverseDynamics(Columns::Base)
+        | Function::MassMatrix(Columns::Base)
+        | Function::Bias(_)
+        | Function::ForwardDynamics(Columns::Base)
+        | Function::InverseDynamicsPreloaded => false,
+        _ => from == plain(mechanism),
+    }
+}

@@ -1,0 +1,275 @@
+//! Which functions of a robot are wanted, by name or by what they are for, and what those need.
+//!
+//! A controller takes a few functions of dozens. Names are those of the generated functions, those of the
+//! table of functions (which may stand for several forms), or of a [`Group`]. What a function calls comes
+//! along: forward kinematics with what it iterates on, Newton's method with the closure of the legs.
+
+mod chosen;
+mod form;
+mod group;
+mod name;
+
+pub(crate) use chosen::Chosen;
+pub(crate) use form::Missing;
+pub use group::{Group, serves_model};
+pub use name::UnknownFunction;
+
+use crate::derivation::{JointsBy, MotionInput};
+use crate::mechanism::Mechanism;
+use form::Forms;
+use name::{Meant, help, meant};
+use overact_core::{Columns, Function};
+
+/// Functions that are wanted, and in which forms.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Choice {
+    /// None for all functions.
+    names: Vec<String>,
+    /// None for each function's own.
+    from: Vec<MotionInput>,
+    columns: Option<Columns>,
+}
+
+impl Choice {
+    /// Functions by their names, and groups.
+    ///
+    /// # Errors
+    /// All names that no robot's function has; an empty list, which would leave nothing, as one of an empty
+    /// name.
+    pub fn new<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, Vec<UnknownFunction>> {
+        let names: Vec<String> = names
+            .into_iter()
+            .map(|name| name.trim().to_owned())
+            .collect();
+        let mut unknown = Vec::new();
+        for (index, name) in names.iter().enumerate() {
+            if meant(name, true).is_none() && meant(name, false).is_none() {
+                unknown.push(UnknownFunction {
+                    index,
+                    name: name.clone(),
+                    help: help(name),
+                });
+            }
+        }
+        if names.is_empty() {
+            unknown.push(UnknownFunction {
+                index: 0,
+                name: String::new(),
+                help: help(""),
+            });
+        }
+        match unknown.is_empty() {
+            true => Ok(Self {
+                names,
+                ..Self::default()
+            }),
+            false => Err(unknown),
+        }
+    }
+
+    /// All functions, until forms of them are chosen.
+    #[must_use]
+    pub fn all() -> Self {
+        Self::default()
+    }
+
+    /// Of the functions the forms that are evaluated from these. A function that is named without its form,
+    /// as `inverse_dynamics`, is meant in each of them that it has; what is called comes along in whichever form.
+    /// A robot without a platform has its joints for a pose, and one form of everything.
+    #[must_use]
+    pub fn evaluated_from(mut self, from: impl IntoIterator<Item = MotionInput>) -> Self {
+        self.from = from.into_iter().collect();
+        self
+    }
+
+    /// Of the functions those with these columns, or that take the values of these parameters; others, which
+    /// have to do with neither, stay. A function that is named without its columns, as `inverse_dynamics`, is
+    /// meant with these.
+    #[must_use]
+    pub fn with_columns(mut self, columns: Columns) -> Self {
+        self.columns = Some(columns);
+        self
+    }
+
+    /// The names as they were given; none where all functions are wanted.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The columns that are wanted, where these are chosen.
+    pub(crate) fn columns(&self) -> Option<Columns> {
+        self.columns
+    }
+
+    /// The functions of a robot with this inventory that are wanted, and what they need.
+    ///
+    /// # Errors
+    /// Every name that this robot has no function for, at least in the form that is wanted.
+    pub(crate) fn of_robot(
+        &self,
+        mechanism: &Mechanism,
+        joints: JointsBy,
+        inventory: &[(Function, MotionInput)],
+    ) -> Result<Chosen, Vec<Missing>> {
+        let forms = Forms {
+            tree: mechanism.is_tree(),
+            mechanism,
+            from: &self.from,
+            columns: self.columns,
+            inventory,
+        };
+        let mut chosen = Chosen::default();
+        let mut missing = Vec::new();
+        if self.names.is_empty() {
+            chosen.forward = forms.has_source(MotionInput::Actuators);
+            match forms.all() {
+                Ok(all) => chosen.functions.extend(all),
+                Err(nothing) => missing.push(nothing),
+            }
+        }
+        for name in &self.names {
+            let found = meant(name, mechanism.is_tree());
+            chosen.forward |= matches!(found, Some(Meant::Group(_) | Meant::Forward));
+            match forms.wanted(name, found) {
+                Ok(wanted) => chosen.functions.extend(wanted),
+                Err(one) => missing.push(one),
+            }
+        }
+        if !missing.is_empty() {
+            return Err(missing);
+        }
+        chosen.complete(mechanism, joints, inventory);
+        Ok(chosen)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Choice, Group, Meant, meant};
+    use crate::derivation::MotionInput;
+    use crate::{Effort, Request, Source, compile_with};
+    use overact_core::{Columns, Function};
+
+    #[test]
+    fn names_of_functions_and_groups_are_known() {
+        let names = [
+            "control",
+            "inverse_dynamics",
+            "idm_red_platform_base_from_joints",
+            "legs_jacobian",
+            "pose_from_actuators",
+        ];
+        assert_eq!(Choice::new(names).expect("known").names(), names);
+        assert_eq!(
+            meant("kinematics", true),
+            Some(Meant::Group(Group::Kinematics))
+        );
+        assert!(matches!(
+            meant("joints", false),
+            Some(Meant::Form(Function::Joints, _))
+        ));
+    }
+
+    #[test]
+    fn all_unknown_names_are_told_with_what_was_meant() {
+        let unknown = Choice::new(["inverse_dynamic", "joints", "nonsense", ""]).expect_err("two");
+        let told: Vec<(usize, &str)> = unknown.iter().map(|u| (u.index, u.help.as_str())).collect();
+        assert_eq!(told.len(), 3);
+        assert_eq!(told[0], (0, "did you mean `inverse_dynamics`?"));
+        assert_eq!(told[1].0, 2);
+        assert!(told[1].1.contains("`control`"), "{}", told[1].1);
+        assert_eq!(Choice::new([]).expect_err("nothing").len(), 1);
+    }
+
+    /// Names of the functions that are generated of a robot of the library, or what is said instead.
+    fn generated(robot: &str, choice: &Choice) -> Result<Vec<String>, String> {
+        let text = match robot {
+            "emps" => include_str!("../../../robots/emps.toml"),
+            _ => include_str!("../../../robots/five_bar.toml"),
+        };
+        let source = Source::new("robot.toml", text);
+        let request = Request {
+            functions: Some(choice),
+            ..Request::with_effort(Effort::None)
+        };
+        let compiled = compile_with(&source, &request);
+        match compiled {
+            Ok(robot) => Ok(robot.model.functions.into_iter().map(|f| f.name).collect()),
+            Err(errors) => Err(errors.render_plain(&source)),
+        }
+    }
+
+    fn named(name: &str) -> Choice {
+        Choice::new([name]).expect("known")
+    }
+
+    #[test]
+    fn forms_are_chosen_by_what_they_are_evaluated_from_and_by_their_columns() {
+        let idm = named("idm_red_platform");
+        let forms = |choice: Choice| generated("five_bar", &choice).expect("a model");
+        let joints = idm.clone().evaluated_from([MotionInput::Joints]);
+        assert_eq!(forms(joints.clone()), ["idm_red_platform_from_joints"]);
+        let base = joints.with_columns(Columns::Base);
+        assert_eq!(forms(base), ["idm_red_platform_base_from_joints"]);
+        let both = idm.evaluated_from([MotionInput::Pose, MotionInput::Joints]);
+        assert_eq!(forms(both).len(), 2);
+        let all = forms(Choice::all().evaluated_from([MotionInput::Joints]));
+        let ends = |name: &String| name.ends_with("_from_joints");
+        assert!(all.len() > 8 && all.iter().all(ends), "{all:?}");
+        let control = forms(named("control").with_columns(Columns::Base));
+        assert!(
+            control.contains(&"mass_matrix_base".to_owned()),
+            "{control:?}"
+        );
+        assert!(!control.contains(&"mass_matrix".to_owned()), "{control:?}");
+        assert!(
+            control.contains(&"inverse_jacobian".to_owned()),
+            "{control:?}"
+        );
+        // The state of a robot without a platform are its joints, whatever they are called.
+        let tree = named("inverse_dynamics").evaluated_from([MotionInput::Pose]);
+        assert_eq!(
+            generated("emps", &tree),
+            Ok(vec!["inverse_dynamics".to_owned()])
+        );
+    }
+
+    #[test]
+    fn forms_that_are_not_there_are_told_with_a_way_out() {
+        let cases = [
+            (
+                named("mass_matrix").evaluated_from([MotionInput::Joints]),
+                [
+                    "no function `mass_matrix` from joints",
+                    "it is evaluated from pose",
+                ],
+            ),
+            (
+                named("idm_red_platform_from_joints").evaluated_from([MotionInput::Pose]),
+                [
+                    "can't have `idm_red_platform_from_joints` from pose",
+                    "`idm_red_platform`",
+                ],
+            ),
+            (
+                named("bias_base").with_columns(Columns::Standard),
+                [
+                    "can't have `bias_base` with standard columns",
+                    "ask for `bias`",
+                ],
+            ),
+            (
+                named("legs_jacobian").evaluated_from([MotionInput::Pose]),
+                [
+                    "no function `legs_jacobian` from pose",
+                    "it is evaluated from joints",
+                ],
+            ),
+        ];
+        for (choice, wanted) in cases {
+            let said = generated("five_bar", &choice).expect_err("nothing of this form");
+            assert!(wanted.iter().all(|part| said.contains(part)), "{said}");
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! What names of functions stand for.
+
+use super::group::Group;
+use crate::derivation::{MotionInput, function_name, sources};
+use crate::diagnostic::did_you_mean;
+use overact_core::{Condition, Function};
+use std::fmt;
+
+/// The name of forward kinematics, which is no function of the table: it iterates.
+const FORWARD: &str = "pose_from_actuators";
+
+/// What a name stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Meant {
+    Group(Group),
+    Forward,
+    /// The function of exactly this name.
+    Form(Function, MotionInput),
+    /// A function of the table in all its forms.
+    Forms(Function),
+}
+
+/// A name that no function of any robot has.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnknownFunction {
+    /// Its place in the list that was given.
+    pub index: usize,
+    /// The name.
+    pub name: String,
+    /// A way out.
+    pub help: String,
+}
+
+impl fmt::Display for UnknownFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no robot has a function `{}`", self.name)
+    }
+}
+
+/// All names that a function has in a robot with or without platform.
+pub(super) fn meant(name: &str, tree: bool) -> Option<Meant> {
+    if let Some(group) = Group::ALL.into_iter().find(|group| group.name() == name) {
+        return Some(Meant::Group(group));
+    }
+    if name == FORWARD {
+        return Some(Meant::Forward);
+    }
+    for function in Function::ALL {
+        for &from in sources(function, tree) {
+            if function_name(function, from, tree) == name {
+                return Some(Meant::Form(function, from));
+            }
+        }
+    }
+    // Forms of both columns have one name; those of standard ones come first.
+    let found = Function::ALL.into_iter().find(|f| f.name() == name)?;
+    Some(Meant::Forms(found))
+}
+
+/// A name that is near, or all groups and where the names are.
+pub(super) fn help(name: &str) -> String {
+    let groups = Group::ALL.map(Group::name);
+    let functions = Function::ALL.into_iter().flat_map(|function| {
+        let names = sources(function, false).iter();
+        names.map(move |&from| function_name(function, from, false))
+    });
+    let functions: Vec<String> = functions.collect();
+    let table = Function::ALL.map(Function::name);
+    let known = groups.into_iter().chain([FORWARD]);
+    let known = known
+        .chain(functions.iter().map(String::as_str))
+        .chain(table);
+    did_you_mean(name, known).unwrap_or_else(|| {
+        format!(
+            "name functions as `overact inspect` lists them, or a group: {}",
+            groups.map(|group| format!("`{group}`")).join(", ")
+        )
+    })
+}
+
+/// Why a robot has not got a function.
+pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
+    let (Meant::Form(function, _) | Meant::Forms(function)) = meant else {
+        return "";
+    };
+    match function.condition() {
+        Condition::Platform if tree => ": that is one of robots with a platform",
+        Condition::Redundancy => {
+            ": that is one of robots with more actuators than degrees of freedom"
+        }
+        Condition::Payload => ": that is one of robots with a `[platform.payload]`",
+        Condition::ClosedForm => ": no rule gives its pose from the actuators",
+        Condition::NumericJoints => ": its joints are found without closure errors",
+        _ if function.columns().is_some() => {
+            ": where the parameters are known there are no identification models"
+        }
+        _ => "",
+    }
+}

@@ -1,0 +1,89 @@
+//! Under which path generated Rust finds the crate that it calls.
+
+use std::fmt;
+
+/// The path of the crate `overact` in generated Rust: by default `::overact`, another one where it comes
+/// renamed or by way of another crate.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Runtime {
+    path: String,
+}
+
+impl Default for Runtime {
+    fn default() -> Self {
+        Self {
+            path: "::overact".to_owned(),
+        }
+    }
+}
+
+impl Runtime {
+    /// The crate under a path, `::my_robotics::overact` or `crate::vendor::overact`.
+    ///
+    /// # Errors
+    /// What is no path, or one that means something else in the scope of a function, as `self` does.
+    pub fn new(path: &str) -> Result<Self, NotAPath> {
+        let refused = || NotAPath(path.to_owned());
+        let parser = syn::Path::parse_mod_style;
+        let parsed = syn::parse::Parser::parse_str(parser, path).map_err(|_| refused())?;
+        let mut names = parsed
+            .segments
+            .iter()
+            .map(|segment| segment.ident.to_string());
+        let is_relative = names.any(|name| ["self", "super", "Self"].contains(&&*name));
+        match is_relative {
+            true => Err(refused()),
+            false => Ok(Self {
+                path: path.trim().to_owned(),
+            }),
+        }
+    }
+
+    /// The path.
+    #[must_use]
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+}
+
+/// A text that is no path of a crate.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NotAPath(String);
+
+impl fmt::Display for NotAPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let path = &self.0;
+        write!(
+            f,
+            "`{path}` is no path of the crate that generated code calls, which is one like \
+             `::overact` or `crate::vendor::overact`"
+        )
+    }
+}
+
+impl std::error::Error for NotAPath {}
+
+#[cfg(test)]
+mod tests {
+    use super::Runtime;
+
+    #[test]
+    fn paths_are_told_from_other_texts() {
+        for path in ["::overact", "overact", "crate::vendor::overact", " ::a::b "] {
+            assert_eq!(Runtime::new(path).expect("a path").path(), path.trim());
+        }
+        for text in [
+            "",
+            "::",
+            "a b",
+            "a::<u8>",
+            "super::overact",
+            "self::a",
+            "\"",
+            "a::b;",
+        ] {
+            let refused = Runtime::new(text).expect_err("no path").to_string();
+            assert!(refused.contains("::overact"), "{refused}");
+        }
+    }
+}
