@@ -48,7 +48,8 @@ pub struct RobotModel {
     pub mechanism: Mechanism,
     /// Standard, base and payload columns, kept actuators, and how the joints follow from the pose.
     pub selection: Selection,
-    /// Base parameters with their regroupings, in the symmetric order (43).
+    /// Base parameters with their regroupings, in the order of the columns: the symmetric one (43), or the one whose
+    /// columns take the fewest operations.
     pub base: Vec<BaseParameter>,
     /// All functions.
     pub functions: Vec<CompiledFunction>,

@@ -92,7 +92,8 @@ pub use regression::{
     system::{Part, PartitionCondition, Stretch, System},
 };
 pub use result::{
-    CrossValidation, Estimate, Estimator, MotorParameter, ParameterEstimate, RunSummary, Stage,
+    CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, ParameterEstimate,
+    RunSummary, Stage,
 };
 pub use series::{ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series};
 pub use settings::{Instruments, Normalisation, Settings};

@@ -2,6 +2,7 @@
 
 use crate::{
     error::{Error, Problem},
+    functions_base::functions_base,
     motors::at_motors,
     partitions::partitions,
     robot::Robot,
@@ -302,6 +303,7 @@ impl<'a> Identifier<'a> {
         }
         result.settings = settings;
         result.motors = at_motors(self.robot.description(), &result.estimates);
+        result.functions_base = functions_base(self.robot.model().model(), &result);
         Ok(result)
     }
 

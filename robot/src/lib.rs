@@ -36,6 +36,7 @@
 //! - `variants`: the robot with other lengths, by which wrong ones are told;
 //! - `instruments`: the motion of the simulated robot beside runs, by which errors of theirs are told;
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
+//! - `motors`, `functions_base`: what was identified in front of gears, and as functions of the model take it;
 //! - `kept`: kept actuators of case 2 by name;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators;
 //! - `factors`: runs as factor files, and the parameters from them; `fleet`: runs of many virtual robots.
@@ -56,6 +57,7 @@ mod excitation;
 mod experiment;
 mod factors;
 mod fleet;
+mod functions_base;
 mod gravity;
 mod identifier;
 pub mod inspection;

@@ -246,7 +246,7 @@ fn parameters(model: &RobotModel) -> Vec<Table> {
         element: "rob_base_parameter",
         name: "base_parameters",
         length: "ROB_BASE_PARAMETERS".to_owned(),
-        comment: "The base parameters in the symmetric order (43).",
+        comment: "The base parameters in the order in which functions take them.",
         elements: base.collect(),
     });
     tables

@@ -208,7 +208,7 @@ fn base_parameters(model: &RobotModel) -> TokenStream {
     });
     let count = Literal::usize_unsuffixed(model.base.len());
     quote! {
-        #[doc = " The base parameters and what is regrouped into them, in the symmetric order (43)."]
+        #[doc = " The base parameters in the order in which functions take them, and what is regrouped into them."]
         pub const BASE_PARAMETERS: [::overact::BaseParameter; #count] = {
             use ::overact::BaseParameter;
             [#(#entries),*]

@@ -7,7 +7,7 @@
 //! - `verdict`: what may be done with the estimates of a model;
 //! - `assumptions`: what no data can show;
 //! - `positions`: positions that contradict the loops, and what would make them close;
-//! - `torques`: torques that contradict the model, and which fault would explain them;
+//! - `torques`: torques that contradict the model, and which fault would explain them; `whole`: faults of whole runs;
 //! - `suspects`: what the model may lack, held against what it leaves unexplained;
 //! - `explained`: what may have led to an error.
 
@@ -20,6 +20,7 @@ mod positions;
 pub(crate) mod suspects;
 pub(crate) mod torques;
 pub(crate) mod verdict;
+mod whole;
 
 pub(crate) use checks::{Context, Watched, checks, raw_numbers::suspicious};
 pub(crate) use explained::explained;

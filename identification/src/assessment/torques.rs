@@ -1,5 +1,6 @@
 //! Torques that contradict the model, and which single fault would explain them: a drive of the wrong
-//! sign or gain, two that are swapped, a run that is labelled with the wrong payload.
+//! sign or gain, two that are swapped, a run that is labelled with the wrong payload; or two joints that are
+//! swapped as a whole, gravity that points the other way.
 //!
 //! Any linear change of the torques changes Γ¹ = Σ_i J_iᵀ τ_i into a combination of the products
 //! J_iᵀ τ_j, and what the model can't explain of a combination follows from the R factor of
@@ -12,7 +13,7 @@ use rayon::prelude::*;
 
 use super::{
     check::{About, Check, CheckKind, Grade},
-    positions,
+    whole::Whole,
 };
 use crate::{
     blocks::{BLOCK, slice},
@@ -58,7 +59,7 @@ pub(crate) fn explanation(
     let info = model.info();
     let n = info.sizes.actuators;
     let columns = Columns::new(model, settings)?;
-    let doubt = columns.doubt((model, runs), settings, Drives::OneByOne)?;
+    let doubt = columns.doubt((model, runs), settings, Way::ONE_BY_ONE)?;
     let before = doubt.error(None);
     let mut faults: Vec<Fault> = Vec::new();
     faults.extend((0..n).flat_map(|i| GAINS.map(|gain| Fault::Gain(i, gain))));
@@ -85,32 +86,24 @@ pub(crate) fn explanation(
         return Ok(Some(measured(told, before, after)));
     }
     // What happened to positions happened in all runs.
-    let positions = positions::Fault::all(model)
-        .into_par_iter()
-        .filter_map(|fault| {
-            let repaired = |log: &Log| {
-                let (mut positions, torques) = log.load()?;
-                fault.repair(model, &mut positions);
-                let (name, frequency) = (log.name(), log.sampling_frequency());
-                Log::new(name, frequency, n, positions, torques, log.payload())
-            };
-            let runs: Result<Vec<Log>, Error> = runs.iter().map(repaired).collect();
-            // A change that leads out of the workspace explains nothing.
-            let doubt = columns.doubt((model, &runs.ok()?), settings, Drives::Together);
-            Some((fault, doubt.ok()?.error(None)))
-        });
-    let positions: Vec<(positions::Fault, f64)> = positions.collect();
-    let best = positions.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
-    let explains = |(_, after): &(positions::Fault, f64)| {
-        *after < EXPLAINED * before && before - after > WORTHWHILE
-    };
-    Ok(best.filter(explains).map(|(fault, after)| {
-        let told = Check {
-            run: None,
-            ..fault.check(model, "", &so(after))
+    let whole = Whole::all(model).into_par_iter().filter_map(|fault| {
+        let repaired = |log: &Log| fault.repaired(model, log);
+        let runs: Result<Vec<Log>, Error> = runs.iter().map(repaired).collect();
+        // A change that leads out of the workspace explains nothing.
+        let way = match fault {
+            Whole::Gravity => Way::TOGETHER_UPSIDE_DOWN,
+            _ => Way::TOGETHER,
         };
-        measured(told, before, after)
-    }))
+        let doubt = columns.doubt((model, &runs.ok()?), settings, way);
+        Some((fault, doubt.ok()?.error(None)))
+    });
+    let whole: Vec<(Whole, f64)> = whole.collect();
+    let explains = |(fault, after): &(Whole, f64)| {
+        *after < fault.explained(EXPLAINED) * before && before - after > WORTHWHILE
+    };
+    let best = whole.into_iter().filter(explains);
+    let best = best.min_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(best.map(|(fault, after)| measured(fault.check(model, &so(after)), before, after)))
 }
 
 /// A check with the part of the inputs that is left unexplained without the fault.
@@ -219,19 +212,19 @@ impl Columns {
         &self,
         (model, runs): (&dyn Model, &[Log]),
         settings: &Settings,
-        drives: Drives,
+        way: Way,
     ) -> Result<Doubt<'_>, Error> {
         let loaded = !model.info().payload_parameters.is_empty();
         let factors = |log: &Log| {
             let log = log.clone().with_payload(loaded);
-            run_factors(model, &log, settings, self, drives)
+            run_factors(model, &log, settings, self, way)
         };
         Ok(Doubt {
             columns: self,
             factors: runs.iter().map(factors).collect::<Result<_, _>>()?,
             labels: runs.iter().map(Log::payload).collect(),
             actuators: model.info().sizes.actuators,
-            drives,
+            drives: way.drives,
         })
     }
 }
@@ -320,13 +313,39 @@ enum Drives {
     Together,
 }
 
+/// How equations are made.
+#[derive(Debug, Clone, Copy)]
+struct Way {
+    drives: Drives,
+    /// Whether gravity is turned round.
+    upside_down: bool,
+}
+
+impl Way {
+    const ONE_BY_ONE: Self = Self {
+        drives: Drives::OneByOne,
+        upside_down: false,
+    };
+    const TOGETHER: Self = Self {
+        drives: Drives::Together,
+        upside_down: false,
+    };
+    const TOGETHER_UPSIDE_DOWN: Self = Self {
+        drives: Drives::Together,
+        upside_down: true,
+    };
+}
+
 /// The factor of each line of a run: W, then what the drives add.
 fn run_factors(
     model: &dyn Model,
     log: &Log,
     settings: &Settings,
     Columns { columns, base, .. }: &Columns,
-    drives: Drives,
+    Way {
+        drives,
+        upside_down,
+    }: Way,
 ) -> Result<Vec<Factor>, Error> {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
@@ -353,15 +372,21 @@ fn run_factors(
                 slice(&motion.twist, r, first, count),
                 slice(&motion.acceleration, r, first, count),
             ];
-            let mut lines = columns
-                .evaluate(
-                    model,
-                    &states,
-                    (count, 1.0 / motion.sampling_frequency),
-                    motion.carried(),
-                    (&base.columns, more),
-                )
-                .map_err(at)?;
+            let interval = 1.0 / motion.sampling_frequency;
+            let evaluate = |states: &[&[f64]; 3]| {
+                let picked = (&base.columns[..], more);
+                let carried = motion.carried();
+                let lines = columns.evaluate(model, states, (count, interval), carried, picked);
+                lines.map_err(at)
+            };
+            let mut lines = evaluate(&states)?;
+            if upside_down {
+                // At rest there is what gravity does, and what is constant, whose sign does not matter.
+                let rest = vec![0.0; r * count];
+                let at_rest = evaluate(&[pose, &rest, &rest])?;
+                let pairs = lines.iter_mut().flatten().zip(at_rest.iter().flatten());
+                pairs.for_each(|(own, rest)| *own -= 2.0 * rest);
+            }
             let mut jacobians = vec![0.0; count * n * r];
             model
                 .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)

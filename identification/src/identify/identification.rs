@@ -23,7 +23,7 @@ use crate::{
     gains::{DriveGain, JointParameter},
     gravity::GravityDirection,
     regression::columns::ColumnSet,
-    result::{CrossValidation, Estimate, Estimator, MotorParameter, RunSummary},
+    result::{CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, RunSummary},
     settings::Settings,
     thresholds::Thresholds,
 };
@@ -77,6 +77,11 @@ pub struct Identification {
     /// Base estimates of the drives' parameters in front of their gears, where motors are described.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub motors: Vec<MotorParameter>,
+    /// The base estimate of the first model in the base parameters that functions like `inverse_dynamics_base`
+    /// take, in their order. They may be other sums than those that are estimated, of the same names, where the
+    /// functions' columns are chosen for the fewest operations.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub functions_base: Vec<FunctionParameter>,
     /// Table 4, where controlled runs were compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tracking: Vec<TrackingError>,

@@ -171,6 +171,7 @@ pub fn identify_after(
         gains: Vec::new(),
         gain_parameters: Vec::new(),
         motors: Vec::new(),
+        functions_base: Vec::new(),
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,

@@ -1,4 +1,4 @@
-//! Noise of signals, whatever smooth motion they follow, and signals that are equal throughout.
+//! Noise of signals, whatever smooth motion they follow, and signals that are one.
 
 /// Mean square of third differences of white noise by its variance: 1 + 9 + 9 + 1.
 const THIRD_DIFFERENCES: f64 = 20.0;
@@ -11,8 +11,57 @@ pub(super) struct Roughness {
     /// Σ of the squares of third differences, and how many there are.
     squares: Vec<f64>,
     count: usize,
-    /// Pairs of signals that have been equal so far.
-    twins: Vec<(usize, usize)>,
+    /// The first row.
+    first: Vec<f64>,
+    /// Pairs of signals that have been one so far.
+    twins: Vec<Twins>,
+}
+
+/// Rounding of signals that are scaled and shifted, by their size.
+const ROUNDING: f64 = 1e-13;
+
+/// Two signals of which one has been the other times a factor and shifted so far: one measured signal that
+/// stands for two, in units or behind gears of its own.
+#[derive(Debug, Clone)]
+struct Twins {
+    pair: (usize, usize),
+    /// Whether they have been equal.
+    equal: bool,
+    /// How far they were from the first row where the first of them was farthest.
+    farthest: [f64; 2],
+}
+
+impl Twins {
+    const fn new(pair: (usize, usize)) -> Self {
+        Self {
+            pair,
+            equal: true,
+            farthest: [0.0; 2],
+        }
+    }
+
+    /// Whether they are still one at a row.
+    fn take(&mut self, row: &[f64], first: &[f64]) -> bool {
+        let (i, j) = self.pair;
+        self.equal &= row[i] == row[j];
+        let [a, b] = [i, j].map(|at| row[at] - first[at]);
+        let rounding = [i, j].map(|at| ROUNDING * (row[at].abs() + first[at].abs()));
+        let [far_a, far_b] = self.farthest;
+        // a : b = far_a : far_b, with no ratio to divide by.
+        let allowed = (rounding[0] * far_b.abs() + rounding[1] * far_a.abs())
+            + ROUNDING * (a * far_b).abs().max((b * far_a).abs());
+        let proportional = (a * far_b - b * far_a).abs() <= 4.0 * allowed;
+        if a.abs() > far_a.abs() {
+            self.farthest = [a, b];
+        }
+        proportional || self.equal
+    }
+
+    /// Whether they are one, now that all rows have been seen: signals that rest are not told apart, but equal
+    /// ones are.
+    fn is_one(&self) -> bool {
+        self.equal || self.farthest.iter().all(|far| *far != 0.0)
+    }
 }
 
 impl Roughness {
@@ -22,12 +71,17 @@ impl Roughness {
             last: Vec::new(),
             squares: vec![0.0; signals],
             count: 0,
-            twins: pairs.collect(),
+            first: Vec::new(),
+            twins: pairs.map(Twins::new).collect(),
         }
     }
 
     pub(super) fn take(&mut self, row: &[f64]) {
-        self.twins.retain(|&(i, j)| row[i] == row[j]);
+        if self.first.is_empty() {
+            self.first = row.to_vec();
+        }
+        let first = &self.first;
+        self.twins.retain_mut(|twins| twins.take(row, first));
         if let [first, second, third] = &self.last[..] {
             for (i, square) in self.squares.iter_mut().enumerate() {
                 let difference = row[i] - 3.0 * third[i] + 3.0 * second[i] - first[i];
@@ -49,12 +103,13 @@ impl Roughness {
 
     /// Leaves pairs out whose first signal is of no interest.
     pub(super) fn forget(&mut self, is_idle: impl Fn(usize) -> bool) {
-        self.twins.retain(|&(first, _)| !is_idle(first));
+        self.twins.retain(|twins| !is_idle(twins.pair.0));
     }
 
-    /// Pairs of signals that are equal throughout.
-    pub(super) fn twins(&self) -> &[(usize, usize)] {
-        &self.twins
+    /// Pairs of signals that are one throughout, in whatever unit.
+    pub(super) fn twins(&self) -> Vec<(usize, usize)> {
+        let one = self.twins.iter().filter(|twins| twins.is_one());
+        one.map(|twins| twins.pair).collect()
     }
 }
 
@@ -83,5 +138,18 @@ mod tests {
         // Uniform noise of width 0.1 has the variance 0.01/12.
         assert!((noisy * 12.0 / 0.01 - 1.0).abs() < 0.05, "{noisy}");
         assert_eq!(roughness.twins(), [(0, 2)]);
+    }
+
+    #[test]
+    fn a_signal_in_other_units_is_the_same_signal() {
+        let mut roughness = Roughness::new(5);
+        for k in 0..5_000 {
+            let phase = 1e-3 * f64::from(k);
+            let own = (3.0 * phase).sin() + 0.2 * phase;
+            // Behind another gear and from another zero; a thousandth of another motion; at rest.
+            let other = 0.3 - own / 45.0;
+            roughness.take(&[own / 32.0, other, own + 1e-3 * phase.cos(), 0.7, 0.0]);
+        }
+        assert_eq!(roughness.twins(), [(0, 1)]);
     }
 }

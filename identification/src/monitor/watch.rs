@@ -216,7 +216,7 @@ impl Monitor {
                 unit: "",
                 threshold: 0.0,
                 message: format!(
-                    "the {what} is that of `{}`, sample by sample: one column was taken twice; check the names of the columns in the table [data]",
+                    "the {what} is that of `{}`, sample by sample, but for a factor and its zero: one column was taken twice; check the names of the columns in the table [data]",
                     name(i)
                 ),
             };

@@ -3,12 +3,14 @@
 
 mod cross_validation;
 mod estimate;
+mod function_parameter;
 mod motor;
 mod run;
 mod stage;
 
 pub use cross_validation::CrossValidation;
 pub use estimate::{Estimate, Estimator, ParameterEstimate};
+pub use function_parameter::FunctionParameter;
 pub use motor::MotorParameter;
 pub use run::RunSummary;
 pub use stage::Stage;

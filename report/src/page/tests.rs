@@ -371,6 +371,7 @@ fn an_identification_without_anything_still_has_a_page() {
         gains: Vec::new(),
         gain_parameters: Vec::new(),
         motors: Vec::new(),
+        functions_base: Vec::new(),
         tracking: Vec::new(),
         errors_in_regressor: Vec::new(),
         settings: settings(),

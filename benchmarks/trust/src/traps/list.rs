@@ -214,6 +214,21 @@ fn encoders(first: &'static str) -> Vec<Trap> {
                 .chunks_exact_mut(n)
                 .for_each(|row| row.swap(0, 1));
         }),
+        Trap::each("actuators 1 and 2 swapped, positions and torques", |run| {
+            let n = run.actuators.len();
+            let both = [&mut run.positions, &mut run.torques];
+            let rows = both.into_iter().flat_map(|all| all.chunks_exact_mut(n));
+            rows.for_each(|row| row.swap(0, 1));
+        }),
+        Trap::each(
+            "position of actuator 1 in the column of actuator 2, too, behind another gear",
+            |run| {
+                let n = run.actuators.len();
+                run.positions
+                    .chunks_exact_mut(n)
+                    .for_each(|row| row[1] = 0.7 * row[0]);
+            },
+        ),
     ]
 }
 
@@ -276,6 +291,11 @@ fn labels(robot: &str) -> Vec<Trap> {
 }
 
 fn geometry(robot: &str) -> Vec<Trap> {
+    let upwards = Trap::plant(
+        "gravity described upwards",
+        "gravity = [0, 0, \"-9.81 m/s^2\"]",
+        "gravity = [0, 0, \"9.81 m/s^2\"]",
+    );
     match robot {
         "DualV" => vec![
             Trap::plant("links 1 % long", "l_bc = \"0.28 m\"", "l_bc = \"0.2828 m\""),
@@ -297,6 +317,7 @@ fn geometry(robot: &str) -> Vec<Trap> {
                 "gravity = [0, 0, \"-9.81 m/s^2\"]",
                 "gravity = [\"0.855 m/s^2\", 0, \"-9.773 m/s^2\"]",
             ),
+            upwards,
         ],
         "Rx90" => vec![
             Trap::plant("upper arm 1 % long", "d3 = \"0.45 m\"", "d3 = \"0.4545 m\"").sized(
@@ -309,6 +330,7 @@ fn geometry(robot: &str) -> Vec<Trap> {
                 "gravity = [0, 0, \"-9.81 m/s^2\"]",
                 "gravity = [\"0.855 m/s^2\", 0, \"-9.773 m/s^2\"]",
             ),
+            upwards,
         ],
         _ => Vec::new(),
     }

@@ -295,6 +295,7 @@ pub(super) fn identification() -> Identification {
         gains: Vec::new(),
         gain_parameters: Vec::new(),
         motors: Vec::new(),
+        functions_base: Vec::new(),
         assumptions: vec![String::from("the gains are right")],
         verdicts: vec![
             verdict(ModelKind::Platform, Grade::UseListed, &["m_platformR"]),

@@ -1,0 +1,138 @@
+//! What is wrong as a whole, so that no single column or drive stands out: joints that are exchanged, gravity
+//! that points the other way, one column that stands for two. The torques tell all the same.
+
+use overact_identification::{Check, CheckKind, Grade, Identification, Log};
+use overact_robot::{Identifier, Robot};
+
+const TEMPLATE: &str = include_str!("../../cli/templates/serial-2r.toml");
+
+/// What is identified, with the description, from runs of the robot that is built and changed thereafter.
+fn identified(built: &str, change: impl Fn(&mut [f64], &mut [f64])) -> Identification {
+    let built = Robot::from_text("built.toml", built).expect("the robot that is built");
+    let robot = Robot::from_text("described.toml", TEMPLATE).expect("the robot as described");
+    let experiment = built.experiment().expect("an experiment");
+    let runs = experiment.runs(&[], &|_, _| {}).expect("runs");
+    let changed = |log: &Log| {
+        let (mut positions, mut torques) = log.load().expect("numbers");
+        for row in positions
+            .chunks_exact_mut(2)
+            .zip(torques.chunks_exact_mut(2))
+        {
+            change(row.0, row.1);
+        }
+        let (name, frequency) = (log.name(), log.sampling_frequency());
+        Log::new(name, frequency, 2, positions, torques, false).expect("a log")
+    };
+    let logs: Vec<Log> = runs.identified.iter().map(changed).collect();
+    Identifier::new(&robot).runs(&logs).run().expect("a result")
+}
+
+/// The words of the checks of a kind that found something, of a result that may not be used.
+fn refused(result: &Identification, kind: CheckKind) -> Vec<&str> {
+    assert_eq!(result.grade(), Grade::DoNotUse);
+    let own = |one: &&Check| one.kind == kind && !one.passed;
+    let own = result.checks.iter().filter(own);
+    own.map(|one| one.words.as_str()).collect()
+}
+
+#[test]
+fn joints_that_are_exchanged_with_their_torques_are_named() {
+    let result = identified(TEMPLATE, |positions, torques| {
+        positions.swap(0, 1);
+        torques.swap(0, 1);
+    });
+    let words = refused(&result, CheckKind::SwappedColumns).join("\n");
+    assert!(words.contains("positions and torques alike"), "{words}");
+}
+
+#[test]
+fn gravity_that_points_the_other_way_is_named() {
+    let built = TEMPLATE.replacen("\"-9.81 m/s^2\"", "\"9.81 m/s^2\"", 1);
+    assert_ne!(built, TEMPLATE);
+    let result = identified(&built, |_, _| ());
+    let words = refused(&result, CheckKind::WrongSign).join("\n");
+    assert!(words.contains("gravity looks as if"), "{words}");
+}
+
+#[test]
+fn a_position_that_stands_for_two_joints_behind_their_gears_is_named() {
+    let result = identified(TEMPLATE, |positions, _| {
+        positions[1] = 0.1 - positions[0] * 32.0 / 45.0;
+    });
+    let words = refused(&result, CheckKind::DuplicateColumns).join("\n");
+    assert!(words.contains("one column was taken twice"), "{words}");
+}
+
+#[test]
+fn nothing_of_this_is_said_of_the_robot_as_it_is() {
+    let result = identified(TEMPLATE, |_, _| ());
+    assert_eq!(result.grade(), Grade::Use, "{:?}", result.warnings);
+}
+
+/// Inverse dynamics of base parameters, whose columns are chosen for the fewest operations, from what was
+/// identified in other sums of the same names.
+#[test]
+fn functions_take_what_was_identified() {
+    use overact::{Function, Model};
+    let text = include_str!("../../robots/rx90.toml");
+    let robot = Robot::from_text("rx90.toml", text).expect("the RX90");
+    let experiment = robot.experiment().expect("an experiment");
+    let runs = experiment.runs(&[], &|_, _| {}).expect("runs");
+    let result = Identifier::new(&robot).data(&runs).run().expect("a result");
+    let values: Vec<f64> = result.functions_base.iter().map(|one| one.value).collect();
+    let sizes = robot.model().info().sizes;
+    assert_eq!(values.len(), sizes.base_parameters);
+    // The same names, but not the same sums.
+    let estimated = |name: &str| {
+        let own = result.estimates[0].parameters.iter();
+        own.clone()
+            .find(|one| one.name == name)
+            .map(|one| one.value)
+    };
+    let common = result.functions_base.iter();
+    let common = common.filter_map(|one| Some((one.value, estimated(&one.name)?)));
+    assert!(common.into_iter().any(|(a, b)| (a - b).abs() > 1e-3));
+    // W χ with the estimate's own columns is what the functions give.
+    let (q, v, a) = (
+        [0.3, -0.4, 0.5, -0.6, 0.7, -0.8],
+        [0.1, 0.2, -0.3, 0.4, -0.5, 0.6],
+        [1.0; 6],
+    );
+    let columns = sizes.parameters;
+    let mut regressor = vec![0.0; 6 * columns];
+    let function = Function::IdmRedPlatform(overact::Columns::Standard);
+    robot
+        .model()
+        .evaluate(function, &[&q, &v, &a], &mut regressor)
+        .expect("a regressor");
+    let mut expected = [0.0; 6];
+    for parameter in &result.base_parameters {
+        let names = robot.model().info().parameters;
+        let at = names.iter().position(|one| one.name == parameter.parameter);
+        let (at, value) = (
+            at.expect("a column"),
+            estimated(&parameter.name).expect("a value"),
+        );
+        for (row, torque) in expected.iter_mut().enumerate() {
+            *torque += regressor[row * columns + at] * value;
+        }
+    }
+    // A base column is that of the parameter which is kept.
+    let model = robot.model().model();
+    let mut torques = [0.0; 6];
+    for (base, value) in model.base.iter().zip(&values) {
+        let kept = model.parameter_name(base.parameter);
+        let names = robot.model().info().parameters;
+        let at = names.iter().position(|one| one.name == kept);
+        let at = at.expect("a column");
+        for (row, torque) in torques.iter_mut().enumerate() {
+            *torque += regressor[row * columns + at] * value;
+        }
+    }
+    for (torque, expected) in torques.iter().zip(expected) {
+        assert!(
+            (torque - expected).abs() < 1e-9 * expected.abs().max(1.0),
+            "{torque} {expected}"
+        );
+    }
+}
