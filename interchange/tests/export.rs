@@ -25,7 +25,10 @@ fn parameters(file: &Path) -> BTreeMap<String, f64> {
 }
 
 fn exported(file: &Path, values: &BTreeMap<String, f64>, folder: &Path) -> Exported {
-    let lines: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value:?}\n")).collect();
+    let lines: Vec<String> = values
+        .iter()
+        .map(|(name, value)| format!("{name} = {value:?}\n"))
+        .collect();
     let path = folder.join("parameters.toml");
     fs::write(&path, format!("[parameters]\n{}", lines.concat())).expect("a file");
     export(file, &path, &Options::default()).expect("an export")
@@ -41,7 +44,10 @@ fn others(values: &BTreeMap<String, f64>) -> BTreeMap<String, f64> {
         Some("fs") => 0.5,
         _ => 1.25 * 1.1 * 1.1,
     };
-    values.iter().map(|(name, value)| (name.clone(), factor(name) * value)).collect()
+    values
+        .iter()
+        .map(|(name, value)| (name.clone(), factor(name) * value))
+        .collect()
 }
 
 fn goes_round(name: &str) -> (String, Exported) {
@@ -59,7 +65,10 @@ fn goes_round(name: &str) -> (String, Exported) {
     let after = parameters(&again);
     for name in wanted.keys().chain(after.keys()) {
         let [value, found] = [&wanted, &after].map(|all| all.get(name).copied().unwrap_or(0.0));
-        assert!((found - value).abs() <= 1e-12 * value.abs().max(1e-3), "{name}: {found} for {value}");
+        assert!(
+            (found - value).abs() <= 1e-12 * value.abs().max(1e-3),
+            "{name}: {found} for {value}"
+        );
     }
     (text, made)
 }
@@ -71,22 +80,40 @@ fn mjcf_goes_round() {
     let pairs = || text.lines().zip(made.text.lines());
     assert_eq!(text.lines().count(), made.text.lines().count());
     for (before, after) in pairs().filter(|(before, after)| before != after) {
-        assert!(before.contains("<inertial") || before.contains("<joint"), "{before} became {after}");
+        assert!(
+            before.contains("<inertial") || before.contains("<joint"),
+            "{before} became {after}"
+        );
     }
-    let line = |part: &str| pairs().find(|(before, _)| before.contains(part)).map(|(_, after)| after.trim().to_owned());
+    let line = |part: &str| {
+        pairs()
+            .find(|(before, _)| before.contains(part))
+            .map(|(_, after)| after.trim().to_owned())
+    };
     // What a default class says of a joint is said of the joint itself.
     let expected = "<joint name=\"left_motor\" axis=\"0 1 0\" armature=\"0.0075\" damping=\"0.6\" frictionloss=\"0.15\"/>";
     assert_eq!(line("name=\"left_motor\"").as_deref(), Some(expected));
     let foot = line("mass=\"0.8\"").expect("the foot");
-    assert!(foot.contains("fullinertia=") && !foot.contains("euler") && !foot.contains("diaginertia"), "{foot}");
-    assert_eq!(line("name=\"shank\"").as_deref(), Some("<body name=\"shank\" pos=\"0 0 0.4\">"));
+    assert!(
+        foot.contains("fullinertia=") && !foot.contains("euler") && !foot.contains("diaginertia"),
+        "{foot}"
+    );
+    assert_eq!(
+        line("name=\"shank\"").as_deref(),
+        Some("<body name=\"shank\" pos=\"0 0 0.4\">")
+    );
 }
 
 #[test]
 fn urdf_goes_round() {
     let (text, made) = goes_round("arm.urdf");
     assert!(made.text.contains("rpy=") && text.contains("rpy="));
-    let comments = |text: &str| text.lines().filter(|line| line.contains("<!--")).map(str::to_owned).collect::<Vec<_>>();
+    let comments = |text: &str| {
+        text.lines()
+            .filter(|line| line.contains("<!--"))
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
     assert_eq!(comments(&text), comments(&made.text));
 }
 
@@ -98,12 +125,21 @@ fn what_has_no_place_is_told() {
     values.insert("ia_yaw".to_owned(), 0.2);
     values.insert("off_yaw".to_owned(), 0.0);
     let made = exported(&file, &values, folder.path());
-    assert_eq!(made.notes, ["URDF has no place for ia_yaw = 0.2: left out."]);
+    assert_eq!(
+        made.notes,
+        ["URDF has no place for ia_yaw = 0.2: left out."]
+    );
     // A mass that can't be is written, and told.
     values.remove("ia_yaw");
     values.insert("m_reach".to_owned(), -1.0);
     let made = exported(&file, &values, folder.path());
-    assert!(made.notes.iter().any(|note| note.contains("is no body that can be")), "{:?}", made.notes);
+    assert!(
+        made.notes
+            .iter()
+            .any(|note| note.contains("is no body that can be")),
+        "{:?}",
+        made.notes
+    );
 }
 
 #[test]
@@ -114,7 +150,10 @@ fn names_that_the_robot_has_not_are_refused() {
     let errors = export(&model("arm.urdf"), &path, &Options::default()).expect_err("a wrong name");
     let (source, errors) = &errors.0[0];
     let said = errors.render_plain(source);
-    assert!(said.contains("parameters.toml:3") && said.contains("m_lyft"), "{said}");
+    assert!(
+        said.contains("parameters.toml:3") && said.contains("m_lyft"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -133,6 +172,12 @@ fn included_files_change_where_they_say_it() {
     assert_eq!(made.text, fs::read_to_string(&file).expect("the file"));
     let (path, text) = &made.included[0];
     assert!(path.ends_with("parts/arm.xml"));
-    assert!(text.contains("<!-- kept -->") && text.contains("damping=\"0.5\""), "{text}");
-    assert!(text.contains("mass='4.0'") && text.contains("pos='0.05 0 0'"), "{text}");
+    assert!(
+        text.contains("<!-- kept -->") && text.contains("damping=\"0.5\""),
+        "{text}"
+    );
+    assert!(
+        text.contains("mass='4.0'") && text.contains("pos='0.05 0 0'"),
+        "{text}"
+    );
 }
