@@ -153,3 +153,61 @@ fn loops_that_cannot_close_are_named() {
         "{said}"
     );
 }
+
+/// A table of two joints, with one line in the place of another.
+fn table(line: &str, by: &str) -> String {
+    let text = "(* Robotname = 'two' *)\nNL = 2\nNJ = 2\nNF = 2\nant = {0,1}\nsigma = {0,0}\nb = {0,0}\nd = {0,D2}\n\
+        r = {0,0}\ngamma = {0,0}\nalpha = {0,pi/2}\nmu = {1,1}\ntheta = {t1,t2}\nM = {1,M2}\n";
+    assert!(text.contains(line));
+    text.replace(line, by)
+}
+
+#[test]
+fn tables_that_say_no_robot_are_told_at_their_line() {
+    let said = refused("two.par", &table("", ""));
+    assert!(
+        said.starts_with("8: `D2` has no value") && said.contains("--value D2="),
+        "{said}"
+    );
+    for (line, by, expected) in [
+        ("{0,D2}", "{0,0", "8: a list has no end"),
+        ("'two' *)", "'two'", "1: a comment has no end"),
+        ("NF = 2", "NL = 2", "4: `NL` stands here twice"),
+        (
+            "NF = 2",
+            "NF = 3",
+            "2: 2 links, 2 joints and 3 frames make no robot",
+        ),
+        ("NL = 2", "NL = 2.5", "2: `NL` is no whole number"),
+        ("{0,1}", "{0,2}", "5: frame 2 stands on 2 with sigma 0"),
+        ("{0,1}", "{0}", "5: `ANT` has no value for frame 2"),
+        ("{0,pi/2}", "{0,pi//2}", "11: `pi//2` is no expression"),
+        (
+            "{t1,t2}",
+            "{t1,2*t2}",
+            "13: the position of joint 2 is `2*t2`, no variable and a constant",
+        ),
+        (
+            "{t1,t2}",
+            "{t1,0}",
+            "13: the position of joint 2 is `0`, which has 0 variables",
+        ),
+        (
+            "NF = 2",
+            "is_floating = 1",
+            "4: a base that moves can't be said",
+        ),
+        ("M = {1,M2}", "what", "14: this belongs to no key"),
+        ("M = {1,M2}", "a b = 1", "14: this is no key"),
+    ] {
+        let said = refused("two.par", &table(line, by).replace("D2", "0"));
+        assert!(said.starts_with(expected), "{by}: {said}");
+    }
+    // What is neither: bytes of something else are told without a line.
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("robot.par");
+    fs::write(&file, [0_u8, 159, 146, 150]).expect("a file");
+    let errors = import(&file, &Options::default()).expect_err("no text");
+    let said = errors.0[0].1.iter().map(|error| error.message.clone());
+    assert!(said.collect::<String>().contains("can't be read"));
+}

@@ -87,7 +87,7 @@ fn is_positive(mass: &DMatrix<f64>) -> bool {
     let scaled = DMatrix::from_fn(mass.nrows(), mass.ncols(), |i, j| {
         mass[(i, j)] / (scale[i] * scale[j])
     });
-    scaled.iter().all(|v| v.is_finite()) && scaled.symmetric_eigenvalues().amin() > 1e-9
+    scaled.iter().all(|v| v.is_finite()) && scaled.symmetric_eigenvalues().min() > 1e-9
 }
 
 /// Inertia about the world's origin of a body that is seen from there, for a velocity of the point there and a rate.

@@ -63,7 +63,7 @@ pub(super) fn completed(values: &[f64; 10], is_fixed: [bool; 10]) -> Option<[f64
         }
         let eigen = SymmetricEigen::new(matrix);
         let floor = FLOOR * matrix.trace().abs() / 4.0;
-        if eigen.eigenvalues.amin() >= 0.5 * floor {
+        if eigen.eigenvalues.min() >= 0.5 * floor {
             let found = parameters(&matrix);
             return Some(std::array::from_fn(|at| {
                 if is_fixed[at] {
@@ -159,7 +159,7 @@ mod tests {
         let found = completed(&values, is_fixed).expect("a body");
         assert_eq!([found[5], found[6], found[7]], [5e-3, 0.02, 0.01]);
         let eigenvalues = pseudo_inertia(&found).symmetric_eigenvalues();
-        assert!(eigenvalues.amin() > 0.0, "{eigenvalues}");
+        assert!(eigenvalues.min() > 0.0, "{eigenvalues}");
         assert!(
             completed(
                 &[-1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],

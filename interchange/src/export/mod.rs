@@ -190,13 +190,14 @@ impl Export<'_, '_> {
         let name = self.network.group_name(group).to_owned();
         let cannot_be =
             |values| !share::inertia(values, &frame).is_some_and(|own| share::is_body(&own));
-        if is_given.contains(&false) && cannot_be(after) {
-            if let Some(whole) = complete::completed(&after, is_given) {
-                after = whole;
-                self.notes.push(format!(
-                    "What the motion does not feel of `{name}` was chosen such that a body can have the rest."
-                ));
-            }
+        if is_given.contains(&false)
+            && cannot_be(after)
+            && let Some(whole) = complete::completed(&after, is_given)
+        {
+            after = whole;
+            self.notes.push(format!(
+                "What the motion does not feel of `{name}` was chosen such that a body can have the rest."
+            ));
         }
         let Some(whole) = share::inertia(after, &frame) else {
             self.notes.push(format!(

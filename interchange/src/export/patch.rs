@@ -40,7 +40,7 @@ impl Patch {
         match node.attribute_node(name) {
             Some(attribute) => self.replace(attribute.range_value(), value),
             None => {
-                let behind = node.attributes().last().map(|last| last.range().end);
+                let behind = node.attributes().next_back().map(|last| last.range().end);
                 let behind =
                     behind.unwrap_or_else(|| node.range().start + 1 + node.tag_name().name().len());
                 self.replace(behind..behind, format!(" {name}=\"{value}\""));
@@ -68,7 +68,7 @@ impl Patch {
 
     /// Adds an element behind the last one in another, on a line of its own where that one has such.
     pub(super) fn append(&mut self, text: &str, node: Node<'_, '_>, element: &str) {
-        match node.children().filter(Node::is_element).last() {
+        match node.children().rfind(Node::is_element) {
             Some(last) => {
                 let range = last.range();
                 let line = text[..range.start].rfind('\n').map_or(0, |at| at + 1);

@@ -81,8 +81,8 @@ pub(super) fn among(network: &Network<'_>, group: usize, whole: &Inertia) -> (Ve
 /// Whether a mass can be so: positive, and its principal moments no more than the sum of the others.
 pub(super) fn is_body(inertia: &Inertia) -> bool {
     let moments = inertia.tensor.symmetric_eigenvalues();
-    let (sum, largest) = (moments.sum(), moments.amax());
-    inertia.mass > 0.0 && moments.amin() >= -1e-9 * largest && 2.0 * largest <= sum * (1.0 + 1e-9)
+    let (sum, largest) = (moments.sum(), moments.max());
+    inertia.mass > 0.0 && moments.min() >= -1e-9 * largest && 2.0 * largest <= sum * (1.0 + 1e-9)
 }
 
 /// The inertia of a mass in a point about the origin.

@@ -56,8 +56,9 @@ impl Reader<'_> {
         let joints = self
             .count("NJ")
             .or_else(|| self.files.is_clean().then_some(links))?;
-        let frames = self.count("NF").unwrap_or(2 * joints - links.min(joints));
-        if links == 0 || joints < links || frames != 2 * joints - links || frames > FRAMES {
+        let usual = joints.saturating_mul(2).saturating_sub(links);
+        let frames = self.count("NF").unwrap_or(usual);
+        if links == 0 || joints < links || joints > FRAMES || frames != usual {
             let message =
                 format!("{links} links, {joints} joints and {frames} frames make no robot");
             let help =

@@ -22,14 +22,15 @@ pub(super) fn entries(files: &Files, file: usize, text: &str) -> Option<Entries>
         let behind =
             equals + 1 + (bare[equals + 1..].len() - bare[equals + 1..].trim_start().len());
         let (inside, end) = match bare[behind..].strip_prefix('{') {
-            Some(list) => match list.find('}') {
+            // A brace that opens before one closes belongs to the next key.
+            Some(list) => match list
+                .find(['{', '}'])
+                .filter(|&at| list[at..].starts_with('}'))
+            {
                 Some(close) => (behind + 1..behind + 1 + close, behind + close + 2),
                 None => {
-                    files.report(
-                        &place(behind, behind + 1),
-                        "a list has no end",
-                        "write `}` behind its last value",
-                    );
+                    let help = "write `}` behind its last value";
+                    files.report(&place(behind, behind + 1), "a list has no end", help);
                     return None;
                 }
             },
