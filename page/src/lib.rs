@@ -20,4 +20,3 @@ pub use description::Description;
 pub use model::Model;
 pub use progress::listen;
 pub use session::{Identified, Session};
-pub use values::Values;

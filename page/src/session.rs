@@ -15,7 +15,7 @@ use wasm_bindgen::prelude::*;
 /// A robot with the logs that have been given to it.
 #[wasm_bindgen]
 pub struct Session {
-    robot: Robot,
+    pub(crate) robot: Robot,
     runs: Runs,
 }
 

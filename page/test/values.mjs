@@ -7,19 +7,19 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { load } from './module.mjs';
 
-const [folder, descriptions] = process.argv.slice(2);
+const [folder, robots] = process.argv.slice(2);
 const overact = load(folder);
-const known = new Map();
+const sessions = new Map();
 
-function robot(stem) {
-  if (!known.has(stem)) {
+function session(stem) {
+  if (!sessions.has(stem)) {
     // One robot at a time: a module's memory does not shrink.
-    for (const one of known.values()) one.free();
-    known.clear();
-    const text = readFileSync(join(descriptions, `${stem}.toml`), 'utf8');
-    known.set(stem, new overact.Values(`${stem}.toml`, text));
+    for (const one of sessions.values()) one.free();
+    sessions.clear();
+    const text = readFileSync(join(robots, `${stem}.toml`), 'utf8');
+    sessions.set(stem, new overact.Session(`${stem}.toml`, text));
   }
-  return known.get(stem);
+  return sessions.get(stem);
 }
 
 const numbers = line => line.split(' ').filter(word => word).map(Number);
@@ -28,7 +28,7 @@ for (let at = 0; lines[at]; ) {
   const [stem, name, samples, count] = lines[at++].split(' ');
   const inputs = lines.slice(at, at += Number(count)).flatMap(numbers);
   try {
-    const values = robot(stem).of(name, Number(samples), Float64Array.from(inputs));
+    const values = session(stem).values(name, Number(samples), Float64Array.from(inputs));
     console.log([...values].join(' '));
   } catch (error) {
     console.log(`error: ${typeof error === 'string' ? JSON.parse(error)[0].message : error}`);
