@@ -72,6 +72,17 @@ pub(crate) fn emit_with(
     }
 }
 
+/// Makes the folder of several files, if it is not there.
+///
+/// # Errors
+/// A place where there can be none.
+pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| {
+        let problem = Problem::new(Code::OUTPUT, format!("the folder can't be made: {error}"));
+        problem.file(folder.display().to_string()).into()
+    })
+}
+
 /// A document for machines.
 ///
 /// # Errors

@@ -176,7 +176,6 @@ fn shells_and_man_are_served() {
     let first = bench.good(&["manual"]);
     assert!(first.starts_with(".ie"), "{first}");
     assert_eq!(bench.good(&["manual", "-o", "-"]), first);
-    fs::create_dir(bench.path("man")).expect("a folder");
     let written = bench.good(&["manual", "-o", "man"]);
     assert_eq!(
         fs::read_to_string(bench.path("man/overact.1")).expect("a page"),
@@ -185,7 +184,8 @@ fn shells_and_man_are_served() {
     let identify = fs::read_to_string(bench.path("man/overact-identify.1")).expect("a page");
     assert!(identify.contains("calibrated\\-robot"), "{identify}");
     assert!(written.lines().count() > 9, "{written}");
-    let none = bench.bad(&["manual", "-o", "nowhere"]);
+    bench.write("taken", "");
+    let none = bench.bad(&["manual", "-o", "taken/man"]);
     assert!(none.contains("error[OA602]"), "{none}");
 }
 

@@ -5,6 +5,7 @@ use crate::derivation::{Underivable, function_name, inventory};
 use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
 use crate::effort::Effort;
+use crate::float::Float;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
@@ -57,6 +58,21 @@ fn not_offered(missing: Vec<Missing>) -> Underivable {
     Underivable::NotOffered(told.collect())
 }
 
+/// Whether the numbers of all functions are among those that are computed with.
+fn representable(functions: &[CompiledFunction], float: Float) -> Result<(), Underivable> {
+    for function in functions {
+        let mut constants = function.program.constants();
+        if let Some(value) = constants.find(|value| !float.holds(*value)) {
+            return Err(Underivable::Unrepresentable {
+                function: function.name.clone(),
+                value: value.to_string(),
+                float: float.name(),
+            });
+        }
+    }
+    Ok(())
+}
+
 /// Selects form and columns, then derives and lowers one function after the other.
 fn derived(
     mechanism: Mechanism,
@@ -105,13 +121,18 @@ fn derived(
         done.fetch_add(1, Ordering::Relaxed);
         Ok(CompiledFunction::new(&mechanism, function, from, program))
     });
+    let functions = functions
+        .into_iter()
+        .collect::<Result<Vec<_>, Underivable>>()?;
+    representable(&functions, request.float)?;
     Ok(RobotModel {
-        functions: functions.into_iter().collect::<Result<_, Underivable>>()?,
+        functions,
         mechanism,
         selection,
         base,
         forward_kinematics: chosen.forward,
         is_model: chosen.is_model,
+        float: request.float,
         runtime: request.runtime.cloned().unwrap_or_default(),
     })
 }

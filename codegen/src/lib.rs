@@ -33,6 +33,7 @@ pub mod diagnostic;
 mod effort;
 pub mod emission;
 pub mod evaluation;
+mod float;
 #[doc(hidden)]
 pub mod internals;
 pub mod lowering;
@@ -50,6 +51,7 @@ pub use choice::{Choice, Group, UnknownFunction, serves_model};
 pub use compile::{Compiled, compile, compile_with, model_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use effort::Effort;
+pub use float::Float;
 pub use model::{CompiledFunction, RobotModel};
 pub use overact_core::Columns;
 pub use request::{Progress, Request};

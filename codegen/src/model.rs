@@ -1,6 +1,7 @@
 //! A compiled robot: sizes, parameters and one program per function.
 
 use crate::derivation::{BodyParameter, JointsBy, MotionInput, Selection, function_name};
+use crate::float::Float;
 use crate::lowering::Program;
 use crate::mechanism::{JointKind, Mechanism, StandardParameter};
 use crate::runtime::Runtime;
@@ -57,6 +58,8 @@ pub struct RobotModel {
     pub forward_kinematics: bool,
     /// Whether no function was left out that `overact::Model` is asked for.
     pub is_model: bool,
+    /// The numbers that generated code computes with.
+    pub float: Float,
     /// Under which path generated Rust finds the runtime crate.
     pub runtime: Runtime,
 }

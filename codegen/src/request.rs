@@ -3,6 +3,7 @@
 use crate::choice::Choice;
 use crate::derivation::MotionInput;
 use crate::effort::Effort;
+use crate::float::Float;
 use crate::mechanism::Mechanism;
 use crate::runtime::Runtime;
 use overact_core::Function;
@@ -44,6 +45,8 @@ pub struct Request<'a> {
     /// constants, those that are missing as zero. Identification models, which tell them, are left out, and
     /// the code is no `overact::Model`.
     pub parameters: Option<&'a BTreeMap<String, f64>>,
+    /// The numbers that generated code computes with.
+    pub float: Float,
     /// Under which path generated Rust finds the runtime crate, where it is not `::overact`.
     pub runtime: Option<&'a Runtime>,
     /// Is told how far the work is: large robots take minutes.
@@ -58,6 +61,7 @@ impl Default for Request<'_> {
             wanted: &|_, _, _| true,
             functions: None,
             parameters: None,
+            float: Float::F64,
             runtime: None,
             progress: &|_| {},
         }

@@ -2,7 +2,7 @@
 
 use overact_codegen::derivation::MotionInput;
 use overact_codegen::diagnostic::did_you_mean;
-use overact_codegen::{Choice, Columns, Effort, Runtime};
+use overact_codegen::{Choice, Columns, Effort, Float, Runtime};
 use proc_macro2::Span;
 use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream};
@@ -10,7 +10,7 @@ use syn::punctuated::Punctuated;
 use syn::{Ident, LitStr, Token, bracketed};
 
 /// What can be said behind the path.
-const KEYS: [&str; 5] = ["effort", "functions", "from", "columns", "crate"];
+const KEYS: [&str; 6] = ["effort", "functions", "from", "columns", "float", "crate"];
 
 /// What the attribute says.
 pub(crate) struct Arguments {
@@ -18,6 +18,8 @@ pub(crate) struct Arguments {
     pub(crate) effort: Option<Effort>,
     /// None for all functions in all forms.
     pub(crate) functions: Option<Choice>,
+    /// The numbers that the generated code computes with.
+    pub(crate) float: Float,
     /// Under which path the generated code finds the runtime crate, where it is said.
     pub(crate) runtime: Option<Runtime>,
 }
@@ -28,6 +30,7 @@ impl Parse for Arguments {
             path: input.parse()?,
             effort: None,
             functions: None,
+            float: Float::default(),
             runtime: None,
         };
         let (mut given, mut from, mut columns) = (Vec::new(), None, None);
@@ -49,6 +52,10 @@ impl Parse for Arguments {
                 }
                 "functions" => arguments.functions = Some(functions(input)?),
                 "from" => from = Some(sources(input)?),
+                "float" => {
+                    let names = Float::ALL.map(Float::name);
+                    arguments.float = one_of(&input.parse()?, &names, Float::named)?;
+                }
                 "columns" => {
                     let names = [Columns::Standard, Columns::Base].map(Columns::name);
                     columns = Some(one_of(&input.parse()?, &names, Columns::named)?);

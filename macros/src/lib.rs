@@ -26,6 +26,7 @@ use syn::{Attribute, Item, ItemStruct, Path, Token, parse_quote};
 /// | `functions = ["inverse_dynamics", "jacobian"]` | only these functions and what they call; the groups `control`, `identification` and `kinematics` stand for several |
 /// | `from = ["joints"]` | only functions that are evaluated from these (`"pose"`, `"joints"`, `"actuators"`); one that is named, as `inverse_dynamics`, is meant in each of these forms |
 /// | `columns = "base"` | models with the columns, and dynamics that take the values, of the base parameters alone, or of all `"standard"` ones |
+/// | `float = "f32"` | numbers of 32 bits, for controllers whose processors have no others; such a struct is no `overact::Model` |
 /// | `crate = "::my::overact"` | the path under which the generated code finds this crate |
 ///
 /// The struct gets the constants and functions of the robot, the documentation and the derives of a generated
@@ -113,12 +114,13 @@ fn expansion(arguments: &Arguments, robot: &ItemStruct, source: &Source) -> syn:
     let Arguments {
         effort,
         functions,
+        float,
         runtime,
         path,
     } = arguments;
     let folder = expansions::folder();
     let generator = (VERSIONS, env!("OVERACT_GENERATOR"));
-    let wanted = (robot.ident.to_string(), effort, functions, runtime);
+    let wanted = (robot.ident.to_string(), effort, functions, float, runtime);
     let key = format!("{generator:?}\n{wanted:?}\n{}", source.text);
     if let Some(expansion) = folder.as_deref().and_then(|at| expansions::read(at, &key)) {
         return Ok(expansion);
@@ -126,6 +128,7 @@ fn expansion(arguments: &Arguments, robot: &ItemStruct, source: &Source) -> syn:
     let request = Request {
         effort: *effort,
         functions: functions.as_ref(),
+        float: *float,
         runtime: runtime.as_ref(),
         ..Request::default()
     };

@@ -330,7 +330,7 @@ fn next(identification: &Identification, page: Option<&str>) -> String {
     if identification.cross_validation.is_empty() {
         line(
             &mut text,
-            "No run was held out: give one with --cross-validate, and the verdict knows how well the model predicts.",
+            "No run was held out: --cross-validate holds them out in turn, and the verdict knows more.",
         );
     }
     line(

@@ -1,29 +1,30 @@
 //! Blocks of samples for compiled robots: generated functions take one state; [`crate::Model`] hands
 //! over slices of many.
 
+use crate::float::Float;
 use crate::{Error, Function, SampleError, Sizes};
 
 /// An output as a flat slice, row-major.
-pub trait Flat {
+pub trait Flat<T> {
     /// How many numbers there are.
     const LEN: usize;
 
     /// The numbers.
-    fn flat(&self) -> &[f64];
+    fn flat(&self) -> &[T];
 }
 
-impl<const N: usize> Flat for [f64; N] {
+impl<T: Float, const N: usize> Flat<T> for [T; N] {
     const LEN: usize = N;
 
-    fn flat(&self) -> &[f64] {
+    fn flat(&self) -> &[T] {
         self
     }
 }
 
-impl<const R: usize, const C: usize> Flat for [[f64; C]; R] {
+impl<T: Float, const R: usize, const C: usize> Flat<T> for [[T; C]; R] {
     const LEN: usize = R * C;
 
-    fn flat(&self) -> &[f64] {
+    fn flat(&self) -> &[T] {
         self.as_flattened()
     }
 }
@@ -32,7 +33,7 @@ impl<const R: usize, const C: usize> Flat for [[f64; C]; R] {
 ///
 /// # Errors
 /// [`Error::Length`].
-pub fn array<const N: usize>(slice: &[f64]) -> Result<&[f64; N], Error> {
+pub fn array<T: Float, const N: usize>(slice: &[T]) -> Result<&[T; N], Error> {
     slice.try_into().map_err(|_| Error::Length {
         expected: N,
         found: slice.len(),
@@ -40,7 +41,7 @@ pub fn array<const N: usize>(slice: &[f64]) -> Result<&[f64; N], Error> {
 }
 
 /// Writes an output into a slice of its length.
-pub fn write(value: &impl Flat, out: &mut [f64]) {
+pub fn write<T: Float>(value: &impl Flat<T>, out: &mut [T]) {
     for (slot, value) in out.iter_mut().zip(value.flat()) {
         *slot = *value;
     }
@@ -131,7 +132,7 @@ impl<'a> Block<'a> {
     ///
     /// # Errors
     /// The first sample at which the function fails.
-    pub fn each<O: Flat>(
+    pub fn each<O: Flat<f64>>(
         self,
         function: impl Fn(Inputs<'a>) -> Result<O, Error>,
     ) -> Result<(), SampleError> {

@@ -7,37 +7,35 @@
 //! All of it may be inlined: sizes are constants in generated code, and loops of three or four turns cost
 //! more than what they do where the compiler does not know them.
 
-use crate::{
-    ActuatorGroup, Error,
-    math::{sin_cos, sqrt, wrap_angle},
-};
+use crate::{ActuatorGroup, Error, float::Float};
+use overact_core::limits::DOUBLE;
 
 /// Largest number of Gauss-Newton steps.
 pub const STEPS: usize = 20;
 
-/// The steps end when the largest one falls below this (m, rad).
-pub const TOLERANCE: f64 = 1e-12;
+/// The steps end when the largest one falls below this (m, rad), in numbers of 64 bits.
+pub const TOLERANCE: f64 = DOUBLE.step;
 
 /// The measured actuators, and which of them are angles.
 #[derive(Debug, Clone, Copy)]
-pub struct Measured<'a> {
+pub struct Measured<'a, T = f64> {
     /// Positions of the n actuators (m, rad).
-    pub positions: &'a [f64],
+    pub positions: &'a [T],
     /// Whether each is an angle, whose differences are taken modulo a turn.
     pub is_revolute: &'a [bool],
 }
 
 /// Memory for [`gauss_newton`]: slices of lengths n, n r, r², r.
 #[derive(Debug)]
-pub struct Workspace<'a> {
+pub struct Workspace<'a, T = f64> {
     /// n numbers.
-    pub actuators: &'a mut [f64],
+    pub actuators: &'a mut [T],
     /// n r numbers.
-    pub inverse_jacobian: &'a mut [f64],
+    pub inverse_jacobian: &'a mut [T],
     /// r² numbers.
-    pub normal: &'a mut [f64],
+    pub normal: &'a mut [T],
     /// r numbers.
-    pub step: &'a mut [f64],
+    pub step: &'a mut [T],
 }
 
 /// Finds the pose of least squares from the start in `pose`. `evaluate` writes q(x) and J_p^inv(x)
@@ -50,12 +48,12 @@ pub struct Workspace<'a> {
 /// # Errors
 /// [`Error::NoConvergence`], [`Error::SingularPlatform`], or what `evaluate` reports.
 #[inline]
-pub fn gauss_newton(
-    measured: Measured<'_>,
-    pose: &mut [f64],
-    workspace: Workspace<'_>,
-    mut evaluate: impl FnMut(&[f64], &mut [f64], &mut [f64]) -> Result<(), Error>,
-    mut displace: impl FnMut(&mut [f64], &[f64]),
+pub fn gauss_newton<T: Float>(
+    measured: Measured<'_, T>,
+    pose: &mut [T],
+    workspace: Workspace<'_, T>,
+    mut evaluate: impl FnMut(&[T], &mut [T], &mut [T]) -> Result<(), Error>,
+    mut displace: impl FnMut(&mut [T], &[T]),
 ) -> Result<(), Error> {
     let Workspace {
         actuators,
@@ -63,49 +61,51 @@ pub fn gauss_newton(
         normal,
         step,
     } = workspace;
-    let mut residual = 0.0_f64;
+    let mut residual = T::ZERO;
     for _ in 0..STEPS {
         evaluate(pose, actuators, inverse_jacobian)?;
-        normal.fill(0.0);
-        step.fill(0.0);
+        normal.fill(T::ZERO);
+        step.fill(T::ZERO);
         residual = accumulate(measured, actuators, inverse_jacobian, normal, step);
         solve_positive_definite(normal, step)?;
         displace(pose, step);
-        let largest = step.iter().fold(0.0_f64, |m, s| m.max(s.abs()));
+        let largest = step.iter().fold(T::ZERO, |m, s| m.max(s.abs()));
         if !largest.is_finite() {
             break;
         }
-        if largest < TOLERANCE {
+        if largest < T::of(T::LIMITS.step) {
             return Ok(());
         }
     }
-    Err(Error::NoConvergence { residual })
+    Err(Error::NoConvergence {
+        residual: residual.into(),
+    })
 }
 
 /// Adds Jᵀ J to `normal` and Jᵀ Δq to `step`, J being J_p^inv; returns the largest difference.
 #[inline]
-fn accumulate(
-    measured: Measured<'_>,
-    actuators: &[f64],
-    inverse_jacobian: &[f64],
-    normal: &mut [f64],
-    step: &mut [f64],
-) -> f64 {
-    let mut residual = 0.0_f64;
+fn accumulate<T: Float>(
+    measured: Measured<'_, T>,
+    actuators: &[T],
+    inverse_jacobian: &[T],
+    normal: &mut [T],
+    step: &mut [T],
+) -> T {
+    let mut residual = T::ZERO;
     let dof = step.len().max(1);
     let positions = measured.positions.iter().zip(measured.is_revolute);
     let rows = inverse_jacobian.chunks_exact(dof);
     for (((position, is_revolute), reached), row) in positions.zip(actuators).zip(rows) {
-        let mut difference = position - reached;
+        let mut difference = *position - *reached;
         if *is_revolute {
-            difference = wrap_angle(difference);
+            difference = difference.wrap_angle();
         }
         residual = residual.max(difference.abs());
         let sums = step.iter_mut().zip(normal.chunks_exact_mut(dof));
         for ((step, normal), entry) in sums.zip(row) {
-            *step += entry * difference;
+            *step += *entry * difference;
             for (normal, other) in normal.iter_mut().zip(row) {
-                *normal += entry * other;
+                *normal += *entry * *other;
             }
         }
     }
@@ -117,7 +117,7 @@ fn accumulate(
 /// # Errors
 /// [`Error::SingularPlatform`] when a pivot vanishes, [`Error::Length`] for a matrix that is not square.
 #[inline]
-pub fn solve_positive_definite(matrix: &mut [f64], vector: &mut [f64]) -> Result<(), Error> {
+pub fn solve_positive_definite<T: Float>(matrix: &mut [T], vector: &mut [T]) -> Result<(), Error> {
     let n = vector.len();
     if n.checked_mul(n) != Some(matrix.len()) {
         return Err(Error::Length {
@@ -131,8 +131,8 @@ pub fn solve_positive_definite(matrix: &mut [f64], vector: &mut [f64]) -> Result
     for (k, row) in matrix.chunks_exact(n.max(1)).enumerate().rev() {
         let mut known = row.iter().zip(vector.iter_mut()).skip(k);
         if let Some((pivot, value)) = known.next() {
-            let rest: f64 = known.map(|(entry, solved)| entry * *solved).sum();
-            *value = (*value - rest) / pivot;
+            let rest: T = known.map(|(entry, solved)| *entry * *solved).sum();
+            *value = (*value - rest) / *pivot;
         }
     }
     Ok(())
@@ -140,28 +140,29 @@ pub fn solve_positive_definite(matrix: &mut [f64], vector: &mut [f64]) -> Result
 
 /// Brings S to upper triangular form, and the right-hand side with it.
 #[inline]
-fn eliminate(matrix: &mut [f64], vector: &mut [f64]) -> Result<(), Error> {
+fn eliminate<T: Float>(matrix: &mut [T], vector: &mut [T]) -> Result<(), Error> {
     let n = vector.len().max(1);
     let diagonal = matrix.chunks_exact(n).enumerate();
     let diagonal = diagonal.filter_map(|(k, row)| row.get(k));
-    let largest = diagonal.fold(0.0_f64, |m, entry| m.max(*entry));
+    let largest = diagonal.fold(T::ZERO, |m, entry| m.max(*entry));
     let (mut matrix, mut vector) = (matrix, vector);
     let mut k = 0;
     while let (Some((row, below)), Some((known, unknown))) =
         (matrix.split_at_mut_checked(n), vector.split_first_mut())
     {
-        let pivot = row.get(k).copied().unwrap_or_default();
-        if pivot.is_nan() || pivot <= 1e-15 * largest {
+        let pivot = row.get(k).copied().unwrap_or(T::ZERO);
+        let is_regular = pivot > T::of(T::LIMITS.pivot) * largest;
+        if !is_regular {
             return Err(Error::SingularPlatform {
                 actuators: ActuatorGroup::All,
-                condition: largest / pivot.abs(),
+                condition: (largest / pivot.abs()).into(),
             });
         }
         for (other, value) in below.chunks_exact_mut(n).zip(unknown.iter_mut()) {
             let mut entries = other.iter_mut().zip(&*row).skip(k);
-            let factor = entries.next().map_or(0.0, |(first, _)| *first / pivot);
+            let factor = entries.next().map_or(T::ZERO, |(first, _)| *first / pivot);
             for (entry, above) in entries {
-                *entry -= factor * above;
+                *entry -= factor * *above;
             }
             *value -= factor * *known;
         }
@@ -173,15 +174,15 @@ fn eliminate(matrix: &mut [f64], vector: &mut [f64]) -> Result<(), Error> {
 
 /// Moves a pose whose coordinates are its twist coordinates' integrals: x + step.
 #[inline]
-pub fn displace(pose: &mut [f64], step: &[f64]) {
+pub fn displace<T: Float>(pose: &mut [T], step: &[T]) {
     for (coordinate, step) in pose.iter_mut().zip(step) {
-        *coordinate += step;
+        *coordinate += *step;
     }
 }
 
 /// Moves a pose that ends with a unit quaternion (w, x, y, z): the last three numbers of `step` are a
 /// rotation vector in the base frame, by whose exponential the quaternion is multiplied from the left.
-pub fn displace_quaternion(pose: &mut [f64], step: &[f64]) {
+pub fn displace_quaternion<T: Float>(pose: &mut [T], step: &[T]) {
     let Some((linear, turn)) = step.split_last_chunk::<3>() else {
         return;
     };
@@ -189,10 +190,14 @@ pub fn displace_quaternion(pose: &mut [f64], step: &[f64]) {
     let Some([w, x, y, z]) = pose.last_chunk_mut::<4>() else {
         return;
     };
-    let angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
-    let (sine, cosine) = sin_cos(0.5 * angle);
+    let angle = (turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]).sqrt();
+    let half = T::of(0.5);
+    let (sine, cosine) = (half * angle).sin_cos();
     // sin(a/2)/a tends to 1/2.
-    let scale = if angle > 1e-12 { sine / angle } else { 0.5 };
+    let scale = match angle > T::of(1e-12) {
+        true => sine / angle,
+        false => half,
+    };
     let (a, b, c, d) = (cosine, scale * turn[0], scale * turn[1], scale * turn[2]);
     let product = [
         a * *w - b * *x - c * *y - d * *z,
@@ -200,7 +205,7 @@ pub fn displace_quaternion(pose: &mut [f64], step: &[f64]) {
         a * *y - b * *z + c * *w + d * *x,
         a * *z + b * *y - c * *x + d * *w,
     ];
-    let norm = sqrt(product.iter().map(|q| q * q).sum());
+    let norm = product.iter().map(|q| *q * *q).sum::<T>().sqrt();
     [*w, *x, *y, *z] = product.map(|q| q / norm);
 }
 
@@ -242,6 +247,6 @@ mod tests {
             solve_positive_definite(&mut [1.0; 3], &mut [1.0; 2]),
             Err(expected)
         );
-        assert_eq!(solve_positive_definite(&mut [], &mut []), Ok(()));
+        assert_eq!(solve_positive_definite::<f64>(&mut [], &mut []), Ok(()));
     }
 }

@@ -2,30 +2,26 @@
 //! has a direction, and on the way that a configuration can be reached and is regular. Each is an error
 //! that names the input or the leg, not a NaN.
 
-use crate::math::sqrt;
-use crate::{ActuatorGroup, Error, SINGULAR};
-
-/// How far from 1 the square of a quaternion's length may be for its inverse root to be linear: the error
-/// is 3/8 of the square of this.
-const NEAR: f64 = 1e-8;
+use crate::float::Float;
+use crate::{ActuatorGroup, Error};
 
 /// An input with the name that errors call it by.
-pub type Named<'a> = (&'static str, &'a [f64]);
+pub type Named<'a, T> = (&'static str, &'a [T]);
 
 /// All numbers of all inputs must be finite.
 ///
 /// # Errors
 /// [`Error::NotFinite`] of the first input that has another one.
 #[inline(always)]
-pub fn finite(inputs: &[Named<'_>]) -> Result<(), Error> {
+pub fn finite<T: Float>(inputs: &[Named<'_, T>]) -> Result<(), Error> {
     // x - x is zero but for NaN and infinities. One comparison for all: there is nothing to gain from an
     // early end, and without one the loops become vectors.
     let mut bits = 0;
     for (_, values) in inputs {
         for value in *values {
             #[expect(clippy::eq_op, reason = "zero for finite numbers only")]
-            let zero = value - value;
-            bits |= zero.to_bits();
+            let zero = *value - *value;
+            bits |= zero.bits();
         }
     }
     if bits == 0 {
@@ -45,7 +41,7 @@ pub fn finite(inputs: &[Named<'_>]) -> Result<(), Error> {
 /// Whether an input has a number that is not finite, out of the way of what is usual.
 #[cold]
 #[inline(never)]
-fn has_other(values: &[f64]) -> bool {
+fn has_other<T: Float>(values: &[T]) -> bool {
     values.iter().any(|value| !value.is_finite())
 }
 
@@ -54,10 +50,10 @@ fn has_other(values: &[f64]) -> bool {
 /// # Errors
 /// [`Error::ZeroQuaternion`]. The numbers must be finite.
 #[inline(always)]
-pub fn unit_quaternion<const N: usize>(
-    pose: &[f64; N],
+pub fn unit_quaternion<T: Float, const N: usize>(
+    pose: &[T; N],
     input: &'static str,
-) -> Result<[f64; N], Error> {
+) -> Result<[T; N], Error> {
     let mut unit = *pose;
     normalise(&mut unit, input)?;
     Ok(unit)
@@ -68,17 +64,17 @@ pub fn unit_quaternion<const N: usize>(
 /// # Errors
 /// [`Error::ZeroQuaternion`].
 #[inline(always)]
-pub fn normalise(pose: &mut [f64], input: &'static str) -> Result<(), Error> {
+pub fn normalise<T: Float>(pose: &mut [T], input: &'static str) -> Result<(), Error> {
     let Some(quaternion) = pose.last_chunk_mut::<4>() else {
         return Ok(());
     };
     let [w, x, y, z] = *quaternion;
     let square = w * w + x * x + y * y + z * z;
     // Mostly the length is 1 but for rounding; 1/√s is (3 - s)/2 then, to the last digit.
-    if (square - 1.0).abs() > NEAR {
+    if (square - T::of(1.0)).abs() > T::of(T::LIMITS.quaternion) {
         return normalise_others(quaternion, input);
     }
-    let scale = 1.5 - 0.5 * square;
+    let scale = T::of(1.5) - T::of(0.5) * square;
     *quaternion = quaternion.map(|q| q * scale);
     Ok(())
 }
@@ -87,13 +83,13 @@ pub fn normalise(pose: &mut [f64], input: &'static str) -> Result<(), Error> {
 /// small nor too large for a number.
 #[cold]
 #[inline(never)]
-fn normalise_others(quaternion: &mut [f64; 4], input: &'static str) -> Result<(), Error> {
-    let largest = quaternion.iter().fold(0.0_f64, |m, q| m.max(q.abs()));
-    if largest == 0.0 {
+fn normalise_others<T: Float>(quaternion: &mut [T; 4], input: &'static str) -> Result<(), Error> {
+    let largest = quaternion.iter().fold(T::ZERO, |m, q| m.max(q.abs()));
+    if largest == T::ZERO {
         return Err(Error::ZeroQuaternion { input });
     }
     let scaled = quaternion.map(|q| q / largest);
-    let norm = sqrt(scaled.iter().map(|q| q * q).sum());
+    let norm = scaled.iter().map(|q| *q * *q).sum::<T>().sqrt();
     *quaternion = scaled.map(|q| q / norm);
     Ok(())
 }
@@ -103,8 +99,8 @@ fn normalise_others(quaternion: &mut [f64; 4], input: &'static str) -> Result<()
 /// # Errors
 /// [`Error::OutOfReach`]; also for NaN.
 #[inline]
-pub fn reach(radicand: f64, leg: &'static str) -> Result<(), Error> {
-    if radicand >= 0.0 {
+pub fn reach<T: Float>(radicand: T, leg: &'static str) -> Result<(), Error> {
+    if radicand >= T::ZERO {
         Ok(())
     } else {
         Err(Error::OutOfReach { leg })
@@ -116,13 +112,13 @@ pub fn reach(radicand: f64, leg: &'static str) -> Result<(), Error> {
 /// # Errors
 /// [`Error::SingularLeg`]; also for NaN.
 #[inline]
-pub fn leg(determinant: f64, home: f64, leg: &'static str) -> Result<(), Error> {
-    if determinant.abs() > SINGULAR * home {
+pub fn leg<T: Float>(determinant: T, home: T, leg: &'static str) -> Result<(), Error> {
+    if determinant.abs() > T::of(T::LIMITS.singular) * home {
         Ok(())
     } else {
         Err(Error::SingularLeg {
             leg,
-            condition: home / determinant.abs(),
+            condition: (home / determinant.abs()).into(),
         })
     }
 }
@@ -132,13 +128,13 @@ pub fn leg(determinant: f64, home: f64, leg: &'static str) -> Result<(), Error> 
 /// # Errors
 /// [`Error::SingularPlatform`]; also for NaN.
 #[inline]
-pub fn platform(determinant: f64, home: f64, actuators: ActuatorGroup) -> Result<(), Error> {
-    if determinant.abs() > SINGULAR * home {
+pub fn platform<T: Float>(determinant: T, home: T, actuators: ActuatorGroup) -> Result<(), Error> {
+    if determinant.abs() > T::of(T::LIMITS.singular) * home {
         Ok(())
     } else {
         Err(Error::SingularPlatform {
             actuators,
-            condition: home / determinant.abs(),
+            condition: (home / determinant.abs()).into(),
         })
     }
 }
@@ -148,8 +144,8 @@ pub fn platform(determinant: f64, home: f64, actuators: ActuatorGroup) -> Result
 /// # Errors
 /// [`Error::MassMatrix`]; also for NaN.
 #[inline]
-pub fn mass(pivot: f64) -> Result<(), Error> {
-    if pivot > 0.0 {
+pub fn mass<T: Float>(pivot: T) -> Result<(), Error> {
+    if pivot > T::ZERO {
         Ok(())
     } else {
         Err(Error::MassMatrix)
@@ -158,7 +154,7 @@ pub fn mass(pivot: f64) -> Result<(), Error> {
 
 #[cfg(test)]
 mod tests {
-    use super::{finite, unit_quaternion};
+    use super::{finite, leg, unit_quaternion};
     use crate::Error;
 
     #[test]
@@ -173,6 +169,20 @@ mod tests {
             }
         }
         assert_eq!(finite(&[("pose", &large), ("twist", &large)]), Ok(()));
+    }
+
+    #[test]
+    fn numbers_of_32_bits_are_checked_alike() {
+        let bad = finite(&[("pose", &[1.0_f32, f32::MAX]), ("twist", &[f32::NAN])]);
+        assert_eq!(bad, Err(Error::NotFinite { input: "twist" }));
+        assert_eq!(finite(&[("pose", &[f32::MIN_POSITIVE, -0.0])]), Ok(()));
+        for length in [1e-30_f32, 0.3, 1.0, 1.000_09, 1e30] {
+            let unit = unit_quaternion(&[length, 0.0, -length, 2.0 * length], "pose");
+            let sum: f32 = unit.expect("a rotation").iter().map(|q| q * q).sum();
+            assert!((sum - 1.0).abs() < 3e-7, "{length:e}: {sum}");
+        }
+        assert_eq!(leg(1.1e-5_f32, 1.0, "a"), Ok(()));
+        assert!(leg(0.9e-5_f32, 1.0, "a").is_err());
     }
 
     #[test]

@@ -8,27 +8,27 @@
 //! Nothing here can panic, whatever the lengths of the slices are: entries are read and written with `get`, and
 //! one that isn't there is no number, which ends the iteration with an error.
 
-use crate::{Error, SINGULAR};
+use crate::{Error, float::Float};
 use core::ops::Range;
 
 /// A robot's legs and home configuration.
 #[derive(Debug, Clone, Copy)]
-pub struct Legs<'a> {
+pub struct Legs<'a, T = f64> {
     /// Names.
     pub names: &'a [&'static str],
     /// Joints of each leg.
     pub joints: &'a [usize],
     /// Home pose.
-    pub home_pose: &'a [f64],
+    pub home_pose: &'a [T],
     /// Home joint positions.
-    pub home_joints: &'a [f64],
+    pub home_joints: &'a [T],
     /// Whether the pose ends with a quaternion.
     pub has_quaternion: bool,
 }
 
-impl<'a> Legs<'a> {
+impl<'a, T> Legs<'a, T> {
     /// Each leg's name and the range of its joints.
-    fn ranges(&self) -> impl Iterator<Item = (&'static str, Range<usize>)> + use<'a> {
+    fn ranges(&self) -> impl Iterator<Item = (&'static str, Range<usize>)> + use<'a, T> {
         let named = self.names.iter().copied().zip(self.joints);
         named.scan(0, |start, (leg, &count)| {
             let range = *start..*start + count;
@@ -40,19 +40,17 @@ impl<'a> Legs<'a> {
 
 /// Memory for [`solve`]: slices of lengths n_t, n_t², and of a pose.
 #[derive(Debug)]
-pub struct Workspace<'a> {
+pub struct Workspace<'a, T = f64> {
     /// n_t numbers.
-    pub error: &'a mut [f64],
+    pub error: &'a mut [T],
     /// n_t² numbers.
-    pub jacobian: &'a mut [f64],
+    pub jacobian: &'a mut [T],
     /// One pose.
-    pub pose: &'a mut [f64],
+    pub pose: &'a mut [T],
 }
 
 const ITERATIONS: usize = 30;
-const TOLERANCE: f64 = 1e-13;
-/// A leg whose closure errors (m, rad) are smaller counts as closed when the iterations are used up.
-const CLOSED: f64 = 1e-10;
+/// Steps of a joint (m, rad) are cut to this.
 const LONGEST_STEP: f64 = 0.5;
 
 /// Finds the joint positions of a pose in the working mode of the home configuration. `evaluate` writes
@@ -61,12 +59,12 @@ const LONGEST_STEP: f64 = 0.5;
 ///
 /// # Errors
 /// [`Error::OutOfReach`] or [`Error::SingularLeg`] of the leg that does not follow.
-pub fn solve(
-    legs: Legs<'_>,
-    pose: &[f64],
-    joints: &mut [f64],
-    workspace: Workspace<'_>,
-    mut evaluate: impl FnMut(&[f64], &[f64], &mut [f64], &mut [f64]) -> Result<(), Error>,
+pub fn solve<T: Float>(
+    legs: Legs<'_, T>,
+    pose: &[T],
+    joints: &mut [T],
+    workspace: Workspace<'_, T>,
+    mut evaluate: impl FnMut(&[T], &[T], &mut [T], &mut [T]) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let Workspace {
         error,
@@ -81,7 +79,8 @@ pub fn solve(
             .for_each(|(q, home)| *q = *home);
         result = Ok(());
         for step in 1..=steps {
-            between(&legs, pose, f64::from(step) / f64::from(steps), way);
+            let part = T::of(f64::from(step) / f64::from(steps));
+            between(&legs, pose, part, way);
             result = newton(&legs, way, joints, error, jacobian, &mut evaluate);
             if result.is_err() {
                 break;
@@ -98,47 +97,51 @@ pub fn solve(
 }
 
 /// The pose a part of the way from home.
-fn between(legs: &Legs<'_>, pose: &[f64], part: f64, way: &mut [f64]) {
+fn between<T: Float>(legs: &Legs<'_, T>, pose: &[T], part: T, way: &mut [T]) {
     for ((w, h), p) in way.iter_mut().zip(legs.home_pose).zip(pose) {
-        *w = if part >= 1.0 { *p } else { h + part * (p - h) };
+        *w = match part >= T::of(1.0) {
+            true => *p,
+            false => *h + part * (*p - *h),
+        };
     }
     if legs.has_quaternion {
         let before = way.len().saturating_sub(4);
-        let norm = crate::math::sqrt(way.iter().skip(before).map(|q| q * q).sum());
+        let squares = way.iter().skip(before).map(|q| *q * *q);
+        let norm = squares.sum::<T>().sqrt();
         way.iter_mut().skip(before).for_each(|q| *q /= norm);
     }
 }
 
-fn newton(
-    legs: &Legs<'_>,
-    pose: &[f64],
-    joints: &mut [f64],
-    error: &mut [f64],
-    jacobian: &mut [f64],
-    evaluate: &mut impl FnMut(&[f64], &[f64], &mut [f64], &mut [f64]) -> Result<(), Error>,
+fn newton<T: Float>(
+    legs: &Legs<'_, T>,
+    pose: &[T],
+    joints: &mut [T],
+    error: &mut [T],
+    jacobian: &mut [T],
+    evaluate: &mut impl FnMut(&[T], &[T], &mut [T], &mut [T]) -> Result<(), Error>,
 ) -> Result<(), Error> {
     for _ in 0..ITERATIONS {
         evaluate(pose, joints, error, jacobian)?;
-        let mut largest = 0.0_f64;
+        let mut largest = T::ZERO;
         for (leg, range) in legs.ranges() {
             let mut system = System::new(joints.len(), jacobian, error);
             let (_, condition) = system.eliminate(range.clone());
-            if condition.is_nan() || condition * SINGULAR > 1.0 {
-                return Err(Error::SingularLeg { leg, condition });
+            let is_regular = condition * T::of(T::LIMITS.singular) <= T::of(1.0);
+            if !is_regular {
+                return Err(singular(leg, condition));
             }
-            let step = largest_of(part(error, range.clone()));
-            let scale = if step > LONGEST_STEP {
-                LONGEST_STEP / step
-            } else {
-                1.0
+            let (step, longest) = (largest_of(part(error, range.clone())), T::of(LONGEST_STEP));
+            let scale = match step > longest {
+                true => longest / step,
+                false => T::of(1.0),
             };
             let moved = joints.iter_mut().zip(error.iter());
             for (q, s) in moved.skip(range.start).take(range.len()) {
-                *q += scale * s;
+                *q += scale * *s;
             }
             largest = largest.max(step);
         }
-        if largest < TOLERANCE {
+        if largest < T::of(T::LIMITS.joint_step) {
             return Ok(());
         }
     }
@@ -147,11 +150,11 @@ fn newton(
 }
 
 /// Whether all legs are closed; the leg whose error is the largest is the one that cannot follow.
-fn closed(legs: &Legs<'_>, error: &[f64]) -> Result<(), Error> {
+fn closed<T: Float>(legs: &Legs<'_, T>, error: &[T]) -> Result<(), Error> {
     let sizes = legs
         .ranges()
         .map(|(leg, range)| (leg, largest_of(part(error, range))));
-    let open = sizes.filter(|(_, size)| *size >= CLOSED);
+    let open = sizes.filter(|(_, size)| *size >= T::of(T::LIMITS.closed));
     match open.reduce(|worst, next| if next.1 > worst.1 { next } else { worst }) {
         Some((leg, _)) => Err(Error::OutOfReach { leg }),
         None => Ok(()),
@@ -159,13 +162,13 @@ fn closed(legs: &Legs<'_>, error: &[f64]) -> Result<(), Error> {
 }
 
 /// Whether every leg's determinant has the sign that it has at home.
-fn same_mode(
-    legs: &Legs<'_>,
-    pose: &[f64],
-    joints: &[f64],
-    error: &mut [f64],
-    jacobian: &mut [f64],
-    evaluate: &mut impl FnMut(&[f64], &[f64], &mut [f64], &mut [f64]) -> Result<(), Error>,
+fn same_mode<T: Float>(
+    legs: &Legs<'_, T>,
+    pose: &[T],
+    joints: &[T],
+    error: &mut [T],
+    jacobian: &mut [T],
+    evaluate: &mut impl FnMut(&[T], &[T], &mut [T], &mut [T]) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let total = joints.len();
     for (leg, range) in legs.ranges() {
@@ -173,30 +176,39 @@ fn same_mode(
         let (home, _) = System::new(total, jacobian, error).eliminate(range.clone());
         evaluate(pose, joints, error, jacobian)?;
         let (here, condition) = System::new(total, jacobian, error).eliminate(range);
-        if home * here <= 0.0 {
-            return Err(Error::SingularLeg { leg, condition });
+        if home * here <= T::ZERO {
+            return Err(singular(leg, condition));
         }
     }
     Ok(())
 }
 
-fn part(numbers: &[f64], range: Range<usize>) -> &[f64] {
+fn singular<T: Float>(leg: &'static str, condition: T) -> Error {
+    Error::SingularLeg {
+        leg,
+        condition: condition.into(),
+    }
+}
+
+fn part<T>(numbers: &[T], range: Range<usize>) -> &[T] {
     numbers.get(range).unwrap_or_default()
 }
 
-fn largest_of(numbers: &[f64]) -> f64 {
-    numbers.iter().fold(0.0, |largest, x| largest.max(x.abs()))
+fn largest_of<T: Float>(numbers: &[T]) -> T {
+    numbers
+        .iter()
+        .fold(T::ZERO, |largest, x| largest.max(x.abs()))
 }
 
 /// A square matrix, row-major, and a right-hand side; entries outside of them are no numbers.
-struct System<'a> {
+struct System<'a, T> {
     size: usize,
-    matrix: &'a mut [f64],
-    vector: &'a mut [f64],
+    matrix: &'a mut [T],
+    vector: &'a mut [T],
 }
 
-impl<'a> System<'a> {
-    fn new(size: usize, matrix: &'a mut [f64], vector: &'a mut [f64]) -> Self {
+impl<'a, T: Float> System<'a, T> {
+    fn new(size: usize, matrix: &'a mut [T], vector: &'a mut [T]) -> Self {
         Self {
             size,
             matrix,
@@ -204,22 +216,22 @@ impl<'a> System<'a> {
         }
     }
 
-    fn entry(&self, row: usize, column: usize) -> f64 {
+    fn entry(&self, row: usize, column: usize) -> T {
         let entry = self.matrix.get(row * self.size + column);
-        entry.copied().unwrap_or(f64::NAN)
+        entry.copied().unwrap_or(T::NAN)
     }
 
-    fn side(&self, row: usize) -> f64 {
-        self.vector.get(row).copied().unwrap_or(f64::NAN)
+    fn side(&self, row: usize) -> T {
+        self.vector.get(row).copied().unwrap_or(T::NAN)
     }
 
-    fn set_entry(&mut self, row: usize, column: usize, value: f64) {
+    fn set_entry(&mut self, row: usize, column: usize, value: T) {
         if let Some(entry) = self.matrix.get_mut(row * self.size + column) {
             *entry = value;
         }
     }
 
-    fn set_side(&mut self, row: usize, value: f64) {
+    fn set_side(&mut self, row: usize, value: T) {
         if let Some(side) = self.vector.get_mut(row) {
             *side = value;
         }
@@ -227,9 +239,9 @@ impl<'a> System<'a> {
 
     /// Solves the diagonal block `range` in place by Gaussian elimination with row pivoting; returns the
     /// sign of the block's determinant and the ratio of its largest and smallest pivots.
-    fn eliminate(&mut self, range: Range<usize>) -> (f64, f64) {
-        let mut sign = 1.0;
-        let (mut largest, mut smallest) = (0.0_f64, f64::INFINITY);
+    fn eliminate(&mut self, range: Range<usize>) -> (T, T) {
+        let mut sign = T::of(1.0);
+        let (mut largest, mut smallest) = (T::ZERO, T::INFINITY);
         for k in range.clone() {
             if self.bring_pivot_up(k, &range) {
                 sign = -sign;
@@ -237,10 +249,10 @@ impl<'a> System<'a> {
             let pivot = self.entry(k, k);
             largest = largest.max(pivot.abs());
             smallest = smallest.min(pivot.abs());
-            if pivot == 0.0 || !pivot.is_finite() {
-                return (0.0, f64::INFINITY);
+            if pivot == T::ZERO || !pivot.is_finite() {
+                return (T::ZERO, T::INFINITY);
             }
-            if pivot < 0.0 {
+            if pivot < T::ZERO {
                 sign = -sign;
             }
             for row in k + 1..range.end {

@@ -14,6 +14,7 @@ compile_error!(
 );
 
 pub mod block;
+pub mod float;
 pub mod forward;
 pub mod guard;
 pub mod inverse;

@@ -20,6 +20,7 @@ const HOUSES: [House; 7] = [
         order: &[
             "parallel",
             "effort",
+            "float",
             "runtime",
             "diagnostic",
             "cas",

@@ -4,20 +4,17 @@ mod module;
 
 use crate::{
     effort,
-    failure::{Failure, Problem},
+    failure::Failure,
     functions,
     note::{tell, tell_doubts, tell_note},
     output::{self, json, print, write},
     progress::Progress,
 };
+use clap::builder::PossibleValuesParser;
 use module::Module;
-use overact_codegen::diagnostic::Code;
-use overact_codegen::{Choice, Progress as Step, Request, Runtime, mechanism::Mechanism};
+use overact_codegen::{Choice, Float, Progress as Step, Request, Runtime, mechanism::Mechanism};
 use overact_robot::CompiledFile;
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 /// More joints than these and generation is a matter of minutes.
 const LARGE: usize = 60;
@@ -42,6 +39,9 @@ pub(crate) struct Arguments {
     /// description with these as constants, without the identification models
     #[arg(long, value_name = "TOML")]
     parameters: Option<PathBuf>,
+    /// The numbers that the code computes with
+    #[arg(long, value_parser = PossibleValuesParser::new(Float::ALL.map(Float::name)), default_value = "f64")]
+    float: String,
     /// The path under which the Rust finds the crate `overact` [default: ::overact]
     #[arg(long = "crate", value_name = "PATH", value_parser = Runtime::new)]
     runtime: Option<Runtime>,
@@ -77,6 +77,11 @@ impl Arguments {
             || self.lang == Language::C
     }
 
+    /// The numbers, which the parser knows.
+    fn float(&self) -> Float {
+        Float::named(&self.float).unwrap_or_default()
+    }
+
     /// The options that say what is written, as they stand behind the description.
     fn options(&self) -> String {
         let language = match self.lang {
@@ -85,7 +90,11 @@ impl Arguments {
         };
         let path = self.runtime.as_ref().map(Runtime::path);
         let path = path.map_or_else(String::new, |path| format!(" --crate {path}"));
-        format!("{language}{path}{}", self.functions.words())
+        let float = match self.float() {
+            Float::F64 => "",
+            Float::F32 => " --float f32",
+        };
+        format!("{language}{float}{path}{}", self.functions.words())
     }
 
     /// What of the arguments does not go together.
@@ -178,7 +187,12 @@ fn write_all(modules: &[Module], inputs: &[&Path], arguments: &Arguments) -> Res
     let parts = || modules.iter().flat_map(|m| &m.parts);
     let outputs: Vec<&Path> = parts().filter_map(|part| part.file.as_deref()).collect();
     output::check_distinct(inputs, &outputs)?;
-    make_folder(arguments)?;
+    if let Some(folder) = arguments
+        .output()
+        .filter(|output| arguments.is_folder(output))
+    {
+        output::make_folder(folder)?;
+    }
     let contents =
         parts().filter_map(|part| Some((part.file.clone()?, part.code.clone().into_bytes())));
     write(contents.collect())
@@ -204,6 +218,7 @@ fn load_all(
         };
         let request = Request {
             functions: choice,
+            float: arguments.float(),
             runtime: arguments.runtime.as_ref(),
             progress: &watch,
             ..arguments.effort.request()
@@ -237,17 +252,4 @@ fn large(mechanism: &Mechanism) -> Option<String> {
              finds most of what a thorough search does"
         )
     })
-}
-
-fn make_folder(arguments: &Arguments) -> Result<(), Failure> {
-    match arguments.output() {
-        Some(output) if arguments.is_folder(output) => {
-            fs::create_dir_all(output).map_err(|error| {
-                let problem =
-                    Problem::new(Code::OUTPUT, format!("the folder can't be made: {error}"));
-                problem.file(output.display().to_string()).into()
-            })
-        }
-        _ => Ok(()),
-    }
 }

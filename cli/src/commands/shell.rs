@@ -41,7 +41,7 @@ pub(super) fn completions(arguments: &Completions) -> Result<(), Failure> {
 /// Writes pages for `man`.
 ///
 /// # Errors
-/// A folder that does not exist or can't be written.
+/// A folder that can't be made or written.
 pub(super) fn manual(arguments: &Manual) -> Result<(), Failure> {
     let mut command = super::Arguments::command();
     command.build();
@@ -56,6 +56,7 @@ pub(super) fn manual(arguments: &Manual) -> Result<(), Failure> {
             .display_name(format!("overact-{}", one.get_name()));
         files.push((folder.join(name), page(&own)?));
     }
+    output::make_folder(folder)?;
     let outputs: Vec<&Path> = files.iter().map(|(path, _)| path.as_path()).collect();
     output::check(&[], &outputs)?;
     let lines: Vec<String> = outputs

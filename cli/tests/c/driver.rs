@@ -1,8 +1,10 @@
 //! A program around generated C that calls its functions: compiled, fed with numbers, and read.
 //!
 //! The repository holds no `unsafe` code, so C is not linked to the tests but run beside them. A call is a
-//! number of a function followed by its inputs, an answer the error followed by the output, all as doubles.
+//! number of a function followed by its inputs, an answer the error followed by the output, all as doubles, which
+//! the program rounds where the C computes with shorter numbers.
 
+use overact_codegen::Float;
 use overact_codegen::c::Files;
 use std::fmt::Write as _;
 use std::fs::{self, File};
@@ -83,12 +85,13 @@ impl Driver {
         folder: &Path,
         files: &Files,
         calls: Vec<Call>,
+        float: Float,
     ) -> Result<Self, Failure> {
         fs::create_dir_all(folder)?;
         let stem = &files.stem;
         fs::write(folder.join(format!("{stem}.h")), &files.header)?;
         fs::write(folder.join(format!("{stem}.c")), &files.source)?;
-        fs::write(folder.join("driver.c"), text(stem, &calls)?)?;
+        fs::write(folder.join("driver.c"), text(stem, &calls, float)?)?;
         let program = folder.join("driver");
         let mut command = Command::new(compiler.0);
         command
@@ -153,13 +156,18 @@ impl Driver {
 }
 
 /// The driver.
-fn text(stem: &str, calls: &[Call]) -> Result<String, Failure> {
+fn text(stem: &str, calls: &[Call], float: Float) -> Result<String, Failure> {
+    let number = match float {
+        Float::F64 => "double",
+        Float::F32 => "float",
+    };
     let length = |call: &Call| call.arguments.iter().sum::<usize>();
     let inputs = calls.iter().map(length).max().unwrap_or(0) + 1;
     let outputs = calls.iter().map(|call| call.output).max().unwrap_or(0) + 1;
     let mut text = format!(
         "#include \"{stem}.h\"\n#include <stdio.h>\n#include <string.h>\n\n\
-         static double in[{inputs}];\nstatic double out[{outputs}];\n\n"
+         static {number} in[{inputs}];\nstatic {number} out[{outputs}];\n\n\
+         static double buffer[{inputs} + {outputs}];\n\n"
     );
     let table = |name: &str, numbers: Vec<usize>| {
         let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
@@ -204,17 +212,23 @@ fn text(stem: &str, calls: &[Call]) -> Result<String, Failure> {
              while (fread(&number, sizeof number, 1, stdin) == 1) {{\n        \
                  const int which = (int)number;\n        \
                  double error;\n        \
-                 if (fread(in, sizeof in[0], in_length[which], stdin) != in_length[which]) {{\n            \
+                 if (fread(buffer, sizeof buffer[0], in_length[which], stdin) != in_length[which]) {{\n            \
                      return 1;\n        \
                  }}\n        \
+                 for (size_t i = 0; i < in_length[which]; i++) {{\n            \
+                     in[i] = ({number})buffer[i];\n        \
+                 }}\n        \
                  for (size_t i = 0; i < out_length[which]; i++) {{\n            \
-                     out[i] = {UNTOUCHED:?};\n        \
+                     out[i] = ({number}){UNTOUCHED:?};\n        \
                  }}\n        \
                  error = (double)call(which);\n        \
                  if (fwrite(&error, sizeof error, 1, stdout) != 1) {{\n            \
                      return 1;\n        \
                  }}\n        \
-                 if (fwrite(out, sizeof out[0], out_length[which], stdout) != out_length[which]) {{\n            \
+                 for (size_t i = 0; i < out_length[which]; i++) {{\n            \
+                     buffer[i] = (double)out[i];\n        \
+                 }}\n        \
+                 if (fwrite(buffer, sizeof buffer[0], out_length[which], stdout) != out_length[which]) {{\n            \
                      return 1;\n        \
                  }}\n    \
              }}\n    \

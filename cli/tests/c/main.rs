@@ -4,12 +4,13 @@
 mod driver;
 mod expected;
 mod partition;
+mod single;
 
 use driver::{Compiler, Driver, Failure, Question, UNTOUCHED};
 use expected::{Inputs, calls, output, states};
 use overact::{Columns, Function};
 use overact_codegen::derivation::MotionInput;
-use overact_codegen::{Choice, Effort, Request, RobotModel, Source, c, compile_with};
+use overact_codegen::{Choice, Effort, Float, Request, RobotModel, Source, c, compile_with};
 use overact_robot::InterpretedRobot;
 use overact_tier::{by_tier, is_full};
 use std::fs;
@@ -44,12 +45,18 @@ fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
-fn model(path: &Path, effort: Effort, functions: &[&str]) -> Result<RobotModel, Failure> {
+fn model(
+    path: &Path,
+    effort: Effort,
+    functions: &[&str],
+    float: Float,
+) -> Result<RobotModel, Failure> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let source = Source::new(name, fs::read_to_string(path)?);
     let choice = Choice::new(functions.iter().copied()).ok();
     let request = Request {
         functions: choice.as_ref(),
+        float,
         ..Request::with_effort(effort)
     };
     let compiled = compile_with(&source, &request);
@@ -106,7 +113,13 @@ fn compare(name: &str, model: RobotModel, count: usize) -> Result<Option<Seen>, 
     let mut seen = None;
     for compiler in Compiler::all() {
         let own: Vec<_> = calls.iter().map(|(call, _)| call.clone()).collect();
-        let driver = Driver::build(compiler, &folder(name).join(compiler.0), &files, own)?;
+        let driver = Driver::build(
+            compiler,
+            &folder(name).join(compiler.0),
+            &files,
+            own,
+            Float::F64,
+        )?;
         let texts = driver.texts()?;
         let mut new = Seen {
             worst: (0.0, String::new()),
@@ -126,7 +139,7 @@ fn compare(name: &str, model: RobotModel, count: usize) -> Result<Option<Seen>, 
                     let difference = difference(&found, wanted);
                     if difference > TOLERANCE {
                         let state = &all[at / functions];
-                        let change = change(&robot, question.call, state, wanted);
+                        let change = change(&robot, question.call, state, wanted, f64::EPSILON);
                         new.sensitive.0 += 1;
                         new.sensitive.1 = new.sensitive.1.max(difference / change);
                     } else if difference > new.worst.0 {
@@ -185,14 +198,20 @@ fn compare(name: &str, model: RobotModel, count: usize) -> Result<Option<Seen>, 
 }
 
 /// By how much a rounding of the inputs changes a function's output, relative to its largest number.
-fn change(robot: &InterpretedRobot, call: usize, state: &Inputs, wanted: &[f64]) -> f64 {
+fn change(
+    robot: &InterpretedRobot,
+    call: usize,
+    state: &Inputs,
+    wanted: &[f64],
+    rounding: f64,
+) -> f64 {
     let mut largest = f64::MIN_POSITIVE;
     for turn in 0..8_usize {
         let mut rounded = state.clone();
         for (at, number) in rounded.values_mut().flatten().enumerate() {
             // Up or down, in another pattern each time.
             let up = (at * (2 * turn + 1) + turn) % 3 == 0;
-            *number *= 1.0 + if up { f64::EPSILON } else { -f64::EPSILON };
+            *number *= 1.0 + if up { rounding } else { -rounding };
         }
         if let Ok(output) = output(robot, call, &rounded) {
             largest = largest.max(difference(&output, wanted));
@@ -268,8 +287,8 @@ fn stems() -> Result<Vec<String>, Failure> {
     Ok(stems)
 }
 
-#[test]
-fn robots_of_the_library_agree() -> Result<(), Failure> {
+/// The robots of the tier, with those of their functions that are compared; none means all.
+fn robots() -> Result<Vec<(String, &'static [&'static str])>, Failure> {
     let robots: Vec<(String, &[&str])> = match is_full() {
         true => stems()?.into_iter().map(|stem| (stem, &[][..])).collect(),
         false => FEW
@@ -277,9 +296,15 @@ fn robots_of_the_library_agree() -> Result<(), Failure> {
             .to_vec(),
     };
     assert!(robots.len() >= FEW.len());
-    for (stem, functions) in robots {
+    Ok(robots)
+}
+
+#[test]
+fn robots_of_the_library_agree() -> Result<(), Failure> {
+    for (stem, functions) in robots()? {
         let path = repository(&format!("robots/{stem}.toml"));
-        let model = model(&path, by_tier([Effort::None, Effort::Quick]), functions)?;
+        let effort = by_tier([Effort::None, Effort::Quick]);
+        let model = model(&path, effort, functions, Float::F64)?;
         let seen = compare(&stem, model, by_tier([20, 200]))?;
         assert!(seen.is_none_or(|seen| seen.values > 0));
     }
@@ -292,7 +317,8 @@ fn robots_that_iterate_agree() -> Result<(), Failure> {
     let names = by_tier([&["newton_point"][..], &["newton_point", "newton_spatial"]]);
     for name in names {
         let path = repository(&format!("cli/tests/c/{name}.toml"));
-        let seen = compare(name, model(&path, Effort::None, &[])?, by_tier([20, 100]))?;
+        let model = model(&path, Effort::None, &[], Float::F64)?;
+        let seen = compare(name, model, by_tier([20, 100]))?;
         if let Some(seen) = seen {
             assert!(!seen.errors.is_empty());
         }

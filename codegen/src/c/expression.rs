@@ -8,7 +8,6 @@ use crate::lowering::{Array, Condition};
 use crate::model::RobotModel;
 use crate::writing::body::Body;
 use crate::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
-use overact_core::SINGULAR;
 
 /// How far a function's body is indented.
 const INDENT: usize = 4;
@@ -101,7 +100,11 @@ impl Writer<'_> {
             Condition::Reach { .. } => format!("{} >= 0.0", self.text(value)),
             Condition::Mass => format!("{} > 0.0", self.text(value)),
             Condition::Leg { home, .. } | Condition::Platform { home, .. } => {
-                format!("fabs({}) > {}", self.text(value), number(SINGULAR * home))
+                format!(
+                    "fabs({}) > {}",
+                    self.text(value),
+                    number(self.model.float.limits().singular * home)
+                )
             }
         };
         let error = errors::of_condition(self.model, condition);

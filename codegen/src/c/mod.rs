@@ -18,6 +18,7 @@
 //! | `function` | documentation, signature and body of a function |
 //! | `expression` | statements and expressions |
 //! | `runtime`, `iteration` | what Rust has from the runtime crate; its C stands in `text/` |
+//! | `single` | the same code with numbers of 32 bits |
 //! | `lines` | line breaks, comments, strings |
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
@@ -29,8 +30,10 @@ mod iteration;
 mod lines;
 mod naming;
 mod runtime;
+mod single;
 mod tables;
 
+use crate::float::Float;
 use crate::model::RobotModel;
 use crate::writing::{labels::Labels, legend, text};
 use function::Written;
@@ -58,15 +61,26 @@ pub fn stem(robot: &str) -> String {
 /// behind `overact generate`: the description's path and options.
 #[must_use]
 pub fn files(model: &RobotModel, label: &str) -> Files {
-    let naming = Naming::new(&model.mechanism.name);
+    let naming = Naming {
+        float: model.float,
+        ..Naming::new(&model.mechanism.name)
+    };
     let functions = model.functions.iter();
     let written: Vec<Written> = functions
         .map(|function| function::written(model, function, &naming))
         .collect();
     Files {
-        header: header(model, label, &naming, &written),
-        source: source(model, label, &naming, &written),
+        header: in_numbers(header(model, label, &naming, &written), model.float),
+        source: in_numbers(source(model, label, &naming, &written), model.float),
         stem: naming.prefix,
+    }
+}
+
+/// Code that computes with these numbers.
+fn in_numbers(code: String, float: Float) -> String {
+    match float {
+        Float::F64 => code,
+        Float::F32 => single::converted(&code),
     }
 }
 
@@ -154,6 +168,9 @@ fn overview(model: &RobotModel) -> Vec<String> {
         out.push(format!("Source: {source}."));
     }
     out.push(String::new());
+    if model.float == Float::F32 {
+        out.push("All numbers are of 32 bits, of seven digits.".to_owned());
+    }
     out.push(
         "Arrays hold as many numbers as the comment of their function says, matrices row by row. All is in \
          SI units and radians. A function returns 0 where it has a value; where it returns an error its \

@@ -4,11 +4,15 @@
 //! inside a function come from the derivation and, in parts, from the description: a joint called `os` has
 //! the cosine `cos`. Such a name is not given; the value gets its next name, or a number.
 
+use crate::float::Float;
+
 /// The names of a robot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Naming {
     /// What functions and types begin with, and the name of the files.
     pub prefix: String,
+    /// The numbers that are computed with, whose limits stand in texts of C.
+    pub float: Float,
 }
 
 /// Standard headers, and names of devices that are no files on some systems.
@@ -63,7 +67,10 @@ impl Naming {
             true => format!("robot_{snake}"),
             false => snake,
         };
-        Self { prefix }
+        Self {
+            prefix,
+            float: Float::default(),
+        }
     }
 
     /// The name of a function, a type or a table.
@@ -78,13 +85,27 @@ impl Naming {
         format!("{}_{name}", self.prefix).to_ascii_uppercase()
     }
 
-    /// A text of ours in which `rob_` and `ROB_` stand for the robot's own prefix. No name of a description is
-    /// in it, which may hold these letters, too.
+    /// A text of ours in which `rob_` and `ROB_` stand for the robot's own prefix, and `LIMIT_` with a name for
+    /// a limit. No name of a description is in it, which may hold these letters, too.
     #[must_use]
     pub fn apply(&self, text: &str) -> String {
         let upper = self.constant("");
-        text.replace("rob_", &format!("{}_", self.prefix))
-            .replace("ROB_", &upper)
+        let mut text = text
+            .replace("rob_", &format!("{}_", self.prefix))
+            .replace("ROB_", &upper);
+        let limits = self.float.limits();
+        for (name, limit) in [
+            ("LIMIT_CLOSED", limits.closed),
+            ("LIMIT_JOINT_STEP", limits.joint_step),
+            ("LIMIT_PARTITION", limits.partition),
+            ("LIMIT_PIVOT", limits.pivot),
+            ("LIMIT_QUATERNION", limits.quaternion),
+            ("LIMIT_SINGULAR", limits.singular),
+            ("LIMIT_STEP", limits.step),
+        ] {
+            text = text.replace(name, &format!("{limit:e}"));
+        }
+        text
     }
 
     /// Whether a name can't be that of a value.

@@ -29,6 +29,15 @@ pub enum Underivable {
     /// Functions were chosen that the robot has not got: for each a sentence, `has no function ...`, and a way
     /// out.
     NotOffered(Vec<(String, String)>),
+    /// A function has a number in it that is too large or too small for the numbers that are computed with.
+    Unrepresentable {
+        /// Name of the function.
+        function: String,
+        /// The number.
+        value: String,
+        /// The type of numbers.
+        float: &'static str,
+    },
     /// A bug of the generator.
     Internal(InternalError),
 }
@@ -80,6 +89,18 @@ impl Underivable {
                 description.name.span.clone(),
             )
             .help("choose other `kept_actuators`"),
+            Self::Unrepresentable {
+                function,
+                value,
+                float,
+            } => Diagnostic::new(
+                Code::OUT_OF_RANGE,
+                format!("`{function}` has the number {value} in it, which is no `{float}`"),
+                description.name.span.clone(),
+            )
+            .help(
+                "leave out `float`, or describe lengths, masses and inertias that are no smaller",
+            ),
             Self::NotOffered(sentences) => {
                 let name = &description.name;
                 let mut all = Diagnostics::default();

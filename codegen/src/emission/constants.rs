@@ -1,7 +1,8 @@
 //! Names, sizes and tables of a generated robot.
 
-use super::expression::number;
+use super::expression::{kind, number};
 use crate::derivation::BodyParameter;
+use crate::float::Float;
 use crate::mechanism::{JointKind, StandardParameter};
 use crate::model::RobotModel;
 use proc_macro2::{Literal, TokenStream};
@@ -118,8 +119,13 @@ fn home(model: &RobotModel) -> TokenStream {
         .iter()
         .map(|&i| Literal::usize_unsuffixed(i));
     let kept_count = Literal::usize_unsuffixed(mechanism.kept_actuators.len());
-    let pose = mechanism.home.pose.iter().map(|&v| number(v));
-    let positions = mechanism.home.joints.iter().map(|&v| number(v));
+    let pose = mechanism.home.pose.iter().map(|&v| number(v, model.float));
+    let positions = mechanism
+        .home
+        .joints
+        .iter()
+        .map(|&v| number(v, model.float));
+    let kind = kind(model.float);
     quote! {
         #[doc = " Indices of the actuated joints among all joints."]
         pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [#(#indices),*];
@@ -128,9 +134,9 @@ fn home(model: &RobotModel) -> TokenStream {
         #[doc = " Kept actuators of case 2."]
         pub const KEPT_ACTUATORS: [::core::primitive::usize; #kept_count] = [#(#kept),*];
         #[doc = " Pose of the home configuration (m, rad)."]
-        pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [#(#pose),*];
+        pub const HOME_POSE: [#kind; Self::POSE] = [#(#pose),*];
         #[doc = " Joint positions of the home configuration, which fixes the working mode (m, rad)."]
-        pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [#(#positions),*];
+        pub const HOME_JOINTS: [#kind; Self::JOINTS] = [#(#positions),*];
     }
 }
 
@@ -183,13 +189,14 @@ fn parameter_values(model: &RobotModel, values: &[(BodyParameter, f64)]) -> Toke
             || model.parameter_name(parameter),
             |base| model.base_name(base),
         );
-        let value = number(value);
+        let value = number(value, model.float);
         quote!((#name, #value))
     });
     let count = Literal::usize_unsuffixed(values.len());
+    let kind = kind(model.float);
     quote! {
         #[doc = " Values of the base parameters, in which all others are regrouped, and of the payload's: constants in the functions (SI)."]
-        pub const PARAMETER_VALUES: [(&'static ::core::primitive::str, ::core::primitive::f64); #count] = [#(#entries),*];
+        pub const PARAMETER_VALUES: [(&'static ::core::primitive::str, #kind); #count] = [#(#entries),*];
     }
 }
 
@@ -201,7 +208,10 @@ fn base_parameters(model: &RobotModel) -> TokenStream {
     let entries = model.base.iter().map(|base| {
         let (name, kept) = (model.base_name(base), model.parameter_name(base.parameter));
         let regrouped = base.regrouped.iter().map(|(parameter, coefficient)| {
-            let (name, coefficient) = (model.parameter_name(*parameter), number(*coefficient));
+            let (name, coefficient) = (
+                model.parameter_name(*parameter),
+                number(*coefficient, Float::F64),
+            );
             quote!((#name, #coefficient))
         });
         quote!(BaseParameter::new(#name, #kept, &[#(#regrouped),*]))

@@ -1,5 +1,6 @@
 //! The body of a function as tokens.
 
+use crate::float::Float;
 use crate::lowering::{Array, Condition};
 use crate::writing::body::Body;
 use crate::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
@@ -17,12 +18,13 @@ pub struct Written {
 
 /// Statements and value of a body whose inputs and output are these.
 #[must_use]
-pub fn write(body: &Body, inputs: &[Array], output: &Array) -> Written {
-    let writer = Writer { inputs };
+pub fn write(body: &Body, inputs: &[Array], output: &Array, float: Float) -> Written {
+    let writer = Writer { inputs, float };
+    let kind = kind(float);
     let constants = body.constants.iter().map(|constant| {
-        let (name, value) = (ident(&constant.name), number(constant.value));
+        let (name, value) = (ident(&constant.name), number(constant.value, float));
         let doc = format!(" {}", constant.expression);
-        quote!(#[doc = #doc] const #name: ::core::primitive::f64 = #value;)
+        quote!(#[doc = #doc] const #name: #kind = #value;)
     });
     let statements = body.statements.iter().map(|s| writer.statement(s));
     Written {
@@ -38,10 +40,12 @@ fn ident(name: &str) -> Ident {
 /// Writes what a body is made of.
 struct Writer<'a> {
     inputs: &'a [Array],
+    float: Float,
 }
 
 impl Writer<'_> {
     fn statement(&self, statement: &Statement) -> TokenStream {
+        let math = self.math();
         match statement {
             Statement::Assign { name, value } => {
                 let (name, value) = (ident(name), self.tokens(value));
@@ -50,13 +54,21 @@ impl Writer<'_> {
             Statement::Pairs(pairs) => {
                 let names = pairs.iter().map(sine_and_cosine);
                 let angles = pairs.iter().map(|pair| self.tokens(&pair.angle));
-                quote!(let [#(#names),*] = ::overact::math::sin_cos_all([#(#angles),*]);)
+                quote!(let [#(#names),*] = #math::sin_cos_all([#(#angles),*]);)
             }
             Statement::Pair(pair) => {
                 let (names, angle) = (sine_and_cosine(pair), self.tokens(&pair.angle));
-                quote!(let #names = ::overact::math::sin_cos(#angle);)
+                quote!(let #names = #math::sin_cos(#angle);)
             }
             Statement::Guard { value, condition } => self.guard(value, condition),
+        }
+    }
+
+    /// The module of the functions that are called.
+    fn math(&self) -> TokenStream {
+        match self.float {
+            Float::F64 => quote!(::overact::math),
+            Float::F32 => quote!(::overact::math::single),
         }
     }
 
@@ -65,12 +77,12 @@ impl Writer<'_> {
         match condition {
             Condition::Reach { leg } => quote!(::overact::guard::reach(#value, #leg)?;),
             Condition::Leg { leg, home } => {
-                let home = number(*home);
+                let home = number(*home, self.float);
                 quote!(::overact::guard::leg(#value, #home, #leg)?;)
             }
             Condition::Mass => quote!(::overact::guard::mass(#value)?;),
             Condition::Platform { actuators, home } => {
-                let home = number(*home);
+                let home = number(*home, self.float);
                 let actuators = match actuators {
                     ActuatorGroup::All => quote!(::overact::ActuatorGroup::All),
                     ActuatorGroup::Kept => quote!(::overact::ActuatorGroup::Kept),
@@ -92,7 +104,7 @@ impl Writer<'_> {
 
     fn tokens(&self, expression: &Expression) -> TokenStream {
         match expression {
-            Expression::Number(value) => number(*value),
+            Expression::Number(value) => number(*value, self.float),
             Expression::Constant { name, negative } => {
                 let name = ident(name);
                 match negative {
@@ -131,13 +143,14 @@ impl Writer<'_> {
 
     fn call(&self, function: Call, operands: &[Expression]) -> TokenStream {
         let operands = operands.iter().map(|operand| self.tokens(operand));
+        let math = self.math();
         match function {
-            Call::Sqrt => quote!(::overact::math::sqrt(#(#operands),*)),
-            Call::Sign => quote!(::overact::math::sign(#(#operands),*)),
-            Call::Signed => quote!(::overact::math::signed(#(#operands),*)),
-            Call::Atan2 => quote!(::overact::math::atan2(#(#operands),*)),
-            Call::Sine => quote!(::overact::math::sin_cos(#(#operands),*).0),
-            Call::Cosine => quote!(::overact::math::sin_cos(#(#operands),*).1),
+            Call::Sqrt => quote!(#math::sqrt(#(#operands),*)),
+            Call::Sign => quote!(#math::sign(#(#operands),*)),
+            Call::Signed => quote!(#math::signed(#(#operands),*)),
+            Call::Atan2 => quote!(#math::atan2(#(#operands),*)),
+            Call::Sine => quote!(#math::sin_cos(#(#operands),*).0),
+            Call::Cosine => quote!(#math::sin_cos(#(#operands),*).1),
         }
     }
 
@@ -180,13 +193,25 @@ fn internal_error(what: &str) -> TokenStream {
     quote!(::core::compile_error!(#message))
 }
 
-/// A float that reads back as the same float.
+/// The type of numbers.
 #[must_use]
-pub fn number(value: f64) -> TokenStream {
-    if !value.is_finite() {
+pub fn kind(float: Float) -> TokenStream {
+    match float {
+        Float::F64 => quote!(::core::primitive::f64),
+        Float::F32 => quote!(::core::primitive::f32),
+    }
+}
+
+/// A number that reads back as the same one, rounded to those that are computed with.
+#[must_use]
+pub fn number(value: f64, float: Float) -> TokenStream {
+    if !float.holds(value) {
         return internal_error("a constant is not finite");
     }
-    let literal = Literal::f64_unsuffixed(value.abs());
+    let literal = match float {
+        Float::F64 => Literal::f64_unsuffixed(value.abs()),
+        Float::F32 => Literal::f32_unsuffixed(value.abs() as f32),
+    };
     if value < 0.0 {
         quote!(-#literal)
     } else {
@@ -196,12 +221,12 @@ pub fn number(value: f64) -> TokenStream {
 
 #[cfg(test)]
 mod tests {
-    use super::number;
+    use super::{Float, number};
 
     #[test]
     fn floats_read_back() {
         for value in [0.0, 1.0, -2.5, 0.1 + 0.2, 1e-300, f64::MAX] {
-            let text = number(value).to_string().replace(' ', "");
+            let text = number(value, Float::F64).to_string().replace(' ', "");
             assert_eq!(
                 text.parse::<f64>().map(f64::to_bits),
                 Ok(value.to_bits()),
@@ -211,9 +236,24 @@ mod tests {
     }
 
     #[test]
+    fn short_floats_are_rounded_once() {
+        for value in [0.1 + 0.2, 1.0 / 3.0, 16_777_217.0, 1e-30] {
+            let text = number(value, Float::F32).to_string();
+            assert_eq!(text.parse::<f32>(), Ok(value as f32), "{text}");
+        }
+        for value in [1e-40, 1e39] {
+            assert!(
+                number(value, Float::F32)
+                    .to_string()
+                    .contains("compile_error")
+            );
+        }
+    }
+
+    #[test]
     fn a_number_that_means_nothing_does_not_compile() {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let text = number(value).to_string();
+            let text = number(value, Float::F64).to_string();
             assert!(
                 text.contains("compile_error") && text.contains("report"),
                 "{text}"

@@ -3,6 +3,7 @@
 use super::boundary::boundary;
 use super::expression;
 use super::layout::Sections;
+use crate::float::Float;
 use crate::lowering::Array;
 use crate::model::{CompiledFunction, RobotModel};
 use crate::writing::body::Body;
@@ -40,7 +41,7 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
             let program = &function.program;
             // A word of Rust is no name that the derivation gives.
             let body = Body::write(program, &Labels::new(model, function), &|_| false);
-            let written = expression::write(&body, &program.inputs, &program.output);
+            let written = expression::write(&body, &program.inputs, &program.output, model.float);
             (sections, names) = (body.sections, body.names);
             let value = written.value;
             let value = quote!(::core::result::Result::Ok(#value));
@@ -66,7 +67,7 @@ fn around(
     value: &TokenStream,
 ) -> TokenStream {
     let name = format_ident!("{}", function.name);
-    let output = array_type(&function.program.output);
+    let output = array_type(&function.program.output, model.float);
     let documentation = documentation(model, function, outline);
     let check = boundary(model, &outline.arguments);
     let find_pose = outline.finds_pose.then(|| {
@@ -78,7 +79,10 @@ fn around(
         .finds_joints
         .then(|| quote!(let joints = &Self::joints(pose)?;));
     let parameters = outline.arguments.iter().map(|argument| {
-        let (name, kind) = (format_ident!("{}", argument.name), array_type(argument));
+        let (name, kind) = (
+            format_ident!("{}", argument.name),
+            array_type(argument, model.float),
+        );
         quote!(#name: &#kind)
     });
     quote! {
@@ -103,16 +107,17 @@ fn call(function: &CompiledFunction) -> TokenStream {
 
 /// `[f64; 3]` or `[[f64; 64]; 3]`.
 #[must_use]
-pub(crate) fn array_type(array: &Array) -> TokenStream {
+pub(crate) fn array_type(array: &Array, float: Float) -> TokenStream {
+    let kind = expression::kind(float);
     let length = |n: usize| Literal::usize_unsuffixed(n);
     match array.shape[..] {
         [rows, columns] => {
             let (rows, columns) = (length(rows), length(columns));
-            quote!([[::core::primitive::f64; #columns]; #rows])
+            quote!([[#kind; #columns]; #rows])
         }
         _ => {
             let len = length(array.len());
-            quote!([::core::primitive::f64; #len])
+            quote!([#kind; #len])
         }
     }
 }

@@ -24,14 +24,15 @@ pub fn item(model: &RobotModel) -> TokenStream {
         shape: vec![mechanism.pose_len()],
     };
     let check = boundary(model, &[pose]);
+    let kind = super::expression::kind(model.float);
     quote! {
         #[doc = " Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method."]
         #[doc = ""]
         #[doc = " # Errors"]
         #[doc = " An input that is not finite, a pose out of reach, or a singular configuration on the way from home."]
         pub fn joints(
-            pose: &[::core::primitive::f64; Self::POSE],
-        ) -> ::core::result::Result<[::core::primitive::f64; Self::JOINTS], ::overact::Error> {
+            pose: &[#kind; Self::POSE],
+        ) -> ::core::result::Result<[#kind; Self::JOINTS], ::overact::Error> {
             #check
             let mut joints = Self::HOME_JOINTS;
             ::overact::inverse::solve(

@@ -20,6 +20,7 @@ mod layout;
 mod model_impl;
 mod runtime;
 
+use crate::float::Float;
 use crate::model::RobotModel;
 use crate::writing::{labels::Labels, legend, operations, text};
 use function::Item;
@@ -47,8 +48,10 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     let forward = model
         .forward_kinematics
         .then(|| model_impl::pose_from_actuators(model));
-    // The functions of a model take the parameters as an input, and none that it is asked for is missing.
-    let is_model = model.selection.values.is_none() && model.is_model;
+    // The functions of a model take the parameters as an input, none that it is asked for is missing, and all
+    // compute with the numbers that identification has.
+    let is_long = model.float == Float::F64;
+    let is_model = model.selection.values.is_none() && model.is_model && is_long;
     let model_impl = is_model.then(|| model_impl::item(model, name));
     let items = quote! {
         #[allow(
@@ -69,6 +72,7 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     };
     let names = functions.iter().flat_map(|f| f.names.iter().cloned());
     let mut documentation = vec![String::new(), sizes(model)];
+    documentation.extend(is_short(model).map(str::to_owned));
     documentation.extend(source(&model.mechanism.source));
     documentation.push(String::new());
     documentation.extend(operations::of_robot(model));
@@ -147,6 +151,12 @@ fn sizes(model: &RobotModel) -> String {
         model.selection.standard.len(),
         model.base.len()
     )
+}
+
+/// What is said of numbers that are shorter than others.
+fn is_short(model: &RobotModel) -> Option<&'static str> {
+    let is_short = model.float == Float::F32;
+    is_short.then_some(" All numbers are `f32`, of seven digits.")
 }
 
 /// A summary as a line of documentation.

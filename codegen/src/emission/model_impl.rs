@@ -1,5 +1,6 @@
 //! The generated `impl overact::Model`, which hands blocks of samples to the generated functions.
 
+use super::expression;
 use crate::derivation::MotionInput;
 use crate::model::RobotModel;
 use overact_core::Function;
@@ -123,6 +124,7 @@ fn pattern(function: Function) -> TokenStream {
 #[must_use]
 pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
     let doc = " Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.";
+    let kind = expression::kind(model.float);
     if model.is_tree() {
         return quote! {
             #[doc = #doc]
@@ -130,9 +132,9 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             #[doc = " # Errors"]
             #[doc = " An input that is not finite; else none: the pose of a robot without a loop is its joint positions."]
             pub fn pose_from_actuators(
-                actuators: &[::core::primitive::f64; Self::ACTUATORS],
-                start: &[::core::primitive::f64; Self::POSE],
-            ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+                actuators: &[#kind; Self::ACTUATORS],
+                start: &[#kind; Self::POSE],
+            ) -> ::core::result::Result<[#kind; Self::POSE], ::overact::Error> {
                 ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
                 ::core::result::Result::Ok(*actuators)
             }
@@ -177,7 +179,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         Some(_) if is_redundant => (
             " Where the iteration fails from there, it starts again from `pose_in_closed_form`.",
             quote! {
-                let from = |mut pose: [::core::primitive::f64; Self::POSE]| { #iterate.map(|()| pose) };
+                let from = |mut pose: [#kind; Self::POSE]| { #iterate.map(|()| pose) };
                 from(*start).or_else(|error| match Self::pose_in_closed_form(actuators) {
                     ::core::result::Result::Ok(pose) => from(pose),
                     ::core::result::Result::Err(_) => ::core::result::Result::Err(error),
@@ -209,9 +211,9 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         #[doc = " # Errors"]
         #[doc = " An input that is not finite, no convergence, or a singular or unreachable configuration on the way."]
         pub fn pose_from_actuators(
-            actuators: &[::core::primitive::f64; Self::ACTUATORS],
-            start: &[::core::primitive::f64; Self::POSE],
-        ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+            actuators: &[#kind; Self::ACTUATORS],
+            start: &[#kind; Self::POSE],
+        ) -> ::core::result::Result<[#kind; Self::POSE], ::overact::Error> {
             ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
             #unit
             #body

@@ -4,6 +4,7 @@
 
 #[cfg(any(test, not(vectors)))]
 mod plain;
+pub mod single;
 mod trigonometry;
 #[cfg(any(test, vectors))]
 mod vectors;

@@ -8,7 +8,7 @@ static int rob_solve(double matrix[ROB_DOF][ROB_DOF], double vector[ROB_DOF])
     }
     for (int k = 0; (k < ROB_DOF) && (is_regular != 0); k++) {
         const double pivot = matrix[k][k];
-        if (pivot > (1e-15 * largest)) {
+        if (pivot > (LIMIT_PIVOT * largest)) {
             for (int row = k + 1; row < ROB_DOF; row++) {
                 const double factor = matrix[row][k] / pivot;
                 for (int column = k + 1; column < ROB_DOF; column++) {
@@ -77,7 +77,7 @@ static rob_error rob_gauss_newton(const double *actuators, double *pose)
         if (!isfinite(largest)) {
             return ROB_NO_CONVERGENCE;
         }
-        if (largest < 1e-12) {
+        if (largest < LIMIT_STEP) {
             return ROB_OK;
         }
     }

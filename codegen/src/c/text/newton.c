@@ -98,7 +98,7 @@ static rob_error rob_newton(const double *pose, double *joints)
             double step = 0.0;
             double scale = 1.0;
             (void)rob_eliminate(matrix, vector, leg, &condition);
-            if (!((condition * 1e-9) <= 1.0)) {
+            if (!((condition * LIMIT_SINGULAR) <= 1.0)) {
                 return rob_singular_legs[leg];
             }
             step = rob_largest(vector, leg);
@@ -108,7 +108,7 @@ static rob_error rob_newton(const double *pose, double *joints)
             }
             largest = (step > largest) ? step : largest;
         }
-        if (largest < 1e-13) {
+        if (largest < LIMIT_JOINT_STEP) {
             return ROB_OK;
         }
     }
@@ -119,7 +119,7 @@ static rob_error rob_newton(const double *pose, double *joints)
     /* The leg whose error is the largest is the one that cannot follow. */
     for (int leg = 0; leg < ROB_LEGS; leg++) {
         const double size = rob_largest(vector, leg);
-        if ((size >= 1e-10) && (size > worst)) {
+        if ((size >= LIMIT_CLOSED) && (size > worst)) {
             worst = size;
             error = rob_legs_out_of_reach[leg];
         }

@@ -117,7 +117,7 @@ rob_error rob_partition_of(
     }
     rob_factorise(&found);
     found.condition = rob_partition_condition(&found, inverse_jacobian, kept);
-    if (!(found.condition < 1e9)) {
+    if (!(found.condition < LIMIT_PARTITION)) {
         return ROB_SINGULAR_PARTITION;
     }
     *partition = found;

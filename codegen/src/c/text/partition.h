@@ -12,7 +12,7 @@ typedef struct rob_partition {
  * @param kept indices of the kept actuators, from 0 (ROB_DOF)
  * @param[out] partition is left as it was where there is an error
  * @return 0, or an error: a number that is not finite, an actuator that there is not, or actuators that do not
- * determine the platform's motion (a condition number above 1e9).
+ * determine the platform's motion (a condition number above LIMIT_PARTITION).
  */
 rob_error rob_partition_of(
     const double *ROB_RESTRICT inverse_jacobian,

@@ -8,7 +8,7 @@ static int rob_unit_quaternion(const double *pose, double *unit)
         unit[i] = pose[i];
     }
     square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    if (fabs(square - 1.0) > 1e-8) {
+    if (fabs(square - 1.0) > LIMIT_QUATERNION) {
         /* The largest number is scaled to 1 first, so that squares are neither too small nor too large. */
         double largest = 0.0;
         for (int i = 0; i < 4; i++) {

@@ -186,6 +186,16 @@ pub struct Program {
 }
 
 impl Program {
+    /// All numbers that the program has in it.
+    pub(crate) fn constants(&self) -> impl Iterator<Item = f64> {
+        let operands = self.steps.iter().flat_map(|s| s.operation.operands());
+        let operands = operands.chain(self.entries.iter().map(|e| e.operand));
+        operands.filter_map(|operand| match operand {
+            Operand::Constant(value) => Some(value),
+            _ => None,
+        })
+    }
+
     /// For each input, whether the program reads any of its elements.
     #[must_use]
     pub fn used_inputs(&self) -> Vec<bool> {

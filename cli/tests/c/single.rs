@@ -1,0 +1,101 @@
+//! C with numbers of 32 bits against the programs, evaluated with 64 bits, at states that both can hold.
+
+use crate::driver::{Compiler, Driver, Failure, Question};
+use crate::expected::{Inputs, calls, output, states};
+use crate::{change, difference, folder, model, repository, robots};
+use overact_codegen::{Effort, Float, c};
+use overact_robot::InterpretedRobot;
+use overact_tier::by_tier;
+
+/// Largest difference, relative to the largest number of an output: some ten roundings of 6 · 10⁻⁸.
+const TOLERANCE: f64 = 1e-6;
+
+/// How many times larger a difference may be than what roundings of the inputs change: an operation rounds what it
+/// computes, too, and forward kinematics ends with steps of 10⁻⁵.
+const ROUNDINGS: f64 = 60.0;
+
+/// The state with numbers of 32 bits.
+fn rounded(state: &Inputs) -> Inputs {
+    let short = |values: &Vec<f64>| values.iter().map(|&x| f64::from(x as f32)).collect();
+    state
+        .iter()
+        .map(|(name, values)| (*name, short(values)))
+        .collect()
+}
+
+/// Compares all functions of a robot: the worst relative difference, and by how many roundings of the inputs
+/// the worst of those differs that are beyond the tolerance.
+fn compare(name: &str, functions: &[&str], path: &str, count: usize) -> Result<(), Failure> {
+    let effort = by_tier([Effort::None, Effort::Quick]);
+    let model = model(&repository(path), effort, functions, Float::F32)?;
+    let Some(compiler) = Compiler::all().into_iter().next() else {
+        return Ok(());
+    };
+    let files = c::files(&model, path);
+    let robot = InterpretedRobot::new(model);
+    let states: Vec<Inputs> = states(&robot, count, 11).iter().map(rounded).collect();
+    let (calls, arguments): (Vec<_>, Vec<_>) = calls(robot.model()).into_iter().unzip();
+    let each = || {
+        states
+            .iter()
+            .flat_map(|state| (0..calls.len()).map(move |call| (state, call)))
+    };
+    let questions = each().map(|(state, call)| Question {
+        call,
+        inputs: arguments[call]
+            .iter()
+            .flat_map(|name| state[name.as_str()].clone())
+            .collect(),
+    });
+    let questions: Vec<Question> = questions.collect();
+    let at = folder(name).join("single");
+    let driver = Driver::build(compiler, &at, &files, calls.clone(), Float::F32)?;
+    let texts = driver.texts()?;
+    let (mut worst, mut sensitive) = ((0.0, ""), (0, 0.0, ""));
+    for ((state, call), (error, found)) in each().zip(driver.answers(&questions)?) {
+        let function = calls[call].name.as_str();
+        let Ok(wanted) = output(&robot, call, state) else {
+            continue;
+        };
+        assert_eq!(error, 0, "{name}: {function}: {}", texts[error]);
+        let difference = difference(&found, &wanted);
+        if difference > TOLERANCE {
+            let change = change(&robot, call, state, &wanted, f64::from(f32::EPSILON));
+            sensitive.0 += 1;
+            if difference / change > sensitive.1 {
+                (sensitive.1, sensitive.2) = (difference / change, function);
+            }
+        } else if difference > worst.0 {
+            worst = (difference, function);
+        }
+    }
+    println!(
+        "{name}, f32: {:.1e} ({}) of {} outputs; {} differ more, by up to {:.1} roundings of the inputs ({})",
+        worst.0,
+        worst.1,
+        questions.len(),
+        sensitive.0,
+        sensitive.1,
+        sensitive.2
+    );
+    assert!(sensitive.1 < ROUNDINGS, "{name}: {}", sensitive.2);
+    Ok(())
+}
+
+#[test]
+fn numbers_of_32_bits_give_what_they_can_hold() -> Result<(), Failure> {
+    for (stem, functions) in robots()? {
+        compare(
+            &stem,
+            functions,
+            &format!("robots/{stem}.toml"),
+            by_tier([20, 200]),
+        )?;
+    }
+    compare(
+        "newton_point",
+        &[],
+        "cli/tests/c/newton_point.toml",
+        by_tier([20, 100]),
+    )
+}
