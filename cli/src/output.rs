@@ -71,6 +71,21 @@ pub(crate) fn emit_with(
     }
 }
 
+/// Makes the folders that files go to; that of a single file mostly exists.
+///
+/// # Errors
+/// A folder that can't be made.
+pub(crate) fn make_folders(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Problem> {
+    let folders = files.iter().filter_map(|(file, _)| file.parent());
+    for folder in folders.filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(|error| {
+            let problem = Problem::new(Code::OUTPUT, format!("the folder can't be made: {error}"));
+            problem.file(folder.display().to_string())
+        })?;
+    }
+    Ok(())
+}
+
 /// A document for machines.
 ///
 /// # Errors
