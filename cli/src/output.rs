@@ -77,9 +77,23 @@ pub(crate) fn emit_with(
 /// # Errors
 /// A place where there can be none.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
+    made(folder).map_err(Failure::from)
+}
+
+/// Makes the folders that files go to; that of a single file mostly exists.
+///
+/// # Errors
+/// A folder that can't be made.
+pub(crate) fn make_folders(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Problem> {
+    let folders = files.iter().filter_map(|(file, _)| file.parent());
+    let mut folders = folders.filter(|folder| !folder.as_os_str().is_empty());
+    folders.try_for_each(made)
+}
+
+fn made(folder: &Path) -> Result<(), Problem> {
     std::fs::create_dir_all(folder).map_err(|error| {
         let problem = Problem::new(Code::OUTPUT, format!("the folder can't be made: {error}"));
-        problem.file(folder.display().to_string()).into()
+        problem.file(folder.display().to_string())
     })
 }
 

@@ -105,7 +105,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .zip(logs)
         .filter_map(|(file, log)| Some((file?, log)));
     let files: Vec<(PathBuf, Vec<u8>)> = files.collect();
-    make_folders(&files)?;
+    output::make_folders(&files)?;
     output::write(files)?;
     if as_json {
         print(&json(&document)?)
@@ -174,18 +174,6 @@ fn files(experiment: &Experiment, output: Option<&Path>) -> Result<Vec<Option<Pa
         output::check(&[], &[output])?;
     }
     Ok(files.into_iter().map(Some).collect())
-}
-
-/// Makes the folder that the runs go to; that of a single file exists.
-fn make_folders(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Problem> {
-    let folders = files.iter().filter_map(|(file, _)| file.parent());
-    for folder in folders.filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(|error| {
-            let problem = Problem::new(Code::OUTPUT, format!("the folder can't be made: {error}"));
-            problem.file(folder.display().to_string())
-        })?;
-    }
-    Ok(())
 }
 
 fn csv(record: &Record) -> Result<Vec<u8>, Problem> {

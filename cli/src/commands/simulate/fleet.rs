@@ -341,6 +341,6 @@ fn write(file: PathBuf, bytes: Vec<u8>, made: &mut Made) -> Result<(), Failure> 
     made.bytes += bytes.len();
     made.files += 1;
     let files = vec![(file, bytes)];
-    super::make_folders(&files)?;
+    output::make_folders(&files)?;
     Ok(output::write(files)?)
 }

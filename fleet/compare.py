@@ -1,0 +1,103 @@
+"""The estimates of a fleet by pandas and NumPy from the same factor files, beside those of `overact-fleet`.
+
+    python fleet/compare.py FOLDER ESTIMATES.csv
+
+FOLDER has factor files; ESTIMATES.csv is what this query gives with --csv:
+
+    SELECT serial, p['name'] AS name, p['value'] AS value
+    FROM (SELECT serial, unnest(e['parameters']) AS p
+          FROM (SELECT serial, estimate(factor) AS e FROM factors GROUP BY serial))
+
+Every robot is fitted twice: by QR of its stacked factors, and by normal equations, which are what sums of products
+in SQL (and aggregates as regr_slope, for one regressor) come to. Weights of lines are those of the first.
+"""
+
+import resource
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+
+def decoded(record):
+    """Names of columns and R, of a record of a factor file (identification/src/factors/record.rs)."""
+    columns = int.from_bytes(record[54:56], "little")
+    lengths = [int.from_bytes(record[a:b], "little") for a, b in ((64, 66), (66, 68), (68, 72))]
+    names_at = 72 + lengths[0] + lengths[1]
+    names = record[names_at : names_at + lengths[2]].decode().split(",")
+    size = columns + 1
+    triangle = np.frombuffer(record[names_at + lengths[2] + 8 * size :], dtype="<f8")
+    matrix = np.zeros((size, size))
+    matrix[np.triu_indices(size)] = triangle
+    return names, matrix
+
+
+def independent(matrix, tolerance=1e-10):
+    """Columns in their order, without those that depend on the ones before them."""
+    scaled = matrix / np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+    kept = []
+    for column in range(matrix.shape[1]):
+        own = scaled[:, column]
+        rest = own
+        if kept:
+            q, _ = np.linalg.qr(scaled[:, kept])
+            rest = own - q @ (q.T @ own)
+        if np.linalg.norm(rest) > tolerance:
+            kept.append(column)
+    return kept
+
+
+def fitted(group):
+    """Estimates of a robot by QR and by normal equations."""
+    lines, equations = {}, {}
+    for line, count, record in zip(group.line, group.equations, group.factor):
+        names, matrix = decoded(record)
+        lines.setdefault(line, []).append(matrix)
+        equations[line] = equations.get(line, 0) + count
+    merged = {line: np.linalg.qr(np.vstack(own), mode="r") for line, own in lines.items()}
+    kept = independent(np.vstack(list(merged.values()))[:, :-1])
+    stacked, sums = [], 0.0
+    for line, r in merged.items():
+        own = independent(r[:, :-1][:, kept])
+        picked = r[:, [kept[i] for i in own]]
+        _, rest, rank, _ = np.linalg.lstsq(picked, r[:, -1], rcond=None)
+        residual = r[:, -1] - picked @ np.linalg.lstsq(picked, r[:, -1], rcond=None)[0]
+        weight = 1 / np.sqrt(residual @ residual / (equations[line] - len(own)))
+        stacked.append(weight * r[:, kept + [r.shape[1] - 1]])
+        sums = sums + weight**2 * sum(m.T @ m for m in lines[line])[np.ix_(kept + [-1], kept + [-1])]
+    r = np.linalg.qr(np.vstack(stacked), mode="r")
+    p = len(kept)
+    by_qr = np.linalg.solve(r[:p, :p], r[:p, p])
+    by_sums = np.linalg.solve(sums[:p, :p], sums[:p, p])
+    return [names[i] for i in kept], by_qr, by_sums
+
+
+def main(folder, estimates):
+    start = time.perf_counter()
+    columns = ["serial", "kind", "content", "part", "line", "equations", "factor"]
+    files = sorted(Path(folder).rglob("*.parquet"))
+    rows = pd.concat(pd.read_parquet(file, columns=columns) for file in files)
+    rows = rows[rows.kind == "factor"].drop_duplicates(["content", "part", "line"])
+    read = time.perf_counter() - start
+    own = pd.read_csv(estimates).set_index(["serial", "name"]).value
+    by_qr, by_sums, count = 0.0, 0.0, 0
+    fit = 0.0
+    for serial, group in rows.groupby("serial"):
+        begin = time.perf_counter()
+        names, first, second = fitted(group)
+        fit += time.perf_counter() - begin
+        if serial not in own.index.get_level_values(0):
+            continue
+        ours = own.loc[serial].reindex(names).to_numpy()
+        by_qr = max(by_qr, np.max(np.abs(ours / first - 1)))
+        by_sums = max(by_sums, np.max(np.abs(ours / second - 1)))
+        count += 1
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"{len(rows)} rows of {count} robots: read in {read:.1f} s, fitted in {fit:.1f} s, {memory:.0f} MB")
+    print(f"largest relative difference: QR {by_qr:.1e}, normal equations {by_sums:.1e}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,200 @@
+//! Which files of a folder can be read, and which runs are there twice. A query over a folder fails at its first bad
+//! file, and counts what is there twice as often as it is there; so both are found before it starts.
+
+use arrow::array::AsArray;
+use arrow::datatypes::{DataType, Int64Type};
+use datafusion::{
+    error::Result,
+    prelude::{ParquetReadOptions, SessionContext, col},
+};
+use serde::Serialize;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+};
+
+/// The version of factor files that is read.
+const VERSION: i64 = 2;
+
+/// Something that a query does not see.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LeftOut {
+    /// The file.
+    pub file: String,
+    /// Runs of it that are left out; all where there is none.
+    pub runs: Vec<String>,
+    /// Why.
+    pub why: String,
+}
+
+/// The files of a folder.
+#[derive(Debug, Clone, Default)]
+pub struct Catalog {
+    /// Those that are read, in order.
+    pub files: Vec<PathBuf>,
+    /// Of some of them the runs, by the hash of their numbers, that an earlier file has.
+    pub copies: BTreeMap<PathBuf, Vec<String>>,
+    /// What is not seen.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// All files below a folder whose names end in `.parquet`, in order.
+///
+/// # Errors
+/// A folder that can't be read.
+pub fn parquet_files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    if folder.is_file() {
+        return Ok(vec![folder.to_owned()]);
+    }
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder)? {
+            let path = entry?.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|own| own == "parquet") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// A file to a URL that the query engine reads.
+pub(crate) fn text(path: &Path) -> String {
+    path.display().to_string()
+}
+
+impl Catalog {
+    /// That of factor files. With `whole` every page of each is read, so that a file that is damaged anywhere is
+    /// found; else what names its runs alone.
+    ///
+    /// # Errors
+    /// What is no fault of a file.
+    pub async fn of_factors(files: &[PathBuf], whole: bool) -> Result<Self> {
+        let context = SessionContext::new();
+        let mut own = Self::default();
+        // Of each run the file that has it first.
+        let mut seen: BTreeMap<String, PathBuf> = BTreeMap::new();
+        for file in files {
+            match runs(&context, file, whole).await {
+                Ok(runs) => own.add(file, runs, &mut seen),
+                Err(error) => own.leave_out(file, error),
+            }
+        }
+        Ok(own)
+    }
+
+    /// That of logs: those whose ends can be read. With `whole` every page is.
+    ///
+    /// # Errors
+    /// What is no fault of a file.
+    pub async fn of_logs(files: &[PathBuf], whole: bool) -> Result<Self> {
+        let context = SessionContext::new();
+        let mut own = Self::default();
+        for file in files {
+            let read = async {
+                let table = context
+                    .read_parquet(text(file), ParquetReadOptions::default())
+                    .await?;
+                match whole {
+                    true => table.collect().await.map(drop),
+                    false => Ok(()),
+                }
+            };
+            match read.await {
+                Ok(()) => own.files.push(file.clone()),
+                Err(error) => own.leave_out(file, error.strip_backtrace()),
+            }
+        }
+        Ok(own)
+    }
+
+    fn add(&mut self, file: &Path, runs: BTreeSet<String>, seen: &mut BTreeMap<String, PathBuf>) {
+        let mut copies = Vec::new();
+        let mut of = BTreeSet::new();
+        let count = runs.len();
+        for run in runs {
+            match seen.get(&run) {
+                Some(first) => {
+                    of.insert(text(first));
+                    copies.push(run);
+                }
+                None => {
+                    seen.insert(run, file.to_owned());
+                }
+            }
+        }
+        let all = copies.len() == count;
+        if !copies.is_empty() {
+            let of: Vec<String> = of.into_iter().collect();
+            self.left_out.push(LeftOut {
+                file: text(file),
+                runs: if all { Vec::new() } else { copies.clone() },
+                why: format!("already in {}", of.join(", ")),
+            });
+        }
+        if !all || count == 0 {
+            self.files.push(file.to_owned());
+            if !copies.is_empty() {
+                self.copies.insert(file.to_owned(), copies);
+            }
+        }
+    }
+
+    fn leave_out(&mut self, file: &Path, why: String) {
+        self.left_out.push(LeftOut {
+            file: text(file),
+            runs: Vec::new(),
+            why,
+        });
+    }
+}
+
+/// The runs of a factor file, by the hash of their numbers.
+async fn runs(
+    context: &SessionContext,
+    file: &Path,
+    whole: bool,
+) -> std::result::Result<BTreeSet<String>, String> {
+    let told = |error: datafusion::error::DataFusionError| error.strip_backtrace();
+    let table = context
+        .read_parquet(text(file), ParquetReadOptions::default())
+        .await
+        .map_err(told)?;
+    let has = |name: &str| table.schema().has_column_with_unqualified_name(name);
+    for name in [
+        "version", "content", "kind", "factor", "serial", "time", "model", "loaded",
+    ] {
+        if !has(name) {
+            return Err(format!(
+                "the file holds no factors: there is no column `{name}`"
+            ));
+        }
+    }
+    if whole {
+        table.clone().collect().await.map_err(told)?;
+    }
+    let names = table.select(vec![
+        col("version"),
+        datafusion::logical_expr::cast(col("content"), DataType::Utf8).alias("content"),
+    ]);
+    let names = names.map_err(told)?;
+    let mut runs = BTreeSet::new();
+    for batch in names.collect().await.map_err(told)? {
+        let versions = batch.column(0).as_primitive_opt::<Int64Type>();
+        let contents = batch.column(1).as_string_opt::<i32>();
+        let (Some(versions), Some(contents)) = (versions, contents) else {
+            return Err("the file holds no factors: its columns are of other types".to_owned());
+        };
+        if let Some(other) = versions.iter().flatten().find(|own| *own != VERSION) {
+            return Err(format!(
+                "the file has version {other} of the format, this program reads version {VERSION}"
+            ));
+        }
+        runs.extend(contents.iter().flatten().map(str::to_owned));
+    }
+    Ok(runs)
+}

@@ -1,0 +1,122 @@
+//! Many machines: a scheduler, executors that know the functions of a fleet, and their client. They are Ballista's own,
+//! with the functions registered in each process, since a plan names functions and does not carry them.
+
+use crate::{functions, robots::Robots};
+use ballista::prelude::{SessionConfigExt, SessionContextExt};
+use ballista_core::{registry::BallistaFunctionRegistry, utils::default_session_builder};
+use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
+use ballista_scheduler::{
+    cluster::BallistaCluster, config::SchedulerConfig, scheduler_process::start_server,
+};
+use datafusion::{
+    error::{DataFusionError, Result},
+    execution::SessionStateBuilder,
+    prelude::{SessionConfig, SessionContext},
+};
+use std::{net::SocketAddr, path::PathBuf, sync::Arc};
+
+/// Bytes of a message between processes, at most: a partition of estimates in one piece.
+const LARGEST_MESSAGE: u32 = 256 << 20;
+
+/// Seconds after which an executor that is silent counts as dead, and between its signs of life.
+const SILENCE_S: u64 = 20;
+const SIGN_OF_LIFE_S: u64 = 5;
+
+fn failed(error: impl std::fmt::Display) -> DataFusionError {
+    DataFusionError::Execution(error.to_string())
+}
+
+/// The client of a scheduler.
+///
+/// # Errors
+/// An address that is none.
+pub async fn client(url: &str, config: SessionConfig) -> Result<SessionContext> {
+    let config = config
+        .upgrade_for_ballista()
+        .with_ballista_grpc_client_max_message_size(LARGEST_MESSAGE as usize);
+    let state = SessionStateBuilder::new()
+        .with_config(config)
+        .with_default_features()
+        .build();
+    SessionContext::remote_with_state(url, state).await
+}
+
+/// Runs a scheduler until it is stopped.
+///
+/// # Errors
+/// An address that can't be had.
+pub async fn scheduler(address: SocketAddr, robots: Robots) -> Result<()> {
+    let builder = Arc::new(move |config: SessionConfig| {
+        let mut state = default_session_builder(config)?;
+        functions::register(&mut state, &robots)?;
+        Ok(state)
+    });
+    let config = SchedulerConfig {
+        bind_host: address.ip().to_string(),
+        bind_port: address.port(),
+        override_session_builder: Some(builder),
+        grpc_server_max_decoding_message_size: LARGEST_MESSAGE,
+        grpc_server_max_encoding_message_size: LARGEST_MESSAGE,
+        executor_timeout_seconds: SILENCE_S,
+        expire_dead_executor_interval_seconds: SIGN_OF_LIFE_S,
+        ..SchedulerConfig::default()
+    };
+    let cluster = BallistaCluster::new_from_config(&config)
+        .await
+        .map_err(failed)?;
+    start_server(cluster, address, Arc::new(config))
+        .await
+        .map_err(failed)
+}
+
+/// Where an executor is and how much it does at once.
+#[derive(Debug, Clone)]
+pub struct Executor {
+    /// Where it listens for data; for orders it listens at the next port.
+    pub address: SocketAddr,
+    /// Host and port of the scheduler.
+    pub scheduler: (String, u16),
+    /// Tasks at once.
+    pub tasks: usize,
+    /// Where it puts what other executors fetch; a temporary folder if none.
+    pub folder: Option<PathBuf>,
+    /// Bytes that its tasks may take together; a part of the machine's memory if none.
+    pub memory: Option<u64>,
+}
+
+/// Runs an executor until it is stopped.
+///
+/// # Errors
+/// A scheduler that can't be reached, an address that can't be had.
+pub async fn executor(own: Executor, robots: &Robots) -> Result<()> {
+    let mut registry = BallistaFunctionRegistry::default();
+    for function in functions::aggregates(robots) {
+        registry
+            .aggregate_functions
+            .insert(function.name().to_owned(), function);
+    }
+    for function in functions::scalars() {
+        registry
+            .scalar_functions
+            .insert(function.name().to_owned(), function);
+    }
+    let config = ExecutorProcessConfig {
+        bind_host: own.address.ip().to_string(),
+        port: own.address.port(),
+        grpc_port: own.address.port() + 1,
+        scheduler_host: own.scheduler.0,
+        scheduler_port: own.scheduler.1,
+        scheduler_connect_timeout_seconds: 30,
+        vcores: own.tasks,
+        work_dir: own.folder.map(|folder| folder.display().to_string()),
+        memory_pool_size: own.memory,
+        grpc_max_decoding_message_size: LARGEST_MESSAGE,
+        grpc_max_encoding_message_size: LARGEST_MESSAGE,
+        executor_heartbeat_interval_seconds: SIGN_OF_LIFE_S,
+        override_function_registry: Some(Arc::new(registry)),
+        ..ExecutorProcessConfig::default()
+    };
+    start_executor_process(Arc::new(config))
+        .await
+        .map_err(failed)
+}

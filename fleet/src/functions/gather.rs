@@ -1,0 +1,164 @@
+//! `estimate(factor)` and `merge_r(factor)`: factors gathered in bounded memory, whatever the order of the rows.
+
+use super::arrays;
+use arrow::{
+    array::{ArrayRef, AsArray},
+    datatypes::{DataType, Field, FieldRef, Int64Type},
+};
+use datafusion::{
+    error::{DataFusionError, Result},
+    logical_expr::{
+        Accumulator, AggregateUDFImpl, Signature, Volatility,
+        function::{AccumulatorArgs, StateFieldsArgs},
+    },
+    scalar::ScalarValue,
+};
+use overact_identification::factors::{Pool, PoolError};
+use std::sync::Arc;
+
+/// Groups of parts that are kept apart where nothing is said: about as many degrees of freedom of the deviations,
+/// and as many factors in memory for each group of rows.
+const GROUPS: usize = 16;
+
+/// Either of the aggregates.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub(super) struct Gather {
+    signature: Signature,
+    /// Whether the result is the estimate.
+    estimates: bool,
+}
+
+impl Gather {
+    fn new(estimates: bool) -> Self {
+        Self {
+            signature: Signature::user_defined(Volatility::Immutable),
+            estimates,
+        }
+    }
+
+    pub(super) fn estimate() -> Self {
+        Self::new(true)
+    }
+
+    pub(super) fn merge_r() -> Self {
+        Self::new(false)
+    }
+}
+
+impl AggregateUDFImpl for Gather {
+    fn name(&self) -> &str {
+        match self.estimates {
+            true => "estimate",
+            false => "merge_r",
+        }
+    }
+
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
+        let binary = |kind: &DataType| {
+            use DataType::{Binary, BinaryView, FixedSizeBinary, LargeBinary, Null};
+            matches!(
+                kind,
+                Binary | LargeBinary | BinaryView | FixedSizeBinary(_) | Null
+            )
+        };
+        match given {
+            [factor] if binary(factor) => Ok(vec![DataType::Binary]),
+            [factor, groups] if binary(factor) && groups.is_integer() => {
+                Ok(vec![DataType::Binary, DataType::Int64])
+            }
+            _ => Err(DataFusionError::Plan(format!(
+                "`{0}` takes a column of factors, and how many independent groups of runs it keeps apart: \
+                 `{0}(factor)` or `{0}(factor, 64)`",
+                self.name()
+            ))),
+        }
+    }
+
+    fn return_type(&self, _: &[DataType]) -> Result<DataType> {
+        Ok(match self.estimates {
+            true => DataType::Struct(arrays::of_estimate()),
+            false => DataType::Binary,
+        })
+    }
+
+    fn state_fields(&self, args: StateFieldsArgs<'_>) -> Result<Vec<FieldRef>> {
+        let name = format!("{}[pool]", args.name);
+        Ok(vec![Arc::new(Field::new(name, DataType::Binary, true))])
+    }
+
+    fn accumulator(&self, _: AccumulatorArgs<'_>) -> Result<Box<dyn Accumulator>> {
+        Ok(Box::new(Gathered {
+            pool: Pool::new(GROUPS),
+            fed: false,
+            estimates: self.estimates,
+        }))
+    }
+}
+
+#[derive(Debug)]
+struct Gathered {
+    pool: Pool,
+    /// Whether it has had rows.
+    fed: bool,
+    estimates: bool,
+}
+
+impl Gathered {
+    fn take(&mut self, column: &ArrayRef) -> Result<()> {
+        for bytes in column.as_binary::<i32>().iter().flatten() {
+            self.fed = true;
+            self.pool.take(bytes).map_err(|error| told(&error))?;
+        }
+        Ok(())
+    }
+}
+
+/// An error of a pool in words.
+fn told(error: &PoolError) -> DataFusionError {
+    DataFusionError::Execution(
+        match error {
+            PoolError::Twice => {
+                "a run is there twice in different files: select from the table `factors`, which leaves copies out"
+            }
+            _ => "a merged factor is damaged: merge it again from its parts",
+        }
+        .to_owned(),
+    )
+}
+
+impl Accumulator for Gathered {
+    fn update_batch(&mut self, values: &[ArrayRef]) -> Result<()> {
+        if let Some(groups) = values.get(1) {
+            let groups = groups.as_primitive::<Int64Type>();
+            let first = groups.iter().flatten().next();
+            self.pool
+                .limit(first.map_or(GROUPS, |own| own.max(0) as usize));
+        }
+        self.take(&values[0])
+    }
+
+    fn merge_batch(&mut self, states: &[ArrayRef]) -> Result<()> {
+        self.take(&states[0])
+    }
+
+    fn state(&mut self) -> Result<Vec<ScalarValue>> {
+        // A place without rows has not been told how many groups are wanted, and has nothing to say.
+        let pool = self.fed.then(|| self.pool.to_bytes());
+        Ok(vec![ScalarValue::Binary(pool)])
+    }
+
+    fn evaluate(&mut self) -> Result<ScalarValue> {
+        Ok(match self.estimates {
+            true => arrays::value(&self.pool.estimate()),
+            false => ScalarValue::Binary(Some(self.pool.to_bytes())),
+        })
+    }
+
+    fn size(&self) -> usize {
+        size_of::<Self>() + self.pool.size()
+    }
+}

@@ -1,0 +1,290 @@
+//! `overact-fleet`: queries over a fleet, control charts, the page of a fleet, scheduler and executors.
+
+use clap::{Args, Parser, Subcommand};
+use datafusion::arrow::{
+    array::RecordBatch, csv::WriterBuilder, util::pretty::pretty_format_batches,
+};
+use overact_fleet::{
+    chart::{Rule, charts, outliers},
+    report,
+    robots::Robots,
+    session::{Fleet, Options},
+};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::Instant,
+};
+
+/// Parameters of many robots by SQL over their factor files and logs.
+#[derive(Debug, Parser)]
+#[command(name = "overact-fleet", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Answer a query over the tables `factors`, `factor_rows` and `logs`
+    Sql(Sql),
+    /// Write the page of a fleet: drifts and outliers first, each robot with its plots
+    Report(Report),
+    /// Run the scheduler of a cluster
+    #[cfg(feature = "distributed")]
+    Scheduler(Scheduler),
+    /// Run an executor of a cluster
+    #[cfg(feature = "distributed")]
+    Executor(Executor),
+}
+
+/// Where the data is, and who works on it.
+#[derive(Debug, Args)]
+struct Data {
+    /// Folder of factor files
+    #[arg(long, value_name = "FOLDER")]
+    factors: Option<PathBuf>,
+    /// Folder of logs, `serial=…/day=…/….parquet`
+    #[arg(long, value_name = "FOLDER")]
+    logs: Option<PathBuf>,
+    /// Description of robots in the logs (again for others)
+    #[arg(long = "robot", value_name = "TOML")]
+    robots: Vec<PathBuf>,
+    /// Scheduler of a cluster, `df://host:50050` [default: this machine]
+    #[arg(long, value_name = "URL")]
+    scheduler: Option<String>,
+    /// Partitions that are worked on at once [default: one for each core]
+    #[arg(long, default_value_t = 0, hide_default_value = true)]
+    partitions: usize,
+    /// Megabytes that a query on this machine may take [default: any]
+    #[arg(long, default_value_t = 0, hide_default_value = true)]
+    memory: usize,
+    /// Read all of every file before the query
+    #[arg(long)]
+    whole: bool,
+}
+
+#[derive(Debug, Args)]
+struct Sql {
+    /// The query, or a file with it
+    query: String,
+    #[command(flatten)]
+    data: Data,
+    /// Write CSV in place of a table
+    #[arg(long)]
+    csv: bool,
+}
+
+#[derive(Debug, Args)]
+struct Report {
+    #[command(flatten)]
+    data: Data,
+    /// Parameters that are watched, with commas [default: all]
+    #[arg(long, value_delimiter = ',')]
+    watch: Vec<String>,
+    /// Probability of an alarm of a robot without drift
+    #[arg(long, default_value_t = 0.01)]
+    false_alarms: f64,
+    /// Address of a robot's own report, `{serial}` in it
+    #[arg(long, value_name = "URL")]
+    link: Option<String>,
+    /// The page
+    #[arg(short, long, value_name = "HTML")]
+    output: PathBuf,
+}
+
+#[cfg(feature = "distributed")]
+#[derive(Debug, Args)]
+struct Scheduler {
+    /// Where it listens
+    #[arg(long, default_value = "127.0.0.1:50050")]
+    bind: std::net::SocketAddr,
+    /// Description of robots in the logs (again for others)
+    #[arg(long = "robot", value_name = "TOML")]
+    robots: Vec<PathBuf>,
+}
+
+#[cfg(feature = "distributed")]
+#[derive(Debug, Args)]
+struct Executor {
+    /// Where it listens for data; for orders at the next port
+    #[arg(long, default_value = "127.0.0.1:50060")]
+    bind: std::net::SocketAddr,
+    /// Host of the scheduler
+    #[arg(long, default_value = "127.0.0.1")]
+    scheduler_host: String,
+    /// Its port
+    #[arg(long, default_value_t = 50050)]
+    scheduler_port: u16,
+    /// Tasks at once
+    #[arg(long, default_value_t = 1)]
+    tasks: usize,
+    /// Where it puts what other executors fetch
+    #[arg(long, value_name = "FOLDER")]
+    folder: Option<PathBuf>,
+    /// Megabytes that its tasks may take together
+    #[arg(long)]
+    memory: Option<u64>,
+    /// Description of robots in the logs (again for others)
+    #[arg(long = "robot", value_name = "TOML")]
+    robots: Vec<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    // Plans of large queries nest deeply.
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .thread_stack_size(16 << 20)
+        .build();
+    let done = match runtime {
+        Ok(runtime) => runtime.block_on(run(arguments)),
+        Err(error) => Err(error.to_string()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            // A closed stderr is no reason to fail otherwise.
+            let _ = writeln!(std::io::stderr(), "error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+async fn run(arguments: Arguments) -> Result<(), String> {
+    match arguments.command {
+        Command::Sql(own) => sql(own).await,
+        Command::Report(own) => page(own).await,
+        #[cfg(feature = "distributed")]
+        Command::Scheduler(own) => {
+            let robots = Robots::read(&own.robots)?;
+            let done = overact_fleet::distributed::scheduler(own.bind, robots).await;
+            done.map_err(|error| error.strip_backtrace())
+        }
+        #[cfg(feature = "distributed")]
+        Command::Executor(own) => {
+            let robots = Robots::read(&own.robots)?;
+            let executor = overact_fleet::distributed::Executor {
+                address: own.bind,
+                scheduler: (own.scheduler_host, own.scheduler_port),
+                tasks: own.tasks,
+                folder: own.folder,
+                memory: own.memory.map(|megabytes| megabytes << 20),
+            };
+            let done = overact_fleet::distributed::executor(executor, &robots).await;
+            done.map_err(|error| error.strip_backtrace())
+        }
+    }
+}
+
+async fn open(data: &Data) -> Result<Fleet, String> {
+    let options = Options {
+        factors: data.factors.clone(),
+        logs: data.logs.clone(),
+        robots: Robots::read(&data.robots)?,
+        scheduler: data.scheduler.clone(),
+        partitions: data.partitions,
+        memory: data.memory << 20,
+        whole: data.whole,
+    };
+    let fleet = Fleet::open(options).await;
+    fleet.map_err(|error| error.strip_backtrace())
+}
+
+/// Says on stderr what took how long and what was not seen.
+fn tell(fleet: &Fleet, rows: usize, times: [f64; 2]) {
+    let mut text = format!(
+        "{rows} rows in {:.2} s, files looked through in {:.2} s\n",
+        times[1], times[0]
+    );
+    for own in fleet.left_out() {
+        let runs = match own.runs.len() {
+            0 => String::new(),
+            count => format!(" {count} of its runs:"),
+        };
+        text.push_str(&format!("left out: {}:{runs} {}\n", own.file, own.why));
+    }
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+async fn sql(own: Sql) -> Result<(), String> {
+    let query = match Path::new(&own.query).is_file() {
+        true => std::fs::read_to_string(&own.query).map_err(|error| error.to_string())?,
+        false => own.query,
+    };
+    let start = Instant::now();
+    let mut fleet = open(&own.data).await?;
+    let opened = start.elapsed().as_secs_f64();
+    let rows = fleet
+        .sql(&query)
+        .await
+        .map_err(|error| error.strip_backtrace())?;
+    let took = start.elapsed().as_secs_f64() - opened;
+    let text = match own.csv {
+        true => csv(&rows)?,
+        false => format!(
+            "{}\n",
+            pretty_format_batches(&rows).map_err(|error| error.to_string())?
+        ),
+    };
+    tell(
+        &fleet,
+        rows.iter().map(RecordBatch::num_rows).sum(),
+        [opened, took],
+    );
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
+        _ => Ok(()),
+    }
+}
+
+fn csv(rows: &[RecordBatch]) -> Result<String, String> {
+    let mut bytes = Vec::new();
+    let mut writer = WriterBuilder::new().with_header(true).build(&mut bytes);
+    for batch in rows {
+        writer.write(batch).map_err(|error| {
+            format!("{error}: a column has several values; take them apart in the query")
+        })?;
+    }
+    drop(writer);
+    String::from_utf8(bytes).map_err(|error| error.to_string())
+}
+
+async fn page(own: Report) -> Result<(), String> {
+    if !(own.false_alarms > 0.0 && own.false_alarms < 1.0) {
+        return Err("--false-alarms is a probability between 0 and 1".to_owned());
+    }
+    let mut fleet = open(&own.data).await?;
+    let days = report::days(&mut fleet)
+        .await
+        .map_err(|error| error.strip_backtrace())?;
+    let rule = Rule {
+        false_alarms: own.false_alarms,
+        parameters: own.watch,
+        ..Rule::default()
+    };
+    let charts = charts(&days.points, &rule);
+    let outliers = outliers(&charts, report::BEYOND);
+    let html = report::page(
+        &days,
+        (&charts, &outliers),
+        (&rule, fleet.left_out()),
+        own.link.as_deref(),
+    );
+    write_whole(&own.output, html.as_bytes())?;
+    tell(&fleet, days.points.len(), [0.0, days.seconds]);
+    Ok(())
+}
+
+/// Writes a file whole or not at all.
+fn write_whole(file: &Path, bytes: &[u8]) -> Result<(), String> {
+    let told = |error: std::io::Error| format!("{}: {error}", file.display());
+    let own = file.with_extension("part");
+    let done = std::fs::write(&own, bytes).and_then(|()| std::fs::rename(&own, file));
+    done.map_err(|error| {
+        // What is left of it is of no use; that it can't be removed is no news.
+        let _ = std::fs::remove_file(&own);
+        told(error)
+    })
+}
