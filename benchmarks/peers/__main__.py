@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import controller, identification, ours, pinocchio_peer, report, timing
+from . import closed, controller, identification, ours, pinocchio_peer, report, timing
 from .description import load
 from .ours import Function
 from .peers import Model, check, models
@@ -70,6 +70,9 @@ def main():
     parser.add_argument(
         "--dynamics", action="store_true", help="only dynamics of given parameters, as a controller needs them"
     )
+    parser.add_argument(
+        "--closed", action="store_true", help="only robots with closed chains, from joint angles"
+    )
     parser.add_argument("--no-times", action="store_true", help="count only")
     parser.add_argument("--core", type=int, default=0, help="the core on which all programs are timed")
     parser.add_argument("--rounds", type=int, default=15, help="turns of every program")
@@ -84,6 +87,9 @@ def main():
     if arguments.pinocchio:
         os.sched_setaffinity(0, {arguments.core})
         print(report.calls(pinocchio_peer.measure_all()))
+        return
+    if arguments.closed:
+        print(closed.measure(arguments.only, arguments.samples))
         return
     if arguments.dynamics:
         timed = not arguments.no_times

@@ -81,6 +81,9 @@ const fn is_kinematic(function: Function) -> bool {
             | Function::ClosurePlatformJacobian
             | Function::ClosureActuatorJacobian
             | Function::ClosureError
+            | Function::PlatformJacobian
+            | Function::BlockedError
+            | Function::BlockedJacobian
             | Function::JointVelocities
             | Function::JointAccelerations
             | Function::TwistFromActuators
@@ -272,6 +275,8 @@ impl Chosen {
                 (Function::ActuatorPositions, MotionInput::Pose),
                 (Function::InverseJacobian, MotionInput::Pose),
                 (Function::PoseInClosedForm, MotionInput::Actuators),
+                (Function::BlockedError, MotionInput::Pose),
+                (Function::BlockedJacobian, MotionInput::Pose),
             ]);
         }
         let from_pose = |one: &(Function, MotionInput)| one.1 != MotionInput::Joints;
@@ -348,6 +353,9 @@ fn reason(meant: Meant, tree: bool) -> &'static str {
         Condition::Payload => ": that is one of robots with a `[platform.payload]`",
         Condition::ClosedForm => ": no rule gives its pose from the actuators",
         Condition::NumericJoints => ": its joints are found without closure errors",
+        Condition::Parasitic => {
+            ": that is one of robots whose platform has `independent` coordinates"
+        }
         _ if function.columns().is_some() => {
             ": where the parameters are known there are no identification models"
         }

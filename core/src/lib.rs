@@ -22,5 +22,5 @@ pub use code::{Code, Explanation};
 pub use error::{ActuatorGroup, Actuators, Error, SampleError};
 pub use function::{Columns, Condition, Function};
 pub use parameter::StandardParameter;
-pub use singular::SINGULAR;
+pub use singular::{CLOSED, SINGULAR};
 pub use size::{Extent, Input, Sizes};

@@ -143,6 +143,35 @@ pub fn platform(determinant: f64, home: f64, actuators: ActuatorGroup) -> Result
     }
 }
 
+/// What a pose misses of what a leg allows must be small: at most `within` (m, rad).
+///
+/// # Errors
+/// [`Error::NotClosed`]; also for NaN.
+#[inline]
+pub fn closed(gap: f64, within: f64, leg: &'static str) -> Result<(), Error> {
+    if gap.abs() <= within {
+        Ok(())
+    } else {
+        let gap = gap.abs();
+        Err(Error::NotClosed { leg, gap })
+    }
+}
+
+/// The determinant by which the independent coordinates of a platform that moves aside give the others must
+/// not vanish; `home` is its magnitude at home.
+///
+/// # Errors
+/// [`Error::SingularCoordinates`]; also for NaN.
+#[inline]
+pub fn coordinates(determinant: f64, home: f64) -> Result<(), Error> {
+    if determinant.abs() > SINGULAR * home {
+        Ok(())
+    } else {
+        let condition = home / determinant.abs();
+        Err(Error::SingularCoordinates { condition })
+    }
+}
+
 /// A pivot of the mass matrix must be positive.
 ///
 /// # Errors

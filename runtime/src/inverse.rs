@@ -189,14 +189,14 @@ fn largest_of(numbers: &[f64]) -> f64 {
 }
 
 /// A square matrix, row-major, and a right-hand side; entries outside of them are no numbers.
-struct System<'a> {
+pub(crate) struct System<'a> {
     size: usize,
     matrix: &'a mut [f64],
     vector: &'a mut [f64],
 }
 
 impl<'a> System<'a> {
-    fn new(size: usize, matrix: &'a mut [f64], vector: &'a mut [f64]) -> Self {
+    pub(crate) fn new(size: usize, matrix: &'a mut [f64], vector: &'a mut [f64]) -> Self {
         Self {
             size,
             matrix,
@@ -227,7 +227,7 @@ impl<'a> System<'a> {
 
     /// Solves the diagonal block `range` in place by Gaussian elimination with row pivoting; returns the
     /// sign of the block's determinant and the ratio of its largest and smallest pivots.
-    fn eliminate(&mut self, range: Range<usize>) -> (f64, f64) {
+    pub(crate) fn eliminate(&mut self, range: Range<usize>) -> (f64, f64) {
         let mut sign = 1.0;
         let (mut largest, mut smallest) = (0.0_f64, f64::INFINITY);
         for k in range.clone() {

@@ -69,6 +69,14 @@ impl Writer<'_> {
                 quote!(::overact::guard::leg(#value, #home, #leg)?;)
             }
             Condition::Mass => quote!(::overact::guard::mass(#value)?;),
+            Condition::Closed { leg, within } => {
+                let within = number(*within);
+                quote!(::overact::guard::closed(#value, #within, #leg)?;)
+            }
+            Condition::Coordinates { home } => {
+                let home = number(*home);
+                quote!(::overact::guard::coordinates(#value, #home)?;)
+            }
             Condition::Platform { actuators, home } => {
                 let home = number(*home);
                 let actuators = match actuators {
