@@ -129,7 +129,7 @@ fn displaced_aside(
         at.pose = pose_towards(mechanism, motion, direction, part);
         at = closed(mechanism, &at)?.home;
         let legs = mechanism.legs.iter().enumerate();
-        let is_regular = legs.map(|(index, leg)| {
+        let mut is_regular = legs.map(|(index, leg)| {
             let range = mechanism.leg_range(index);
             let limit = match is_lenient {
                 true => lenient_limit(leg, &mechanism.home.joints[range.clone()]),
@@ -137,7 +137,7 @@ fn displaced_aside(
             };
             condition(&leg.closure_jacobian(&at.joints[range])) < limit
         });
-        if !is_regular.fold(true, |all, one| all && one) {
+        if !is_regular.all(|one| one) {
             return None;
         }
         mechanism.platform_jacobian(&at.pose, &at.joints)?;
