@@ -60,6 +60,9 @@ class Leg:
     end_type: str | None = None
     end_at: np.ndarray | None = None
     end_rotation: np.ndarray | None = None
+    #: Joints of the first leg whose bodies it starts from and ends on, of a chain of a skeleton.
+    base_body: int | None = None
+    end_body: int | None = None
     variables: list[int] = field(default_factory=list)
 
 
@@ -73,6 +76,8 @@ class Robot:
     axis: str
     platform_parameters: list[str]
     legs: list[Leg]
+    #: Names of the independent coordinates of a platform that moves aside.
+    independent: list[str] | None = None
 
 
 def parameter_list(value):
@@ -141,6 +146,8 @@ def load(path, full=False):
             joints.append(joint(entry, number, known, names, full))
             known.append(joints[-1].name)
         end = shape.get("end", {})
+        bodies = [joint.name for joint in legs[0].joints] if legs else []
+        carriers = [bodies.index(of["body"]) if "body" in of else None for of in (base, end)]
         legs.append(
             Leg(
                 name=place["name"],
@@ -150,6 +157,8 @@ def load(path, full=False):
                 end_type=end.get("type", "rigid") if end else None,
                 end_at=vector(end.get("at", [0, 0, 0]), names),
                 end_rotation=orientation(vector(end.get("rotation", [0, 0, 0]), names)),
+                base_body=carriers[0],
+                end_body=carriers[1],
             )
         )
     return Robot(
@@ -159,4 +168,5 @@ def load(path, full=False):
         axis=platform.get("axis", "z"),
         platform_parameters=INERTIA if full else parameter_list(platform.get("parameters", "inertia")),
         legs=legs,
+        independent=platform.get("independent"),
     )

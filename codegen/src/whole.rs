@@ -147,6 +147,14 @@ impl RobotModel {
         }
         let mut step = WholeCost::from(gauss_newton_step(n, r));
         step.call(WholeCost::from(displacement(r, self.has_quaternion())));
+        if self.mechanism.is_parasitic() {
+            // One step back onto the closures; where steps are short it is enough.
+            let blocked = 6 - r;
+            step.call(WholeCost::from(elimination(blocked)));
+            step.call(WholeCost::from(displacement(6, true)));
+            step.call(self.of(Function::BlockedError, MotionInput::Pose));
+            step.call(self.of(Function::BlockedJacobian, MotionInput::Pose));
+        }
         step.call(self.of(Function::ActuatorPositions, MotionInput::Pose));
         step.call(self.of(Function::InverseJacobian, MotionInput::Pose));
         whole.iterate(FORWARD, step);

@@ -31,6 +31,18 @@ pub enum Error {
         /// How many times smaller the determinant is than at the home configuration.
         condition: f64,
     },
+    /// The pose is none that a leg allows: of a platform that moves aside, not all coordinates can be chosen.
+    NotClosed {
+        /// Name of the leg.
+        leg: &'static str,
+        /// By how much the pose misses, in a direction that no joint of the leg gives (m, rad).
+        gap: f64,
+    },
+    /// The independent coordinates of a platform that moves aside do not determine the others here.
+    SingularCoordinates {
+        /// How many times smaller the determinant is than at the home configuration.
+        condition: f64,
+    },
     /// The mass matrix of the given parameters is not positive definite: there is motion without kinetic
     /// energy, or with a negative one.
     MassMatrix,
@@ -118,6 +130,15 @@ impl fmt::Display for Error {
             } => write!(
                 f,
                 "the {actuators} do not determine the platform's motion here: their determinant is {}",
+                Smaller(condition)
+            ),
+            Self::NotClosed { leg, gap } => write!(
+                f,
+                "leg `{leg}` does not allow the pose: it is {gap:.1e} m or rad off in a direction that the leg blocks"
+            ),
+            Self::SingularCoordinates { condition } => write!(
+                f,
+                "the independent coordinates do not determine the platform's motion here: their determinant is {}",
                 Smaller(condition)
             ),
             Self::MassMatrix => write!(

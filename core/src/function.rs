@@ -52,6 +52,8 @@ pub enum Condition {
     ClosedForm,
     /// Joints that Newton's method finds, for want of a closed form.
     NumericJoints,
+    /// A free platform whose legs block directions that change with its pose.
+    Parasitic,
 }
 
 /// A function of a robot; [`Function::summary`] says what each computes.
@@ -71,6 +73,9 @@ pub enum Function {
     ClosurePlatformJacobian,
     ClosureActuatorJacobian,
     ClosureError,
+    PlatformJacobian,
+    BlockedError,
+    BlockedJacobian,
     JointVelocities,
     JointAccelerations,
     TwistFromActuators,
@@ -103,7 +108,7 @@ struct Entry {
 
 impl Function {
     /// All functions of all robots.
-    pub const ALL: [Self; 33] = [
+    pub const ALL: [Self; 36] = [
         Self::PoseInClosedForm,
         Self::Joints,
         Self::ActuatorPositions,
@@ -114,6 +119,9 @@ impl Function {
         Self::ClosurePlatformJacobian,
         Self::ClosureActuatorJacobian,
         Self::ClosureError,
+        Self::PlatformJacobian,
+        Self::BlockedError,
+        Self::BlockedJacobian,
         Self::JointVelocities,
         Self::JointAccelerations,
         Self::TwistFromActuators,
@@ -224,6 +232,30 @@ impl Function {
                 rows: Extent::Joints,
                 columns: None,
                 condition: Condition::NumericJoints,
+            },
+            Self::PlatformJacobian => Entry {
+                name: "platform_jacobian",
+                summary: "D of t = D v, eq. (14), which the legs' closures give: velocity of the platform's origin and angular velocity, both in the base frame, per independent coordinate.",
+                inputs: &[Pose],
+                rows: Extent::Free,
+                columns: Some(Extent::Dof),
+                condition: Condition::Parasitic,
+            },
+            Self::BlockedError => Entry {
+                name: "blocked_error",
+                summary: "By how much a pose misses what the legs allow, in the directions that no joint gives (m, rad); a pose for which it is not zero is none of the robot's.",
+                inputs: &[Pose],
+                rows: Extent::Blocked,
+                columns: None,
+                condition: Condition::Parasitic,
+            },
+            Self::BlockedJacobian => Entry {
+                name: "blocked_jacobian",
+                summary: "A of A t = 0: the derivative of `blocked_error` along the velocity of the platform's origin and the angular velocity t.",
+                inputs: &[Pose],
+                rows: Extent::Blocked,
+                columns: Some(Extent::Free),
+                condition: Condition::Parasitic,
             },
             Self::JointVelocities => Entry {
                 name: "joint_velocities",

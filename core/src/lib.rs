@@ -24,7 +24,7 @@ pub use error::{ActuatorGroup, Actuators, Error, SampleError};
 pub use function::{Columns, Condition, Function};
 pub use limits::Limits;
 pub use parameter::StandardParameter;
-pub use singular::SINGULAR;
+pub use singular::{CLOSED, SINGULAR};
 pub use size::{Extent, Input, Sizes};
 
 /// Version of the crate.

@@ -49,7 +49,23 @@ impl Sizes {
             Extent::Parameters => self.parameters,
             Extent::BaseParameters => self.base_parameters,
             Extent::PayloadParameters => self.payload_parameters,
+            Extent::Free => self.free(),
+            Extent::Blocked => self.blocked(),
         }
+    }
+
+    /// Velocities of the platform as a free body in the directions of its pose: six where the orientation is a
+    /// quaternion beside a position. The independent coordinates are these, or some of them.
+    #[must_use]
+    pub const fn free(&self) -> usize {
+        self.pose.saturating_sub(1)
+    }
+
+    /// Directions that the legs block, which is why the other coordinates of a pose follow from the
+    /// independent ones; none but for a platform that moves aside.
+    #[must_use]
+    pub const fn blocked(&self) -> usize {
+        self.free().saturating_sub(self.dof)
     }
 
     /// n - r, the number of independent internal torques.
@@ -138,4 +154,8 @@ pub enum Extent {
     BaseParameters,
     /// n_l, the payload's parameters.
     PayloadParameters,
+    /// Velocities of the platform as a free body: three of its origin, three about the axes.
+    Free,
+    /// Directions that the legs block.
+    Blocked,
 }

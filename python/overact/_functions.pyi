@@ -40,6 +40,15 @@ class Functions:
     closure_error_from_joints: Function
     """By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m,
     rad). Inputs: pose (m, rad), joints (n_t; m, rad). Output: (n_t,)."""
+    platform_jacobian: Function
+    """D of t = D v, eq. (14), which the legs' closures give: velocity of the platform's origin and angular
+    velocity, both in the base frame, per independent coordinate. Inputs: pose (m, rad). Output: (6, r)."""
+    blocked_error: Function
+    """By how much a pose misses what the legs allow, in the directions that no joint gives (m, rad); a
+    pose for which it is not zero is none of the robot's. Inputs: pose (m, rad). Output: (6 - r,)."""
+    blocked_jacobian: Function
+    """A of A t = 0: the derivative of `blocked_error` along the velocity of the platform's origin and the
+    angular velocity t. Inputs: pose (m, rad). Output: (6 - r, 6)."""
     joint_velocities: Function
     """Velocities of all joints (m/s, rad/s), eq. (9). Inputs: pose (m, rad), twist (r; m/s, rad/s).
     Output: (n_t,)."""

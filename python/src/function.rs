@@ -385,6 +385,8 @@ const fn counted(extent: Extent) -> &'static str {
         Extent::Parameters => "n_st",
         Extent::BaseParameters => "n_b",
         Extent::PayloadParameters => "n_l",
+        Extent::Free => "6",
+        Extent::Blocked => "6 - r",
         _ => "?",
     }
 }

@@ -53,6 +53,10 @@ fn condition(condition: &Condition) -> String {
         Condition::Platform { actuators, .. } => {
             format!("the {actuators} determine the platform's motion: not zero")
         }
+        Condition::Closed { leg, .. } => format!("leg {leg} allows the pose: near zero"),
+        Condition::Coordinates { .. } => {
+            "the independent coordinates determine the others: not zero".to_owned()
+        }
         Condition::Mass => "the mass matrix is positive definite: positive".to_owned(),
     }
 }

@@ -10,7 +10,7 @@ mod newton;
 
 use names::Names;
 use overact::{
-    Error, Function, Info, Input, Model, SampleError,
+    Error, Function, Info, Input, Model, SampleError, aside,
     block::samples,
     forward::{self, Measured},
     guard,
@@ -44,6 +44,8 @@ enum Given {
 pub struct InterpretedRobot {
     model: RobotModel,
     names: Names,
+    /// Of a platform that moves aside, which of the six coordinates are independent.
+    independent: Option<Vec<usize>>,
     functions: Vec<Served>,
     scratch: Pool<Scratch>,
 }
@@ -100,9 +102,11 @@ impl InterpretedRobot {
     #[must_use]
     pub fn new(model: RobotModel) -> Self {
         let names = Names::new(&model);
+        let independent = model.mechanism.independent_coordinates();
         let mut robot = Self {
             model,
             names,
+            independent,
             functions: Vec::new(),
             scratch: Pool::default(),
         };
@@ -129,6 +133,8 @@ impl InterpretedRobot {
                 | Function::ActuatorPositions
                 | Function::InverseJacobian
                 | Function::ClosureError
+                | Function::BlockedError
+                | Function::BlockedJacobian
                 | Function::ClosureActuatorJacobian
                 | Function::LegsJacobian
         );
@@ -258,6 +264,13 @@ impl InterpretedRobot {
             },
             Some(Condition::Platform { actuators, home }) => Error::SingularPlatform {
                 actuators: *actuators,
+                condition: times(*home),
+            },
+            Some(Condition::Closed { leg: name, .. }) => Error::NotClosed {
+                leg: leg(name),
+                gap: failed.value.abs(),
+            },
+            Some(Condition::Coordinates { home }) => Error::SingularCoordinates {
                 condition: times(*home),
             },
             Some(Condition::Mass) => Error::MassMatrix,
@@ -437,6 +450,9 @@ impl Model for InterpretedRobot {
         if self.has_quaternion() {
             guard::normalise(&mut start, "start")?;
         }
+        if self.independent.is_some() {
+            self.displace(&mut start, &[]);
+        }
         let closed = self.pose_in_closed_form(actuators);
         if let (Some(found), true) = (&closed, sizes.actuators == sizes.dof) {
             pose.copy_from_slice(found);
@@ -451,7 +467,13 @@ impl Model for InterpretedRobot {
     }
 
     fn displace(&self, pose: &mut [f64], step: &[f64]) {
-        if self.has_quaternion() {
+        if let Some(independent) = &self.independent {
+            aside::displace(pose, step, independent, |pose, errors, jacobian| {
+                self.evaluate(Function::BlockedError, &[pose], errors)
+                    .and_then(|()| self.evaluate(Function::BlockedJacobian, &[pose], jacobian))
+                    .map_err(|error| error.error)
+            });
+        } else if self.has_quaternion() {
             forward::displace_quaternion(pose, step);
         } else {
             forward::displace(pose, step);

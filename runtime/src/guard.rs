@@ -139,6 +139,35 @@ pub fn platform<T: Float>(determinant: T, home: T, actuators: ActuatorGroup) -> 
     }
 }
 
+/// What a pose misses of what a leg allows must be small: at most `within` (m, rad).
+///
+/// # Errors
+/// [`Error::NotClosed`]; also for NaN.
+#[inline]
+pub fn closed<T: Float>(gap: T, within: T, leg: &'static str) -> Result<(), Error> {
+    if gap.abs() <= within {
+        Ok(())
+    } else {
+        let gap = gap.abs().into();
+        Err(Error::NotClosed { leg, gap })
+    }
+}
+
+/// The determinant by which the independent coordinates of a platform that moves aside give the others must
+/// not vanish; `home` is its magnitude at home.
+///
+/// # Errors
+/// [`Error::SingularCoordinates`]; also for NaN.
+#[inline]
+pub fn coordinates<T: Float>(determinant: T, home: T) -> Result<(), Error> {
+    if determinant.abs() > T::of(T::LIMITS.singular) * home {
+        Ok(())
+    } else {
+        let condition = (home / determinant.abs()).into();
+        Err(Error::SingularCoordinates { condition })
+    }
+}
+
 /// A pivot of the mass matrix must be positive.
 ///
 /// # Errors

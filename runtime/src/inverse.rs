@@ -201,14 +201,14 @@ fn largest_of<T: Float>(numbers: &[T]) -> T {
 }
 
 /// A square matrix, row-major, and a right-hand side; entries outside of them are no numbers.
-struct System<'a, T> {
+pub(crate) struct System<'a, T> {
     size: usize,
     matrix: &'a mut [T],
     vector: &'a mut [T],
 }
 
 impl<'a, T: Float> System<'a, T> {
-    fn new(size: usize, matrix: &'a mut [T], vector: &'a mut [T]) -> Self {
+    pub(crate) fn new(size: usize, matrix: &'a mut [T], vector: &'a mut [T]) -> Self {
         Self {
             size,
             matrix,
@@ -239,7 +239,7 @@ impl<'a, T: Float> System<'a, T> {
 
     /// Solves the diagonal block `range` in place by Gaussian elimination with row pivoting; returns the
     /// sign of the block's determinant and the ratio of its largest and smallest pivots.
-    fn eliminate(&mut self, range: Range<usize>) -> (T, T) {
+    pub(crate) fn eliminate(&mut self, range: Range<usize>) -> (T, T) {
         let mut sign = T::of(1.0);
         let (mut largest, mut smallest) = (T::ZERO, T::INFINITY);
         for k in range.clone() {

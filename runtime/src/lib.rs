@@ -1,5 +1,5 @@
 //! What a generated robot model needs at run time, and nothing more: the [`Model`] trait, [`Error`],
-//! a few functions of [`math`], forward kinematics in [`forward`], numeric
+//! a few functions of [`math`], forward kinematics in [`forward`], poses of platforms that move aside in [`aside`], numeric
 //! inverse kinematics in [`inverse`], case 2 for any kept actuators in [`partition`], and the macro
 //! `#[redundant_robot("robot.toml")]`.
 //!
@@ -13,6 +13,7 @@ compile_error!(
     "overact needs square roots and trigonometry: enable the feature `std`, or `libm` where there is no standard library"
 );
 
+pub mod aside;
 pub mod block;
 pub mod float;
 pub mod forward;

@@ -172,7 +172,8 @@ pub trait Model: Sync {
     /// No convergence, or a singular or unreachable configuration on the way; `pose` is unchanged then.
     fn pose_from_actuators(&self, actuators: &[f64], pose: &mut [f64]) -> Result<(), Error>;
 
-    /// Moves a pose by a small displacement `step` along the twist coordinates (r numbers).
+    /// Moves a pose by a small displacement `step` along the twist coordinates (r numbers); of a platform that
+    /// moves aside also along the others, until the legs close.
     fn displace(&self, pose: &mut [f64], step: &[f64]) {
         crate::forward::displace(pose, step);
     }

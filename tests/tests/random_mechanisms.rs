@@ -198,7 +198,9 @@ fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
         let always = match function {
             // The closure error is what Newton's method drives to zero, not a quantity of its own. The
             // pose in closed form has the assembly mode of home, which a state may have left.
-            Function::ClosureError | Function::PoseInClosedForm => return false,
+            Function::ClosureError | Function::PoseInClosedForm | Function::BlockedJacobian => {
+                return false;
+            }
             Function::Joints
             | Function::InverseJacobian
             | Function::JointVelocities

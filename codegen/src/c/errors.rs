@@ -67,7 +67,7 @@ fn kinds(model: &RobotModel) -> Vec<Kind> {
         text: format!("`{input}` has a number that is not finite"),
     }));
     let legs = model.mechanism.legs.iter();
-    for (leg, name) in legs.zip(leg_constants(model)) {
+    for (leg, name) in legs.clone().zip(leg_constants(model)) {
         kinds.push(Kind {
             name: format!("OUT_OF_REACH_{name}"),
             text: format!("the pose is out of reach of leg `{}`", leg.name),
@@ -76,6 +76,16 @@ fn kinds(model: &RobotModel) -> Vec<Kind> {
             name: format!("SINGULAR_LEG_{name}"),
             text: format!("leg `{}` is singular here", leg.name),
         });
+    }
+    if model.mechanism.is_parasitic() {
+        kinds.push(kind(
+            "SINGULAR_COORDINATES",
+            "the independent coordinates do not determine the platform's motion here",
+        ));
+        kinds.extend(legs.zip(leg_constants(model)).map(|(leg, name)| Kind {
+            name: format!("NOT_CLOSED_{name}"),
+            text: format!("leg `{}` does not allow the pose", leg.name),
+        }));
     }
     kinds
 }
@@ -115,6 +125,8 @@ pub fn of_condition(model: &RobotModel, condition: &Condition) -> String {
     match condition {
         Condition::Reach { leg: name } => format!("OUT_OF_REACH_{}", leg(name)),
         Condition::Leg { leg: name, .. } => format!("SINGULAR_LEG_{}", leg(name)),
+        Condition::Closed { leg: name, .. } => format!("NOT_CLOSED_{}", leg(name)),
+        Condition::Coordinates { .. } => "SINGULAR_COORDINATES".to_owned(),
         Condition::Mass => "MASS_MATRIX".to_owned(),
         Condition::Platform { actuators, .. } => match actuators {
             ActuatorGroup::All => "SINGULAR_ACTUATORS".to_owned(),

@@ -99,7 +99,12 @@ impl Writer<'_> {
         let holds = match condition {
             Condition::Reach { .. } => format!("{} >= 0.0", self.text(value)),
             Condition::Mass => format!("{} > 0.0", self.text(value)),
-            Condition::Leg { home, .. } | Condition::Platform { home, .. } => {
+            Condition::Closed { within, .. } => {
+                format!("fabs({}) <= {}", self.text(value), number(*within))
+            }
+            Condition::Leg { home, .. }
+            | Condition::Platform { home, .. }
+            | Condition::Coordinates { home } => {
                 format!(
                     "fabs({}) > {}",
                     self.text(value),

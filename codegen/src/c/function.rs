@@ -236,6 +236,8 @@ const fn extent_name(extent: Extent) -> &'static str {
         Extent::Parameters => "PARAMETERS",
         Extent::BaseParameters => "BASE_PARAMETERS",
         Extent::PayloadParameters => "PAYLOAD_PARAMETERS",
+        Extent::Free => "FREE",
+        Extent::Blocked => "BLOCKED",
         _ => "DOF",
     }
 }

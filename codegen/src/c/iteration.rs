@@ -15,6 +15,7 @@ use crate::model::RobotModel;
 use overact_core::Function;
 
 const DISPLACE: &str = include_str!("text/displace.c");
+const DISPLACE_ASIDE: &str = include_str!("text/displace_aside.c");
 const DISPLACE_QUATERNION: &str = include_str!("text/displace_quaternion.c");
 const GAUSS_NEWTON: &str = include_str!("text/gauss_newton.c");
 /// Arguments that are not finite.
@@ -48,6 +49,15 @@ const FORWARD_START_QUATERNION: &str = "\
     if (!(rob_unit_quaternion(start, pose))) {
         return ROB_ZERO_QUATERNION_START;
     }
+";
+
+const FORWARD_START_ASIDE: &str = "\
+    const double still[ROB_DOF] = { 0.0 };
+    double pose[ROB_POSE];
+    if (!(rob_unit_quaternion(start, pose))) {
+        return ROB_ZERO_QUATERNION_START;
+    }
+    rob_displace(pose, still);
 ";
 
 const FORWARD_BY_RULE: &str = "\
@@ -213,18 +223,32 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
     if model.is_tree() {
         return format!("{head}{}", text(&[FORWARD_CHECKS, FORWARD_OF_A_TREE]));
     }
-    let (displace, start) = match has_quaternion(model) {
-        true => (DISPLACE_QUATERNION, FORWARD_START_QUATERNION),
-        false => (DISPLACE, FORWARD_START),
+    let aside = model.mechanism.independent_coordinates();
+    let (displace, start) = match (has_quaternion(model), &aside) {
+        (_, Some(_)) => (DISPLACE_ASIDE, FORWARD_START_ASIDE),
+        (true, None) => (DISPLACE_QUATERNION, FORWARD_START_QUATERNION),
+        (false, None) => (DISPLACE, FORWARD_START),
     };
     let found = match closed_form(model) {
         ClosedForm::None => FORWARD,
         ClosedForm::Alone => FORWARD_BY_RULE,
         ClosedForm::Again => FORWARD_AGAIN_BY_RULE,
     };
-    let helpers = text(&[displace, "\n", GAUSS_NEWTON, "\n"]);
+    let tables = aside.map_or_else(String::new, |own| coordinates(&own));
+    let helpers = text(&[&tables, displace, "\n", GAUSS_NEWTON, "\n"]);
     let body = text(&[FORWARD_CHECKS, start, found, FORWARD_END]);
     format!("{helpers}{head}{body}")
+}
+
+/// Which of the six coordinates of a platform that moves aside are independent, and which follow.
+fn coordinates(independent: &[usize]) -> String {
+    let table = |name: &str, of: Vec<usize>| {
+        let elements: Vec<String> = of.iter().map(ToString::to_string).collect();
+        let (count, elements) = (elements.len(), elements.join(", "));
+        format!("static const int rob_{name}[{count}] = {{ {elements} }};\n")
+    };
+    let others = (0..6).filter(|at| !independent.contains(at)).collect();
+    table("independent", independent.to_vec()) + &table("dependent", others) + "\n"
 }
 
 /// Inverse kinematics by Newton's method, with the tables that it needs of the legs.

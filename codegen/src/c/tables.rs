@@ -27,6 +27,12 @@ pub fn sizes(model: &RobotModel, naming: &Naming) -> String {
         ),
         ("LEGS", mechanism.legs.len(), "legs"),
     ];
+    if mechanism.is_parasitic() {
+        sizes.extend([
+            ("FREE", 6, "velocities of the platform as a free body"),
+            ("BLOCKED", 6 - dof, "directions that the legs block"),
+        ]);
+    }
     if let Some(values) = &model.selection.values {
         sizes.push(("PARAMETER_VALUES", values.len(), "known parameters"));
     }

@@ -44,6 +44,8 @@ impl Chosen {
                 (Function::ActuatorPositions, MotionInput::Pose),
                 (Function::InverseJacobian, MotionInput::Pose),
                 (Function::PoseInClosedForm, MotionInput::Actuators),
+                (Function::BlockedError, MotionInput::Pose),
+                (Function::BlockedJacobian, MotionInput::Pose),
             ]);
         }
         let from_pose = |one: &(Function, MotionInput)| one.1 != MotionInput::Joints;

@@ -72,6 +72,9 @@ const fn is_kinematic(function: Function) -> bool {
             | Function::ClosurePlatformJacobian
             | Function::ClosureActuatorJacobian
             | Function::ClosureError
+            | Function::PlatformJacobian
+            | Function::BlockedError
+            | Function::BlockedJacobian
             | Function::JointVelocities
             | Function::JointAccelerations
             | Function::TwistFromActuators

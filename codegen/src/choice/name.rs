@@ -91,6 +91,9 @@ pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
         Condition::Payload => ": that is one of robots with a `[platform.payload]`",
         Condition::ClosedForm => ": no rule gives its pose from the actuators",
         Condition::NumericJoints => ": its joints are found without closure errors",
+        Condition::Parasitic => {
+            ": that is one of robots whose platform has `independent` coordinates"
+        }
         _ if function.columns().is_some() => {
             ": where the parameters are known there are no identification models"
         }

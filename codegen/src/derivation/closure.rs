@@ -17,6 +17,8 @@ use super::platform::{Directions, PlatformMotion, PlatformPose};
 use super::rates::Rates;
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::mechanism::Leg;
+use crate::mechanism::numeric::best_conditioned;
+use nalgebra::DMatrix;
 
 /// A wrench as factor × (force, moment).
 #[derive(Debug, Clone, Copy)]
@@ -48,13 +50,24 @@ pub struct LegClosure<'a> {
     pub arm: Vector3<'a>,
     /// The orientation of the leg's axes in the base frame.
     pub axes: Matrix3<'a>,
+    /// Wrenches in the leg's axes that no joint feels: of the shared components that are more than the joints,
+    /// where the platform moves aside.
+    pub(super) blocked: Vec<Wrench<'a>>,
     /// In which directions the independent coordinates move what the leg ends on.
     directions: Directions<'a>,
 }
 
+impl<'a> Wrench<'a> {
+    /// Its product with a motion, or with what is missed of a place.
+    pub(super) fn along(&self, linear: Vector3<'a>, angular: Vector3<'a>) -> Expr<'a> {
+        self.factor * (self.force.dot(linear) + self.moment.dot(angular))
+    }
+}
+
 impl<'a> LegClosure<'a> {
     /// Derives the closure. `rows` are the independent rows of the six-vector; `home` evaluates an
-    /// expression at the home configuration. `None` for a structurally singular leg.
+    /// expression at the home configuration. `None` for a structurally singular leg. `over` are shared rows
+    /// beside these that a platform which moves aside has to keep.
     #[must_use]
     pub fn new(
         arena: &'a Arena,
@@ -62,7 +75,7 @@ impl<'a> LegClosure<'a> {
         frames: &LegFrames<'a>,
         rates: &Rates,
         platform: &PlatformPose<'a>,
-        rows: &[usize],
+        [rows, over]: [&[usize]; 2],
         home: &dyn Fn(Expr<'a>) -> f64,
     ) -> Option<Self> {
         let columns = end_columns(arena, leg, frames, rates);
@@ -95,6 +108,10 @@ impl<'a> LegClosure<'a> {
                 moment: wrench(1, &row.entries),
             })
             .collect();
+        let blocked = over
+            .iter()
+            .map(|&row| blocked(arena, row, &columns, &wrenches))
+            .collect();
         let in_base = |vector: Vector3<'a>, factor| (frames.axes * vector).scaled(factor);
         Some(Self {
             forces: wrenches
@@ -106,6 +123,7 @@ impl<'a> LegClosure<'a> {
                 .map(|w| in_base(w.moment, w.factor))
                 .collect(),
             wrenches,
+            blocked,
             determinants,
             determinant,
             at,
@@ -165,6 +183,32 @@ impl<'a> LegClosure<'a> {
         columns.iter().map(|c| c[row / 3].0[row % 3]).collect()
     }
 
+    /// The rows A of what no joint feels, per component of the platform's velocity.
+    #[must_use]
+    pub(super) fn blocked_rows(&self) -> Rows<'a> {
+        let row = |wrench: &Wrench<'a>| {
+            let [force, moment] = [wrench.force, wrench.moment]
+                .map(|vector| (self.axes * vector).scaled(wrench.factor));
+            self.directions.components(self.arm, [force, moment])
+        };
+        self.blocked.iter().map(row).collect()
+    }
+
+    /// The acceleration of the leg's end along a wrench that no joint feels, less its bias.
+    #[must_use]
+    pub(super) fn blocked_acceleration(
+        &self,
+        arena: &'a Arena,
+        at: usize,
+        motion: &PlatformMotion<'a>,
+        bias: &[BiasTerm<'a>],
+    ) -> Expr<'a> {
+        let linear = self.turned_in(motion.point_acceleration(self.at, self.arm));
+        let angular = self.turned_in(motion.angular_acceleration);
+        let (b, beta) = summed(arena, bias);
+        self.blocked[at].along(linear - b, angular - beta)
+    }
+
     /// The quasi-velocities u for a platform motion.
     #[must_use]
     pub fn velocities(&self, motion: &PlatformMotion<'a>) -> Vec<Expr<'a>> {
@@ -207,11 +251,7 @@ impl<'a> LegClosure<'a> {
                 })
                 .collect();
         }
-        let (mut b, mut beta) = (Vector3::zero(arena), Vector3::zero(arena));
-        for term in bias {
-            b = b + term.linear.scaled(term.scalar);
-            beta = beta + term.angular.scaled(term.scalar);
-        }
+        let (b, beta) = summed(arena, bias);
         self.apply(linear - b, angular - beta)
     }
 
@@ -249,6 +289,58 @@ impl<'a> LegClosure<'a> {
     fn turned_in(&self, vector: Vector3<'a>) -> Vector3<'a> {
         self.axes.transposed() * vector
     }
+}
+
+/// The bias acceleration as vectors.
+fn summed<'a>(arena: &'a Arena, bias: &[BiasTerm<'a>]) -> (Vector3<'a>, Vector3<'a>) {
+    let (mut b, mut beta) = (Vector3::zero(arena), Vector3::zero(arena));
+    for term in bias {
+        b = b + term.linear.scaled(term.scalar);
+        beta = beta + term.angular.scaled(term.scalar);
+    }
+    (b, beta)
+}
+
+/// The wrench of a component of the end's motion less what joints give to it: no joint feels it.
+fn blocked<'a>(
+    arena: &'a Arena,
+    row: usize,
+    columns: &[[Vector3<'a>; 2]],
+    wrenches: &[Wrench<'a>],
+) -> Wrench<'a> {
+    let mut parts = [Vector3::zero(arena); 2];
+    parts[row / 3] = Vector3::unit(arena, row % 3);
+    let [mut force, mut moment] = parts;
+    for (column, wrench) in columns.iter().zip(wrenches) {
+        let part = column[row / 3].0[row % 3] * wrench.factor;
+        force = force - wrench.force.scaled(part);
+        moment = moment - wrench.moment.scaled(part);
+    }
+    Wrench {
+        factor: arena.one(),
+        force,
+        moment,
+    }
+}
+
+/// Of the shared components of a leg's end in the leg's axes those that determine its joint rates best at home,
+/// and the others.
+pub(super) fn split_rows<'a>(
+    arena: &'a Arena,
+    leg: &Leg,
+    frames: &LegFrames<'a>,
+    rates: &Rates,
+    home: &dyn Fn(Expr<'a>) -> f64,
+) -> [Vec<usize>; 2] {
+    let columns = end_columns(arena, leg, frames, rates);
+    let shared = leg.shared_components();
+    let at_home = DMatrix::from_fn(shared.len(), columns.len(), |row, column| {
+        home(columns[column][shared[row] / 3].0[shared[row] % 3])
+    });
+    let chosen = best_conditioned(&at_home);
+    let (own, over): (Vec<usize>, Vec<usize>) =
+        (0..shared.len()).partition(|row| chosen.contains(row));
+    [own, over].map(|rows| rows.into_iter().map(|row| shared[row]).collect())
 }
 
 /// E_i = ∂Ṗ/∂u_i and W_i = ∂ω/∂u_i of the leg's end.

@@ -5,7 +5,7 @@ use super::elimination::Rows;
 use super::forward_kinematics::closed_form;
 use super::guard::{Guard, GuardKind};
 use super::motion_input::MotionInput;
-use super::selection::Selection;
+use super::selection::{JointsBy, Selection};
 use super::sheet::{Sheet, column};
 use super::underivable::Underivable;
 use crate::cas::{Arena, Expr};
@@ -62,7 +62,12 @@ pub fn derive<'a>(
     } else {
         on_sheet(arena, mechanism, selection, function, from)?
     };
-    derived.divisors = divisors::conditions(arena, mechanism, &derived.entries, &derived.guards);
+    // Conditions on the pose are computed for themselves, and may divide by more than the output does.
+    let of_pose = derived.guards.iter();
+    let of_pose = of_pose.filter(|guard| matches!(guard.kind, GuardKind::Closed(_)));
+    let mut computed = derived.entries.clone();
+    computed.extend(of_pose.map(|guard| guard.value));
+    derived.divisors = divisors::conditions(arena, mechanism, &computed, &derived.guards);
     let singular = |guard: &&Guard<'_>| guard.kind.home().is_some_and(|home| !home.is_finite());
     let mut guards = derived.guards.iter().chain(&derived.divisors);
     match guards.find(singular) {
@@ -87,6 +92,20 @@ fn on_sheet<'a>(
     let shape = (rows.len(), rows.first().map_or(0, Vec::len));
     let mut guards = sheet.robot.guards.clone();
     guards.extend(sheet.guards);
+    // The pose that forward kinematics finds is closed, and what brings one onto the closures starts elsewhere.
+    // Where Newton's method finds the joints, functions from the pose call those from the joints.
+    let brings_back = matches!(function, Function::BlockedError | Function::BlockedJacobian);
+    let closes = matches!(function, Function::ClosureError | Function::LegsJacobian);
+    let is_of_pose = match selection.joints {
+        JointsBy::Newton => from != MotionInput::Actuators,
+        JointsBy::Rule => from == MotionInput::Pose,
+    };
+    if is_of_pose && !brings_back && !closes {
+        guards.extend(sheet.robot.closed_guards());
+    }
+    if brings_back {
+        guards.retain(|guard| !matches!(guard.kind, GuardKind::Coordinates(_)));
+    }
     Ok(Derived {
         inputs: sheet.inputs,
         shape,
@@ -131,6 +150,9 @@ impl<'a> Sheet<'a, '_> {
             Function::LegsJacobian => self.leg_matrices().0,
             Function::LegsPlatformJacobian => self.leg_matrices().1,
             Function::ClosureError => self.closure_error(),
+            Function::PlatformJacobian => self.platform_jacobian(),
+            Function::BlockedError => self.blocked_error(),
+            Function::BlockedJacobian => self.blocked_jacobian(),
             Function::JointVelocities => {
                 let twist = self.twist();
                 let still = self.zeros();

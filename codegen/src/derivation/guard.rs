@@ -29,6 +29,11 @@ pub enum GuardKind {
         /// Which actuators they are.
         actuators: ActuatorGroup,
     },
+    /// Farther from zero than this (m, rad): the pose is none that the leg allows.
+    Closed(f64),
+    /// Near zero compared with this magnitude at home: the independent coordinates do not determine the
+    /// others.
+    Coordinates(f64),
     /// Not positive: the mass matrix is not positive definite.
     Mass,
 }
@@ -38,8 +43,8 @@ impl GuardKind {
     #[must_use]
     pub const fn home(&self) -> Option<f64> {
         match self {
-            Self::Reach | Self::Mass => None,
-            Self::Leg(home) | Self::Platform { home, .. } => Some(*home),
+            Self::Reach | Self::Mass | Self::Closed(_) => None,
+            Self::Leg(home) | Self::Coordinates(home) | Self::Platform { home, .. } => Some(*home),
         }
     }
 }

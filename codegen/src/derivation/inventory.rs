@@ -22,6 +22,7 @@ pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Function, Moti
         Condition::Payload => payload,
         Condition::ClosedForm => closed,
         Condition::NumericJoints => joints == JointsBy::Newton,
+        Condition::Parasitic => mechanism.is_parasitic(),
         _ => true,
     };
     let with = |function| {

@@ -20,14 +20,10 @@ impl<'a> Robot<'a> {
     /// M of given parameters. `None` if a sine or cosine does not follow from the configuration.
     pub(super) fn masses(&self, values: &[(BodyParameter, Expr<'a>)]) -> Option<Rows<'a>> {
         let dof = self.mechanism.dof();
-        let mut sum = vec![vec![self.arena.zero(); dof]; dof];
-        let mut add = |part: &dyn Fn(usize, usize) -> Expr<'a>| {
-            for (a, row) in sum.iter_mut().enumerate() {
-                for (b, entry) in row.iter_mut().enumerate().skip(a) {
-                    *entry = *entry + part(a, b);
-                }
-            }
-        };
+        let square = |size: usize| vec![vec![self.arena.zero(); size]; size];
+        let mut sum = square(dof);
+        // Of a platform that moves aside: what is had per component of its velocity.
+        let mut free = square(self.free.len());
         for (index, state) in self.legs.iter().enumerate() {
             let name = &self.mechanism.legs[index].name;
             self.arena.enter(name);
@@ -49,8 +45,11 @@ impl<'a> Robot<'a> {
             match at_end.filter(|_| self.platform.is_some()) {
                 Some(closure) => {
                     let tensor = closure.mass_at_end(&masses);
-                    let entry = on_twist(&self.twist, tensor, closure.arm);
-                    add(&entry);
+                    let entry = on_twist(&self.free, tensor, closure.arm);
+                    match self.aside.is_some() {
+                        true => add(&mut free, &entry),
+                        false => add(&mut sum, &entry),
+                    }
                 }
                 None => {
                     let columns = transposed(&state.rows);
@@ -58,13 +57,27 @@ impl<'a> Robot<'a> {
                         .iter()
                         .map(|column| masses.iter().map(|row| dot(row, column)).collect())
                         .collect();
-                    add(&|a, b| dot(&columns[a], &moved[b]));
+                    add(&mut sum, &|a, b| dot(&columns[a], &moved[b]));
                 }
             }
         }
         self.arena.enter("platform");
         if let Some(entry) = self.platform_masses(values) {
-            add(&entry);
+            match self.aside.is_some() {
+                true => add(&mut free, &entry),
+                false => add(&mut sum, &entry),
+            }
+        }
+        if let Some(aside) = &self.aside {
+            let size = free.len();
+            let entry = |a: usize, b: usize| free[a.min(b)][a.max(b)];
+            let rows = (0..size).map(|a| {
+                let row: Vec<Expr<'a>> = (0..size).map(|b| entry(a, b)).collect();
+                aside.on_independent(&row)
+            });
+            let columns = transposed(&rows.collect());
+            let both: Rows<'a> = columns.iter().map(|c| aside.on_independent(c)).collect();
+            add(&mut sum, &|a, b| both[b][a]);
         }
         self.arena.enter("");
         let entry = |a: usize, b: usize| sum[a.min(b)][a.max(b)];
@@ -118,7 +131,7 @@ impl<'a> Robot<'a> {
         } = self.platform_inertia(values).rotated(pose.rotation);
         let zero = self.arena.zero();
         Some(
-            move |a: usize, b: usize| match (self.twist[a], self.twist[b]) {
+            move |a: usize, b: usize| match (self.free[a], self.free[b]) {
                 (TwistCoordinate::Linear(i), TwistCoordinate::Linear(j)) if i == j => mass,
                 (TwistCoordinate::Linear(_), TwistCoordinate::Linear(_)) => zero,
                 (TwistCoordinate::Linear(i), TwistCoordinate::Angular(j)) => {
@@ -146,6 +159,15 @@ impl<'a> Robot<'a> {
         whole.name(&mut names, "", "platform");
         names.give();
         whole
+    }
+}
+
+/// Adds to the upper triangle.
+fn add<'a>(sum: &mut Rows<'a>, part: &dyn Fn(usize, usize) -> Expr<'a>) {
+    for (a, row) in sum.iter_mut().enumerate() {
+        for (b, entry) in row.iter_mut().enumerate().skip(a) {
+            *entry = *entry + part(a, b);
+        }
     }
 }
 

@@ -1,10 +1,10 @@
 //! The matrices of the paper's closure equations: A_p, B_p, J_k, J_tk, and the closure error itself.
 
-use super::elimination::Rows;
+use super::blocked::missed;
+use super::elimination::{Rows, inverse};
 use super::frames::independent_columns;
 use super::sheet::{Sheet, column};
-use crate::cas::{Expr, Number, Ratio, Vector3};
-use crate::mechanism::End;
+use crate::cas::Expr;
 
 impl<'a> Sheet<'a, '_> {
     /// A_p (n x r) and B_p (n x n), eq. (11): the rows of the legs' adjugates.
@@ -15,11 +15,12 @@ impl<'a> Sheet<'a, '_> {
         let actuated = mechanism.actuated();
         let n = actuated.len();
         let scale = |k: usize| {
-            let state = &self.robot.legs[joints[actuated[k]].leg];
-            state
-                .closure
-                .as_ref()
-                .map_or_else(|| arena.one(), |c| c.determinant)
+            let leg = joints[actuated[k]].leg;
+            let closure = self.robot.legs[leg].closure.as_ref();
+            match mechanism.is_parasitic() {
+                true => self.determinant(leg).unwrap_or_else(|| arena.one()),
+                false => closure.map_or_else(|| arena.one(), |c| c.determinant),
+            }
         };
         let scales: Vec<Expr<'a>> = (0..n).map(scale).collect();
         let platform = (0..n)
@@ -30,6 +31,18 @@ impl<'a> Sheet<'a, '_> {
             .map(|i| (0..n).map(|j| diagonal(i, j)).collect())
             .collect();
         (platform, actuators)
+    }
+
+    /// The determinant of a leg's rows of J_k, where those that the leg is solved from are in other axes.
+    fn determinant(&self, index: usize) -> Option<Expr<'a>> {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let frames = self.robot.base_frames(index)?;
+        let columns = independent_columns(arena, &mechanism.legs[index], &frames);
+        let rows = mechanism.closure_rows(index).into_iter();
+        let entry = |row: usize| columns.iter().map(|c| c[row / 3].0[row % 3]).collect();
+        let matrix: Rows<'a> = rows.map(entry).collect();
+        let home = |value: Expr<'a>| self.robot.at_home(value);
+        Some(inverse(&matrix, &home)?.determinant)
     }
 
     /// By how much the legs' ends miss the platform, in the rows of J_k: positions (m), and half the
@@ -45,25 +58,32 @@ impl<'a> Sheet<'a, '_> {
                 continue;
             };
             let frames = self.robot.base_frames(index);
-            let Some(last) = frames.as_ref().and_then(|f| f.frames.last()) else {
+            let found = frames.and_then(|frames| missed(platform, closure.arm, leg, &frames));
+            let Some((position, turn)) = found else {
                 continue;
-            };
-            let base = Vector3::constant(arena, leg.base.at);
-            let position = platform.origin + closure.arm - base - last.origin;
-            let turn = match &leg.end {
-                Some(End::Rigid(placement)) => {
-                    let left = platform.orientation(placement) * last.rotation.transposed();
-                    let half = Number::ratio(Ratio::new(1, 2).unwrap_or(Ratio::ONE));
-                    let m = left.0;
-                    let axial = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
-                    Vector3(axial.map(|a| a * half))
-                }
-                _ => Vector3::zero(arena),
             };
             let rows = mechanism.closure_rows(index).into_iter();
             errors.extend(rows.map(|row| [position, turn][row / 3].0[row % 3]));
         }
         column(errors)
+    }
+
+    /// D, of a platform that moves aside.
+    pub(super) fn platform_jacobian(&mut self) -> Rows<'a> {
+        let aside = self.robot.aside.as_ref();
+        aside.map_or_else(Vec::new, |aside| aside.platform_jacobian(self.robot.arena))
+    }
+
+    /// By how much a pose misses what the legs allow.
+    pub(super) fn blocked_error(&mut self) -> Rows<'a> {
+        let errors = self.robot.blocked_errors().into_iter();
+        column(errors.map(|(error, _)| error).collect())
+    }
+
+    /// A of A t = 0.
+    pub(super) fn blocked_jacobian(&mut self) -> Rows<'a> {
+        let aside = self.robot.aside.as_ref();
+        aside.map_or_else(Vec::new, |aside| aside.matrix.clone())
     }
 
     /// J_k (n_t x n_t) and J_tk (n_t x r), eq. (9), in the base frame.
@@ -90,7 +110,8 @@ impl<'a> Sheet<'a, '_> {
                     entries[state.first_joint + k] = column[row / 3].0[row % 3];
                 }
                 legs.push(entries);
-                platform.push(closure.platform_row(row, arena));
+                let own = closure.platform_row(row, arena);
+                platform.push(self.robot.on_independent(own));
             }
         }
         (legs, platform)

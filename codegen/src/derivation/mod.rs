@@ -5,7 +5,7 @@
 //! one joint alone (`elimination`, `bias`). `body` runs the recursion of Newton and Euler in the bodies' own
 //! frames, `carried` has those that move with the platform, `spring` has what a
 //! joint's position adds to its torque and `friction` what its rate does, `centres` finds axes that meet in a point.
-//! `regressor` projects what each standard parameter produces on the platform, eq. (30), or on kept
+//! `parasitic` and `blocked` have platforms whose legs block directions that change with the pose. `regressor` projects what each standard parameter produces on the platform, eq. (30), or on kept
 //! actuators, eq. (36). `robot` holds one derivation together. `inverse_kinematics` finds joints from a pose
 //! and `forward_kinematics` a pose from actuators, in closed form where there is one. `functions` says what
 //! each function is made of, on a `sheet`: its `kinematics`, its `dynamics`, and the `matrices` of the
@@ -14,6 +14,7 @@
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
 
 mod bias;
+mod blocked;
 mod body;
 mod carried;
 mod centres;
@@ -49,6 +50,7 @@ mod newton_euler;
 mod null_space;
 mod orientation;
 mod parameter;
+mod parasitic;
 mod path;
 mod platform;
 mod rates;

@@ -24,6 +24,8 @@ impl<'a> Robot<'a> {
         values: &[(BodyParameter, Expr<'a>)],
     ) -> Option<Vec<Expr<'a>>> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
+        // Of a platform that moves aside: what all put on its six components, which goes to the others at once.
+        let mut free = vec![self.arena.zero(); self.free.len()];
         for (index, leg) in self.mechanism.legs.iter().enumerate() {
             self.arena.enter(&leg.name);
             // What a chain hands down to a body that moves is projected body by body.
@@ -37,22 +39,30 @@ impl<'a> Robot<'a> {
             }
             let state = &self.legs[index];
             let at_end = state.closure.as_ref().filter(|c| c.feels_no_moment());
-            let part = match at_end.filter(|_| self.platform.is_some()) {
-                Some(closure) => closure.project_at_end(&forces),
-                None => self.combine(&state.rows, &forces),
-            };
-            add(&mut total, part);
+            match at_end.filter(|_| self.platform.is_some()) {
+                Some(closure) if self.aside.is_some() => {
+                    add(&mut free, closure.project_at_end(&forces));
+                }
+                Some(closure) => add(&mut total, closure.project_at_end(&forces)),
+                None => add(&mut total, self.combine(&state.rows, &forces)),
+            }
         }
         self.arena.enter("platform");
         if let Some(body) = &motion.platform {
             let wrench = body.wrench(&self.platform_inertia(values));
             self.name_wrench(wrench, "", "platform");
-            let on_twist = body.project(&self.twist, wrench);
-            for (coordinate, force) in self.twist.iter().zip(&on_twist) {
+            let on_twist = body.project(&self.free, wrench);
+            for (coordinate, force) in self.free.iter().zip(&on_twist) {
                 let what = format!("force_on_{}_platform", coordinate_label(coordinate));
                 let _ = force.named(&what);
             }
-            add(&mut total, on_twist);
+            match self.aside.is_some() {
+                true => add(&mut free, on_twist),
+                false => add(&mut total, on_twist),
+            }
+        }
+        if let Some(aside) = &self.aside {
+            add(&mut total, aside.on_independent(&free));
         }
         self.arena.enter("");
         Some(total)

@@ -122,7 +122,8 @@ impl<'a> Robot<'a> {
         body: &CarriedBody<'a>,
         symbol: StandardParameter,
     ) -> Vec<Expr<'a>> {
-        let forces = body.project(&self.twist, body.unit_wrench(self.arena, symbol));
+        let forces = body.project(&self.free, body.unit_wrench(self.arena, symbol));
+        let forces = self.on_independent(forces);
         if projection.on_platform {
             return forces;
         }
@@ -197,7 +198,7 @@ impl<'a> Robot<'a> {
     ) -> Vec<Expr<'a>> {
         let rows = &projection.legs[leg];
         let at_end = self.legs[leg].closure.as_ref();
-        let at_end = at_end.filter(|_| self.platform.is_some());
+        let at_end = at_end.filter(|_| self.platform.is_some() && self.aside.is_none());
         match at_end.filter(|c| projection.on_platform && c.is_shorter_at_end(rows, forces)) {
             Some(closure) => closure.project_at_end(forces),
             None => self.combine(rows, forces),
@@ -223,7 +224,7 @@ impl<'a> Robot<'a> {
     ) -> Vec<Expr<'a>> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
         // Forces on the twist coordinates, of all that moves with the platform.
-        let mut on_twist = vec![self.arena.zero(); self.twist.len()];
+        let mut on_twist = vec![self.arena.zero(); self.free.len()];
         for (l, leg) in self.mechanism.legs.iter().enumerate() {
             let forces = self.leg_forces(motion, values, l, &mut on_twist);
             for (joint, force) in leg.independent().zip(&forces) {
@@ -239,14 +240,15 @@ impl<'a> Robot<'a> {
             };
             let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
             self.name_wrench(wrench, "", "platform");
-            add(&mut on_twist, body.project(&self.twist, wrench));
+            add(&mut on_twist, body.project(&self.free, wrench));
         }
-        for (coordinate, force) in self.twist.iter().zip(&on_twist) {
+        for (coordinate, force) in self.free.iter().zip(&on_twist) {
             let _ = force.named(&format!(
                 "force_on_{}_platform",
                 coordinate_label(coordinate)
             ));
         }
+        let on_twist = self.on_independent(on_twist);
         add(&mut total, self.combine(&projection.platform, &on_twist));
         total
     }
@@ -270,7 +272,7 @@ impl<'a> Robot<'a> {
             match &motion.carried[l][j] {
                 Some(body) => {
                     let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
-                    add(on_twist, body.project(&self.twist, wrench));
+                    add(on_twist, body.project(&self.free, wrench));
                 }
                 None => {
                     let body = &motion.bodies[l][j];

@@ -5,7 +5,7 @@ use super::bias::end_bias;
 use super::body::{leg_base, leg_bodies};
 use super::carried::{CarriedBody, Mount};
 use super::centres::centres;
-use super::closure::LegClosure;
+use super::closure::{LegClosure, split_rows};
 use super::configuration::Configuration;
 use super::elimination::Rows;
 use super::frames::LegFrames;
@@ -15,6 +15,7 @@ use super::leg::LegState;
 use super::motion::{Moved, RobotMotion};
 use super::motion_input::MotionInput;
 use super::names::{Accelerations, coordinate_label, joined};
+use super::parasitic::Aside;
 use super::path::{Known, Path};
 use super::platform::PlatformPose;
 use super::rates::Rates;
@@ -37,6 +38,11 @@ pub struct Robot<'a> {
     pub platform: Option<PlatformPose<'a>>,
     /// The independent twist coordinates.
     pub twist: Vec<TwistCoordinate>,
+    /// The components of the platform's velocity in the directions of its pose: the independent ones, or all
+    /// six of a platform that moves aside.
+    pub(super) free: Vec<TwistCoordinate>,
+    /// How these follow from the independent ones, of a platform that moves aside.
+    pub(super) aside: Option<Aside<'a>>,
     /// The legs.
     pub legs: Vec<LegState<'a>>,
     /// Conditions for the model to have a value.
@@ -67,16 +73,22 @@ impl<'a> Robot<'a> {
             arena,
             mechanism,
             configuration: Configuration::new(arena, mechanism, from),
-            platform: motion.map(|m| PlatformPose::new(arena, m)),
+            platform: motion.map(|m| PlatformPose::new(arena, m.of_pose())),
             twist: motion
                 .map(crate::mechanism::Motion::twist)
                 .unwrap_or_default(),
+            free: Self::free_coordinates(motion),
+            aside: None,
             legs: Vec::new(),
             guards: Vec::new(),
             motions: RefCell::default(),
         };
         for leg in 0..mechanism.legs.len() {
             robot.derive_leg(leg, formulation)?;
+        }
+        robot.aside = robot.derive_aside()?;
+        if robot.aside.is_some() {
+            robot.follow_independent();
         }
         Ok(robot)
     }
@@ -115,11 +127,14 @@ impl<'a> Robot<'a> {
                 self.identity_rows(first_joint, leg.independent().count()),
             ),
             Some(platform) => {
-                let selected = self.mechanism.closure_rows(index);
                 let home = |e: Expr<'a>| self.at_home(e);
-                let closure =
-                    LegClosure::new(arena, leg, &frames, &rates, platform, &selected, &home)
-                        .ok_or_else(|| Underivable::SingularLeg { leg: name() })?;
+                let [selected, over] = match self.mechanism.is_parasitic() {
+                    true => split_rows(arena, leg, &frames, &rates, &home),
+                    false => [self.mechanism.closure_rows(index), Vec::new()],
+                };
+                let rows = [&selected[..], &over[..]];
+                let closure = LegClosure::new(arena, leg, &frames, &rates, platform, rows, &home)
+                    .ok_or_else(|| Underivable::SingularLeg { leg: name() })?;
                 let rows = closure.reduced_jacobian();
                 (Some(closure), rows)
             }
@@ -127,7 +142,9 @@ impl<'a> Robot<'a> {
         if let Some(closure) = &closure {
             self.guard_leg(closure, &leg.name);
         }
-        name_rows(&rows, leg, &self.twist);
+        if !self.mechanism.is_parasitic() {
+            name_rows(&rows, leg, &self.twist);
+        }
         if let Some(carrier) = leg.base_body {
             rows.extend(self.legs[carrier.leg].rows.clone());
         }
@@ -142,6 +159,22 @@ impl<'a> Robot<'a> {
         });
         arena.enter("");
         Ok(())
+    }
+
+    /// The legs' rows per component of the platform's velocity as rows per independent coordinate.
+    fn follow_independent(&mut self) {
+        for index in 0..self.legs.len() {
+            let leg = &self.mechanism.legs[index];
+            self.arena.enter(&leg.name);
+            let rows = std::mem::take(&mut self.legs[index].rows);
+            let rows: Rows<'a> = rows
+                .into_iter()
+                .map(|row| self.on_independent(row))
+                .collect();
+            name_rows(&rows, leg, &self.twist);
+            self.legs[index].rows = rows;
+        }
+        self.arena.enter("");
     }
 
     /// What a leg ends on: the platform, or a body as it is seen from the one that the leg starts from. `None` for a leg without an end.
@@ -210,10 +243,10 @@ impl<'a> Robot<'a> {
     /// Velocities and accelerations of all legs and bodies.
     #[must_use]
     pub fn motion(&self, twist: &[Expr<'a>], acceleration: &[Expr<'a>]) -> Option<RobotMotion<'a>> {
-        let platform = self
-            .platform
-            .as_ref()
-            .map(|p| p.motion(twist, acceleration));
+        let platform = self.platform.as_ref().map(|p| {
+            let (velocity, acceleration) = self.free_motion(twist, acceleration);
+            p.motion(&velocity, &acceleration)
+        });
         let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
         let accelerations = Accelerations::new(acceleration);
         let carried = |mount: &Mount<'a>| {

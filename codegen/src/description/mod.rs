@@ -62,6 +62,7 @@ pub use formula::{Formula, Spring};
 pub use gravity::GAINS_AND_GRAVITY;
 pub use inventory::Body;
 pub use known::{COUPLED_MOTORS, KNOWN_TORQUES};
+pub(crate) use model::SIX;
 pub use model::{
     BodyIndex, End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned,
 };

@@ -56,9 +56,17 @@ pub enum Motion {
     Spherical,
     /// All six motions.
     Spatial,
+    /// A free body whose legs block some directions, which change with the pose: it moves aside while it
+    /// moves, and only these of x, y, z, rx, ry, rz are independent.
+    Parasitic {
+        /// Whether each of the six is independent.
+        independent: [bool; 6],
+    },
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];
+/// The coordinates of a free body.
+pub(crate) const SIX: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 impl Motion {
     /// Names of the coordinates that a description gives: translations, then `phi` or `rx`, `ry`,
@@ -74,7 +82,21 @@ impl Motion {
             Self::Translation => AXES.to_vec(),
             Self::Schoenflies { .. } => [&AXES[..], &["phi"]].concat(),
             Self::Spherical => vec!["rx", "ry", "rz"],
-            Self::Spatial => [&AXES[..], &["rx", "ry", "rz"]].concat(),
+            Self::Spatial => SIX.to_vec(),
+            Self::Parasitic { independent } => {
+                let all = SIX.into_iter().zip(independent);
+                all.filter_map(|(name, is_own)| is_own.then_some(name))
+                    .collect()
+            }
+        }
+    }
+
+    /// The motion of a pose's numbers: of a platform that moves aside that of a free body.
+    #[must_use]
+    pub const fn of_pose(self) -> Self {
+        match self {
+            Self::Parasitic { .. } => Self::Spatial,
+            other => other,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The table `[platform]`.
 
 use super::dimension::Dimension;
-use super::model::{Motion, Platform, PlatformHome, Spanned};
+use super::model::{Motion, Platform, PlatformHome, SIX, Spanned};
 use super::parameters::Owner;
 use super::reader::Item;
 use super::scope::Scope;
@@ -53,9 +53,14 @@ pub(super) fn read(item: &Item<'_, '_>, scope: &Scope) -> Option<Platform> {
         .get("redundancy")
         .and_then(|item| Some(Spanned::new(item.size(0)?, item.span.clone())));
     let (axis, home) = (table.get("axis"), table.get("home"));
+    let independent = table.get("independent");
     table.finish();
     let word = word?;
     let (motion, axis_at) = motion(word.value, axis.as_ref(), scope)?;
+    let motion = match independent {
+        Some(item) => parasitic(motion, &item)?,
+        None => motion,
+    };
     let home = home.map_or(Some(PlatformHome::ZERO), |item| {
         read_home(&item, motion, scope)
     });
@@ -68,6 +73,45 @@ pub(super) fn read(item: &Item<'_, '_>, scope: &Scope) -> Option<Platform> {
         payload,
         span: table.span.clone(),
     })
+}
+
+/// A free platform of which only some coordinates are independent: the legs' closures give the others.
+fn parasitic(motion: Motion, item: &Item<'_, '_>) -> Option<Motion> {
+    if motion != Motion::Spatial {
+        let message = "`independent` has no meaning for this motion";
+        item.context.report(
+            item.error(Code::CONTRADICTION, message)
+                .help("leave it out, or write motion = \"spatial\" for a platform whose legs let it move aside"),
+        );
+        return None;
+    }
+    let choices: [(&str, usize); 6] = std::array::from_fn(|at| (SIX[at], at));
+    let mut independent = [false; 6];
+    let mut is_right = true;
+    for name in item.list()? {
+        match name.choice(&choices) {
+            Some(at) if independent[at.value] => {
+                let message = format!("`{}` is there twice", SIX[at.value]);
+                name.context.report(
+                    name.error(Code::CONTRADICTION, message)
+                        .help("leave one out"),
+                );
+                is_right = false;
+            }
+            Some(at) => independent[at.value] = true,
+            None => is_right = false,
+        }
+    }
+    let count = independent.iter().filter(|own| **own).count();
+    if is_right && !(1..6).contains(&count) {
+        let message = format!("{count} of six coordinates are independent");
+        item.context.report(
+            item.error(Code::CONTRADICTION, message)
+                .help("name as many as the legs leave, one to five; leave the key out where they leave all six"),
+        );
+        return None;
+    }
+    is_right.then_some(Motion::Parasitic { independent })
 }
 
 fn motion(word: Word, axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Motion, [Number; 3])> {
@@ -139,7 +183,7 @@ fn fixed_axis(axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Motion, [Nu
 fn read_home(item: &Item<'_, '_>, motion: Motion, scope: &Scope) -> Option<PlatformHome> {
     let table = item.table("the platform's `home`")?;
     let mut home = PlatformHome::ZERO;
-    for name in motion.coordinates() {
+    for name in motion.of_pose().coordinates() {
         let Some(value) = table.get(name) else {
             continue;
         };

@@ -81,6 +81,14 @@ impl Writer<'_> {
                 quote!(::overact::guard::leg(#value, #home, #leg)?;)
             }
             Condition::Mass => quote!(::overact::guard::mass(#value)?;),
+            Condition::Closed { leg, within } => {
+                let within = number(*within, self.float);
+                quote!(::overact::guard::closed(#value, #within, #leg)?;)
+            }
+            Condition::Coordinates { home } => {
+                let home = number(*home, self.float);
+                quote!(::overact::guard::coordinates(#value, #home)?;)
+            }
             Condition::Platform { actuators, home } => {
                 let home = number(*home, self.float);
                 let actuators = match actuators {

@@ -15,17 +15,20 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
     let payload = Literal::usize_unsuffixed(model.selection.payload.len());
     let standard = Literal::usize_unsuffixed(model.selection.standard.len());
     let base = Literal::usize_unsuffixed(model.selection.base.len());
-    let displace = mechanism
-        .platform
-        .as_ref()
-        .is_some_and(|p| p.motion.has_quaternion())
-        .then(|| {
-            quote! {
-                fn displace(&self, pose: &mut [::core::primitive::f64], step: &[::core::primitive::f64]) {
-                    ::overact::forward::displace_quaternion(pose, step);
-                }
+    let way = match &mechanism.platform {
+        Some(_) if mechanism.is_parasitic() => Some(quote!(Self::displace)),
+        Some(own) if own.motion.has_quaternion() => {
+            Some(quote!(::overact::forward::displace_quaternion))
+        }
+        _ => None,
+    };
+    let displace = way.map(|way| {
+        quote! {
+            fn displace(&self, pose: &mut [::core::primitive::f64], step: &[::core::primitive::f64]) {
+                #way(pose, step);
             }
-        });
+        }
+    });
     quote! {
         impl #name {
             const SIZES: ::overact::Sizes = ::overact::Sizes {
@@ -145,13 +148,21 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         .platform
         .as_ref()
         .is_some_and(|p| p.motion.has_quaternion());
-    let displace = if quaternion {
-        quote!(displace_quaternion)
-    } else {
-        quote!(displace)
+    let aside = model.mechanism.independent_coordinates();
+    let displace = match (&aside, quaternion) {
+        (Some(_), _) => quote!(Self::displace),
+        (None, true) => quote!(::overact::forward::displace_quaternion),
+        (None, false) => quote!(::overact::forward::displace),
     };
     let unit = quaternion
         .then(|| quote!(let start = &::overact::guard::unit_quaternion(start, "start")?;));
+    let closed = aside.is_some().then(|| {
+        quote! {
+            let mut closed = *start;
+            Self::displace(&mut closed, &[]);
+            let start = &closed;
+        }
+    });
     let iterate = quote! {
         ::overact::forward::gauss_newton(
             ::overact::forward::Measured {
@@ -171,7 +182,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
                 ::overact::block::write(&Self::inverse_jacobian(pose)?, jacobian);
                 ::core::result::Result::Ok(())
             },
-            ::overact::forward::#displace,
+            #displace,
         )
     };
     let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
@@ -205,7 +216,10 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         ),
     };
     let doc = format!("{doc}{way}");
+    let displace = aside.map(|independent| self::displace(&independent, &kind));
     quote! {
+        #displace
+
         #[doc = #doc]
         #[doc = ""]
         #[doc = " # Errors"]
@@ -216,7 +230,24 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         ) -> ::core::result::Result<[#kind; Self::POSE], ::overact::Error> {
             ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
             #unit
+            #closed
             #body
+        }
+    }
+}
+
+/// The displacement of a platform that moves aside as an associated function.
+fn displace(independent: &[usize], kind: &TokenStream) -> TokenStream {
+    let independent = independent.iter().map(|&at| Literal::usize_unsuffixed(at));
+    quote! {
+        #[doc = " Moves a pose by a small `step` along its independent coordinates, and along the others by Newton's method until the legs close. Where they do not, the pose is one that functions refuse."]
+        pub fn displace(pose: &mut [#kind], step: &[#kind]) {
+            ::overact::aside::displace(pose, step, &[#(#independent),*], |pose, errors, jacobian| {
+                let pose = ::overact::block::array(pose)?;
+                ::overact::block::write(&Self::blocked_error(pose)?, errors);
+                ::overact::block::write(&Self::blocked_jacobian(pose)?, jacobian);
+                ::core::result::Result::Ok(())
+            });
         }
     }
 }

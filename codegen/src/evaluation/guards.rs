@@ -93,7 +93,12 @@ impl Condition {
                     hold &= *value > 0.0;
                 }
             }
-            Self::Leg { home, .. } | Self::Platform { home, .. } => {
+            Self::Closed { within, .. } => {
+                for value in values {
+                    hold &= value.abs() <= *within;
+                }
+            }
+            Self::Leg { home, .. } | Self::Platform { home, .. } | Self::Coordinates { home } => {
                 let least = SINGULAR * home;
                 for value in values {
                     hold &= value.abs() > least;

@@ -62,7 +62,11 @@ pub(super) fn guard(
 /// Whether a divisor is a constant, or guarded already. What may only not be negative may be zero.
 fn is_never_zero(dag: &Dag, node: usize) -> bool {
     let is_guarded = dag.guards().iter().any(|guard| {
-        guard.value.node() == node && !matches!(guard.condition, Condition::Reach { .. })
+        guard.value.node() == node
+            && !matches!(
+                guard.condition,
+                Condition::Reach { .. } | Condition::Closed { .. }
+            )
     });
     is_guarded || matches!(dag.definition(node), Definition::Constant(_))
 }
@@ -92,7 +96,9 @@ fn place(dag: &Dag, node: usize, condition: &Condition) -> usize {
 /// The leg that a condition is about.
 fn leg(condition: &Condition) -> Option<&str> {
     match condition {
-        Condition::Reach { leg } | Condition::Leg { leg, .. } => Some(leg),
-        Condition::Platform { .. } | Condition::Mass => None,
+        Condition::Reach { leg } | Condition::Leg { leg, .. } | Condition::Closed { leg, .. } => {
+            Some(leg)
+        }
+        Condition::Platform { .. } | Condition::Coordinates { .. } | Condition::Mass => None,
     }
 }

@@ -200,7 +200,10 @@ impl<'d> Schedule<'d> {
             .map(|guard| {
                 let value = match guard.condition {
                     Condition::Reach { .. } | Condition::Mass => guard.value,
-                    Condition::Leg { .. } | Condition::Platform { .. } => guard.value.positive(),
+                    Condition::Leg { .. }
+                    | Condition::Platform { .. }
+                    | Condition::Closed { .. }
+                    | Condition::Coordinates { .. } => guard.value.positive(),
                 };
                 Ok(Guard {
                     operand: self.operand(value)?,

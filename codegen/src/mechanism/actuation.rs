@@ -24,6 +24,10 @@ pub(super) fn shared_velocities(
 ) -> Option<DMatrix<f64>> {
     let end = mechanism.legs[leg].end.as_ref()?;
     match &mechanism.platform {
+        Some(platform) if mechanism.is_parasitic() => {
+            let free = on_platform(platform.motion.of_pose(), pose, end);
+            Some(free * mechanism.platform_jacobian(pose, joints)?)
+        }
         Some(platform) => Some(on_platform(platform.motion, pose, end)),
         None => on_skeleton(mechanism, leg, pose, joints),
     }

@@ -2,9 +2,9 @@
 
 use super::actuation::{rates_per_velocity, shared_velocities};
 use super::explain;
-use super::home::Home;
+use super::home::{Home, approach};
 use super::mobility::Mobility;
-use super::parasitic::{Parasitic, closed};
+use super::parasitic::{Parasitic, closed, rated};
 use super::states::random_states;
 use super::structure::defects;
 use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
@@ -20,9 +20,21 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     let mut errors = Diagnostics::new();
     check_actuators(description, &mechanism, &mut errors);
     check_sizes(description, &mut errors);
-    check_structure(description, &mechanism, &mut errors);
+    let mut rough = rough_home(description);
+    match mechanism.is_parasitic() {
+        // A rough pose may be none that the legs allow: it is brought onto them.
+        true if errors.is_empty() => {
+            // With the joints near, a pose that they allow stays as it is.
+            let near = approach(&mechanism, &rough);
+            let found = closed(&mechanism, &near).or_else(|| closed(&mechanism, &rough));
+            if let Some(found) = found {
+                rough = found.home;
+            }
+        }
+        true => {}
+        false => check_structure(description, &mechanism, &rough, &mut errors),
+    }
     errors.into_result(())?;
-    let rough = rough_home(description);
     match Home::refine(&mechanism, &rough) {
         Ok(home) => mechanism.home = home,
         Err(found) => {
@@ -34,6 +46,14 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
         }
     }
     let mut errors = Diagnostics::new();
+    if mechanism.is_parasitic() {
+        check_independent(description, &mechanism, &mut errors);
+        if errors.is_empty() {
+            check_structure(description, &mechanism, &mechanism.home, &mut errors);
+        }
+        errors.into_result(())?;
+        errors = Diagnostics::new();
+    }
     for leg in 0..mechanism.legs.len() {
         check_mobility(description, &mechanism, leg, &mut errors);
     }
@@ -191,6 +211,9 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
     }
 }
 
+/// How many times worse conditioned than the best choice independent coordinates may be.
+const WEAK: f64 = 1e3;
+
 /// Most joints of a robot. A check of so many takes seconds, a model of them more than anybody waits for.
 const JOINTS: usize = 200;
 
@@ -241,16 +264,30 @@ fn check_sizes(description: &Description, errors: &mut Diagnostics) {
 
 /// The joints of every leg must be determined by the motion of its end. Legs of one shape share their
 /// errors.
-fn check_structure(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
-    let Home { pose, joints, .. } = rough_home(description);
+fn check_structure(
+    description: &Description,
+    mechanism: &Mechanism,
+    home: &Home,
+    errors: &mut Diagnostics,
+) {
+    let Home { pose, joints, .. } = home;
     for (index, place) in description.legs.iter().enumerate() {
-        let Some(velocities) = shared_velocities(mechanism, index, &pose, &joints) else {
+        let Some(velocities) = shared_velocities(mechanism, index, pose, joints) else {
             continue;
         };
         let leg = &mechanism.legs[index];
         for defect in defects(leg, &velocities) {
             errors.push(explain::defect(place, &defect));
         }
+    }
+}
+
+/// The independent coordinates of a platform that moves aside are as many as the legs leave, and determine the
+/// others at home.
+fn check_independent(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
+    match rated(mechanism) {
+        Some(found) if found.condition < WEAK * found.least => {}
+        found => errors.push(explain::independent(description, mechanism, found.as_ref())),
     }
 }
 
@@ -293,6 +330,7 @@ fn home_pose(platform: &crate::description::Platform) -> Vec<f64> {
     let motion = platform.motion.value;
     let at = platform.home.at.map(crate::cas::Number::value);
     let mut pose: Vec<f64> = motion
+        .of_pose()
         .twist()
         .iter()
         .filter_map(|c| match c {

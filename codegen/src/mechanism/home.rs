@@ -120,6 +120,24 @@ impl Home {
     }
 }
 
+/// The joints of all legs on a platform as near to closing as they come at the pose as it is, which may be none
+/// that the legs allow.
+#[must_use]
+pub(super) fn approach(mechanism: &Mechanism, rough: &Home) -> Home {
+    let mut near = rough.clone();
+    for (index, leg) in mechanism.legs.iter().enumerate() {
+        let Some(target) = mechanism.target(index, &rough.pose, &rough.joints) else {
+            continue;
+        };
+        let range = mechanism.leg_range(index);
+        let (q, gap) = iterate(leg, &rough.joints[range.clone()], &target, FINELY);
+        if gap.is_finite() {
+            near.joints[range].copy_from_slice(&q);
+        }
+    }
+    near
+}
+
 enum Failure {
     Open(f64),
     Singular(f64),
@@ -251,6 +269,6 @@ pub(super) fn close_finely(leg: &Leg, q: &[f64], target: &nalgebra::Isometry3<f6
 }
 
 /// Ratio of the largest and smallest singular value; infinite for entries that are not finite.
-fn condition(matrix: &DMatrix<f64>) -> f64 {
+pub(super) fn condition(matrix: &DMatrix<f64>) -> f64 {
     SingularValues::new(matrix).map_or(f64::INFINITY, |found| found.condition())
 }

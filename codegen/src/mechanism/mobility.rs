@@ -39,15 +39,20 @@ impl Mobility {
     /// At the home configuration, which closes the legs, lengths in units of the robot's own; `None` for a
     /// robot without a platform and for values that are not finite.
     pub(super) fn at_home(mechanism: &Mechanism) -> Option<Self> {
-        let platform = mechanism.platform.as_ref()?;
         let home = &mechanism.home;
+        Self::at(mechanism, &home.pose, &home.joints)
+    }
+
+    /// At a pose and joint positions that close the legs.
+    pub(super) fn at(mechanism: &Mechanism, pose: &[f64], joints: &[f64]) -> Option<Self> {
+        let platform = mechanism.platform.as_ref()?;
         let size = mechanism.length_scale();
         let mut constraints = DMatrix::zeros(0, 6);
         let mut felt = DMatrix::zeros(0, 6);
         for (index, leg) in mechanism.legs.iter().enumerate() {
             let end = leg.end.as_ref()?;
-            let arms = end_velocities(platform.motion, &home.pose, end, size);
-            let jacobian = scaled_jacobian(leg, &home.joints[mechanism.leg_range(index)], size);
+            let arms = end_velocities(platform.motion, pose, end, size);
+            let jacobian = scaled_jacobian(leg, &joints[mechanism.leg_range(index)], size);
             // The left null space is the null space of the transpose.
             let free = SingularValues::new(&jacobian.transpose())?;
             let null = free.null_space(ROUNDING * free.largest());

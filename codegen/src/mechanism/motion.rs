@@ -2,12 +2,14 @@
 //!
 //! The twist is the velocity of the platform's origin and its angular velocity, both in the base
 //! frame. Every independent coordinate v moves the platform along one constant direction of that
-//! six-vector, so D has one unit column per coordinate and is constant. Orientations in space are unit
+//! six-vector, so D has one unit column per coordinate and is constant, but for a platform that moves aside
+//! (`parasitic`): its legs' closures put entries beside the units that change with the pose. Orientations in space are unit
 //! quaternions (w, x, y, z), which have no representation singularity; their v is the angular velocity.
 
 use crate::description::Motion;
 
-/// One independent coordinate of the twist: a unit column of D.
+/// One independent coordinate of the twist: a unit column of D; of a platform that moves aside the column's
+/// unit entry, beside which the legs' closures put others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TwistCoordinate {
     /// Velocity of the platform's origin along a coordinate axis, m/s.
@@ -40,6 +42,11 @@ impl Motion {
             Self::Schoenflies { axis } => (0..3).map(Linear).chain([Angular(axis)]).collect(),
             Self::Spherical => (0..3).map(Angular).collect(),
             Self::Spatial => (0..3).map(Linear).chain((0..3).map(Angular)).collect(),
+            Self::Parasitic { independent } => {
+                let all = Self::Spatial.twist().into_iter().zip(independent);
+                all.filter_map(|(coordinate, is_own)| is_own.then_some(coordinate))
+                    .collect()
+            }
         }
     }
 
@@ -58,7 +65,7 @@ impl Motion {
             Self::Translation => AXES.to_vec(),
             Self::Schoenflies { .. } => vec!["x", "y", "z", "phi"],
             Self::Spherical => QUATERNION.to_vec(),
-            Self::Spatial => AXES.into_iter().chain(QUATERNION).collect(),
+            Self::Spatial | Self::Parasitic { .. } => AXES.into_iter().chain(QUATERNION).collect(),
         }
     }
 
@@ -86,6 +93,9 @@ impl Motion {
     /// Whether the orientation is a quaternion.
     #[must_use]
     pub const fn has_quaternion(self) -> bool {
-        matches!(self, Self::Spherical | Self::Spatial)
+        matches!(
+            self,
+            Self::Spherical | Self::Spatial | Self::Parasitic { .. }
+        )
     }
 }

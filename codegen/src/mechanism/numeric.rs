@@ -132,7 +132,10 @@ pub fn platform_frame(motion: Motion, pose: &[f64]) -> Isometry3<f64> {
             at[(axis + 1) % 3] = pose[0];
             at[(axis + 2) % 3] = pose[1];
         }
-        Motion::Translation | Motion::Schoenflies { .. } | Motion::Spatial => {
+        Motion::Translation
+        | Motion::Schoenflies { .. }
+        | Motion::Spatial
+        | Motion::Parasitic { .. } => {
             at = Vector3::new(pose[0], pose[1], pose[2]);
         }
         Motion::Rotation { .. } | Motion::Spherical => {}
@@ -239,6 +242,37 @@ impl Leg {
     }
 }
 
+/// As many rows as there are columns, in ascending order: in turn the one whose part outside the span of those
+/// before is longest. Fewer, where the matrix has not that rank.
+#[must_use]
+pub(crate) fn best_conditioned(matrix: &DMatrix<f64>) -> Vec<usize> {
+    let mut rest = matrix.clone();
+    let least = 1e-6 * matrix.amax();
+    let mut chosen: Vec<usize> = Vec::new();
+    while chosen.len() < matrix.ncols() {
+        let free = (0..rest.nrows()).filter(|row| !chosen.contains(row));
+        // Rounding does not decide between equals: the first of them is taken.
+        let longest = free.fold(None, |best: Option<(usize, f64)>, row| {
+            let length = rest.row(row).norm();
+            match best {
+                Some((_, known)) if length <= known * (1.0 + 1e-9) => best,
+                _ => Some((row, length)),
+            }
+        });
+        let Some((row, length)) = longest.filter(|(_, length)| *length > least) else {
+            break;
+        };
+        let direction = rest.row(row) / length;
+        for mut other in rest.row_iter_mut() {
+            let along = other.dot(&direction);
+            other -= &direction * along;
+        }
+        chosen.push(row);
+    }
+    chosen.sort_unstable();
+    chosen
+}
+
 impl Mechanism {
     /// The joint positions of one leg within q_t.
     #[must_use]
@@ -251,11 +285,17 @@ impl Mechanism {
     }
 
     /// The rows of the six-vector (velocity, angular velocity) of a leg's end that are independent at
-    /// home and determine the leg's joint rates, in ascending order.
+    /// home and determine the leg's joint rates, in ascending order: of legs that block directions of a
+    /// platform that moves aside the best conditioned ones, of others the first.
     #[must_use]
     pub fn closure_rows(&self, leg: usize) -> Vec<usize> {
         let home = &self.home.joints[self.leg_range(leg)];
         let jacobian = self.legs[leg].end_jacobian(home);
+        if self.is_parasitic() {
+            let shared = self.legs[leg].shared_components();
+            let best = best_conditioned(&jacobian.select_rows(&shared));
+            return best.into_iter().map(|row| shared[row]).collect();
+        }
         let mut basis: Vec<nalgebra::DVector<f64>> = Vec::new();
         let mut selected = Vec::new();
         for row in self.legs[leg].shared_components() {

@@ -41,7 +41,7 @@ impl Parasitic {
     /// nowhere near, if their number differs beside home, and for a motion that is not free.
     pub(super) fn at_home(mechanism: &Mechanism) -> Option<Self> {
         let motion = mechanism.platform.as_ref()?.motion;
-        if motion != Motion::Spatial {
+        if motion.of_pose() != Motion::Spatial {
             return None;
         }
         let own = Mobility::at_home(mechanism)?.allowed;
@@ -103,11 +103,13 @@ fn beside(mechanism: &Mechanism, twist: &DVector<f64>) -> Option<Mechanism> {
 }
 
 /// The mechanism of a free platform with a home near `start` at which all legs close, by Newton's iteration on
-/// all closures: pose and joints together, by the smallest step. `None` if it does not get there.
+/// all closures: pose and joints together, by the smallest step, and on to rounding. `None` if it does not get
+/// there.
 pub(super) fn closed(mechanism: &Mechanism, start: &Home) -> Option<Mechanism> {
-    if mechanism.platform.as_ref()?.motion != Motion::Spatial {
+    if mechanism.platform.as_ref()?.motion.of_pose() != Motion::Spatial {
         return None;
     }
+    let mut found: Option<(f64, Home)> = None;
     let mut pose = start.pose.clone();
     let mut joints = start.joints.clone();
     for _ in 0..STEPS {
@@ -116,12 +118,16 @@ pub(super) fn closed(mechanism: &Mechanism, start: &Home) -> Option<Mechanism> {
         if error.iter().any(|missed| !missed.is_finite()) {
             return None;
         }
-        if error.amax() < CLOSED {
-            let home = Home::new(mechanism, pose, joints);
-            return Some(Mechanism {
-                home,
-                ..mechanism.clone()
-            });
+        let missed = error.amax();
+        if missed < CLOSED {
+            // Where steps get no nearer, what is left is rounding.
+            if found
+                .as_ref()
+                .is_some_and(|(known, _)| missed > 0.5 * known)
+            {
+                break;
+            }
+            found = Some((missed, Home::new(mechanism, pose.clone(), joints.clone())));
         }
         let found = SingularValues::new(&jacobian)?;
         let step = found.pseudo_inverse(ROUNDING * found.largest()) * error;
@@ -130,7 +136,73 @@ pub(super) fn closed(mechanism: &Mechanism, start: &Home) -> Option<Mechanism> {
             *joint += change;
         }
     }
-    None
+    let (_, home) = found?;
+    Some(Mechanism {
+        home,
+        ..mechanism.clone()
+    })
+}
+
+impl Mechanism {
+    /// Whether the platform is a free body whose legs block directions that change with its pose.
+    #[must_use]
+    pub fn is_parasitic(&self) -> bool {
+        let platform = self.platform.as_ref();
+        platform.is_some_and(|own| matches!(own.motion, Motion::Parasitic { .. }))
+    }
+
+    /// Of a platform that moves aside, which of x, y, z, rx, ry, rz are independent.
+    #[must_use]
+    pub fn independent_coordinates(&self) -> Option<Vec<usize>> {
+        match self.platform.as_ref()?.motion {
+            Motion::Parasitic { independent } => {
+                Some((0..6).filter(|&at| independent[at]).collect())
+            }
+            _ => None,
+        }
+    }
+
+    /// D of t = D v at a pose and joints that close the legs of a platform that moves aside, 6 x r; `None`
+    /// where the legs leave another number of motions than there are independent coordinates, or these do
+    /// not determine the others.
+    #[must_use]
+    pub(crate) fn platform_jacobian(&self, pose: &[f64], joints: &[f64]) -> Option<DMatrix<f64>> {
+        let own = self.independent_coordinates()?;
+        let mut left = Mobility::at(self, pose, joints)?.allowed;
+        left.rows_mut(0, 3).scale_mut(self.length_scale());
+        if own.len() != left.ncols() {
+            return None;
+        }
+        let inverse = left.select_rows(&own).try_inverse()?;
+        Some(left * inverse)
+    }
+}
+
+/// Condition number of some coordinates as independent ones, and the choice that is best: of a platform that
+/// moves aside, at home, where all legs close. `None` where the legs leave another number of motions.
+pub(super) fn rated(mechanism: &Mechanism) -> Option<Rated> {
+    let own = mechanism.independent_coordinates()?;
+    let left = Mobility::at_home(mechanism)?.allowed;
+    if own.len() != left.ncols() {
+        return None;
+    }
+    let condition = SingularValues::new(&left.select_rows(&own))?.condition();
+    let (best, least) = best_rows(&left)?;
+    Some(Rated {
+        condition,
+        best,
+        least,
+    })
+}
+
+/// How well chosen coordinates determine the others, beside the best choice.
+pub(super) struct Rated {
+    /// Ratio of the largest and smallest singular value of the chosen rows.
+    pub(super) condition: f64,
+    /// The best choice.
+    pub(super) best: Vec<usize>,
+    /// Its condition number.
+    pub(super) least: f64,
 }
 
 /// What all legs' ends miss, and how platform and joints take it away: J q̇ - E t.

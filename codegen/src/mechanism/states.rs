@@ -1,7 +1,8 @@
 //! Random regular states of a mechanism, found numerically: poses around home with joints that close
 //! every leg in the working mode of the home configuration.
 
-use super::home::{REGULAR, close_finely, close_within, lenient_limit};
+use super::home::{REGULAR, close_finely, close_within, condition, lenient_limit};
+use super::parasitic::closed;
 use super::{JointKind, Mechanism, Motion};
 use crate::cas::Stream;
 
@@ -101,12 +102,47 @@ fn displaced(
             .collect();
         return Some((joints.clone(), joints));
     }
+    if mechanism.is_parasitic() {
+        return displaced_aside(mechanism, direction, spread, is_lenient);
+    }
     let pose = match &mechanism.platform {
         Some(platform) => pose_towards(mechanism, platform.motion, direction, spread),
         None => joints_towards(mechanism, direction, spread),
     };
     let joints = follow(mechanism, &pose, is_lenient)?;
     Some((pose, joints))
+}
+
+/// A state of a platform that moves aside: a pose at a length from home, and the nearest one that the legs
+/// allow, followed in small steps so that the working mode stays.
+fn displaced_aside(
+    mechanism: &Mechanism,
+    direction: &[f64],
+    spread: f64,
+    is_lenient: bool,
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    const STEPS: usize = 8;
+    let motion = mechanism.platform.as_ref()?.motion;
+    let mut at = mechanism.home.clone();
+    for step in 1..=STEPS {
+        let part = spread * step as f64 / STEPS as f64;
+        at.pose = pose_towards(mechanism, motion, direction, part);
+        at = closed(mechanism, &at)?.home;
+        let legs = mechanism.legs.iter().enumerate();
+        let mut is_regular = legs.map(|(index, leg)| {
+            let range = mechanism.leg_range(index);
+            let limit = match is_lenient {
+                true => lenient_limit(leg, &mechanism.home.joints[range.clone()]),
+                false => REGULAR,
+            };
+            condition(&leg.closure_jacobian(&at.joints[range])) < limit
+        });
+        if !is_regular.all(|one| one) {
+            return None;
+        }
+        mechanism.platform_jacobian(&at.pose, &at.joints)?;
+    }
+    Some((at.pose, at.joints))
 }
 
 /// The pose at a length from home in a direction of the pose's coordinates. Lengths scale with the

@@ -122,6 +122,8 @@ fn guards<'a>(guards: &[Guard<'a>]) -> Vec<GuardedExpr<'a>> {
         GuardKind::Reach => Condition::Reach { leg },
         GuardKind::Leg(home) => Condition::Leg { leg, home },
         GuardKind::Mass => Condition::Mass,
+        GuardKind::Closed(within) => Condition::Closed { leg, within },
+        GuardKind::Coordinates(home) => Condition::Coordinates { home },
         GuardKind::Platform { home, actuators } => Condition::Platform { actuators, home },
     };
     let guarded = guards.iter().map(|guard| GuardedExpr {

@@ -40,4 +40,7 @@ super::codes! {
     ESTIMATED_ROBOT 513 "the robot of the estimated parameters can't be simulated"
         cause "Instruments come from a simulation with the estimates, and these are too far from a robot to be simulated."
         cure "Set `instruments` to \"periods\" or \"none\" in [identification], or mend what the verdict says of the data."
+    NOT_CLOSED 514 "a pose that the legs do not allow"
+        cause "The platform moves aside: only its independent coordinates can be chosen, the others follow from the legs' closures."
+        cure "Take the pose from the forward kinematics, or bring it back onto the closures; the message says how far it is off."
 }

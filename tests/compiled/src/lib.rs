@@ -20,8 +20,10 @@ robot!(delta: Delta);
 robot!(delta_4: Delta4);
 robot!(dvrk_mtm: DvrkMtm);
 robot!(excavator: Excavator);
+robot!(exechon: Exechon);
 robot!(four_bar: FourBar);
 robot!(hexapod: Hexapod);
+robot!(humanoid_leg: HumanoidLeg);
 robot!(kuka_lwr: KukaLwr);
 robot!(octopod: Octopod);
 robot!(orthoglide: Orthoglide);
@@ -29,8 +31,12 @@ robot!(palletiser: Palletiser);
 robot!(planar_3prr: Planar3Prr);
 robot!(planar_3rrr: Planar3Rrr);
 robot!(planar_4prr: Planar4Prr);
+robot!(reachy_mini: ReachyMini);
 robot!(schoenflies_4: Schoenflies4);
 robot!(scotch_yoke: ScotchYoke);
+robot!(spatial_3prs: Spatial3Prs);
+robot!(spatial_3rps: Spatial3Rps);
+robot!(spatial_3rps_ups: Spatial3RpsUps);
 robot!(spherical_3rrr: Spherical3Rrr);
 robot!(spherical_4rrr: Spherical4Rrr);
 robot!(stanford: Stanford);
@@ -57,9 +63,11 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
         "dvrk_mtm" => &DvrkMtm,
         "emps" => &Emps,
         "excavator" => &Excavator,
+        "exechon" => &Exechon,
         "five_bar" => &FiveBar,
         "four_bar" => &FourBar,
         "hexapod" => &Hexapod,
+        "humanoid_leg" => &HumanoidLeg,
         "kuka_lwr" => &KukaLwr,
         "octopod" => &Octopod,
         "orthoglide" => &Orthoglide,
@@ -67,9 +75,13 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
         "planar_3prr" => &Planar3Prr,
         "planar_3rrr" => &Planar3Rrr,
         "planar_4prr" => &Planar4Prr,
+        "reachy_mini" => &ReachyMini,
         "rx90" => &Rx90,
         "schoenflies_4" => &Schoenflies4,
         "scotch_yoke" => &ScotchYoke,
+        "spatial_3prs" => &Spatial3Prs,
+        "spatial_3rps" => &Spatial3Rps,
+        "spatial_3rps_ups" => &Spatial3RpsUps,
         "spherical_3rrr" => &Spherical3Rrr,
         "spherical_4rrr" => &Spherical4Rrr,
         "stanford" => &Stanford,

@@ -9,6 +9,7 @@
 //! J_k q̈ = J_tk v̇ + J̇_tk v - J̇_k q̇.
 
 use super::Error;
+use super::aside;
 use super::chains;
 use super::frame::logarithm;
 use super::jacobians::{Jacobians, end_jacobian, follow};
@@ -130,6 +131,10 @@ impl State {
     /// Motion of the platform.
     #[must_use]
     pub fn platform(&self, mechanism: &Mechanism) -> BodyMotion {
+        if matches!(mechanism.motion, Motion::Aside(_)) {
+            let still = BodyMotion::at_rest(mechanism.motion.placement(&self.pose));
+            return aside::platform(mechanism, self).unwrap_or(still);
+        }
         platform_motion(
             &mechanism.motion,
             &self.pose,
@@ -260,6 +265,10 @@ fn joint_accelerations(mechanism: &Mechanism, state: &State) -> Result<DVector<f
     }
     if !mechanism.motion.has_platform() {
         return chains::accelerations(mechanism, state);
+    }
+    if matches!(mechanism.motion, Motion::Aside(_)) {
+        let [joints, _] = aside::accelerations(mechanism, state)?;
+        return Ok(joints);
     }
     let platform = state.platform(mechanism);
     let mut all = Vec::new();

@@ -19,6 +19,7 @@ use super::closure::State;
 use super::jacobians::Jacobians;
 use super::linear::{condition, pseudo_inverse};
 use super::mechanism::Mechanism;
+use super::motion::Motion;
 use super::newton_euler::{projected_platform_wrench, regressor, tree_torques};
 use nalgebra::{DMatrix, DVector};
 use std::cell::OnceCell;
@@ -145,7 +146,8 @@ impl<'a> Dynamics<'a> {
     fn wrenches_and_torques(&self) -> DMatrix<f64> {
         let jacobians = &self.jacobians;
         let (wrenches, joints) = jacobians.ends.shape();
-        let (dof, actuators) = (self.mechanism.dof(), jacobians.actuated.len());
+        // Of a platform that moves aside, all six components of its wrench.
+        let (dof, actuators) = (jacobians.attachments.ncols(), jacobians.actuated.len());
         let mut system = DMatrix::zeros(joints + dof, wrenches + actuators);
         system
             .view_mut((0, 0), (joints, wrenches))
@@ -205,6 +207,9 @@ impl<'a> Dynamics<'a> {
     pub fn partition(&self, kept: &[usize], loads: &DMatrix<f64>) -> Result<Partition, Error> {
         let actuators = self.jacobians.actuated.len();
         let projected: Vec<usize> = (0..actuators).filter(|at| !kept.contains(at)).collect();
+        if matches!(self.mechanism.motion, Motion::Aside(_)) {
+            return self.partition_aside(kept, projected, loads);
+        }
         let matrix = self.partition_matrix(&projected);
         let condition = condition(&matrix);
         if condition > SINGULAR {
@@ -222,6 +227,27 @@ impl<'a> Dynamics<'a> {
         Ok(Partition {
             projection: outputs.columns(0, extra).into_owned(),
             regressor: outputs.columns(extra, loads.ncols()).into_owned(),
+            condition,
+            projected,
+        })
+    }
+
+    /// Case 2 of a platform that moves aside, from any torques of the constrained system: they and those of the
+    /// kept actuators alone do the same work.
+    fn partition_aside(
+        &self,
+        kept: &[usize],
+        projected: Vec<usize>,
+        loads: &DMatrix<f64>,
+    ) -> Result<Partition, Error> {
+        let inverse = &self.jacobians.inverse;
+        let own = inverse.select_rows(kept).transpose();
+        let condition = condition(&own);
+        let work = inverse.transpose() * self.any_torques(loads)?;
+        let others = inverse.select_rows(&projected).transpose();
+        Ok(Partition {
+            regressor: solve(&own, &work)?,
+            projection: -solve(&own, &others)?,
             condition,
             projected,
         })

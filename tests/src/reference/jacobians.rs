@@ -14,6 +14,7 @@
 //! For the DualV this gives the corrected (59) and (60).
 
 use super::Error;
+use super::aside;
 use super::chains;
 use super::kinematics::{
     end_components, end_equations, end_from_leg, end_from_platform, leg_motion, platform_motion,
@@ -62,6 +63,9 @@ impl Jacobians {
         }
         if !mechanism.motion.has_platform() {
             return chains::jacobians(mechanism, q);
+        }
+        if matches!(mechanism.motion, Motion::Aside(_)) {
+            return aside::jacobians(mechanism, pose, q);
         }
         let (total, dof) = (mechanism.joints(), mechanism.dof());
         let equations: usize = mechanism.legs.iter().map(end_equations).sum();

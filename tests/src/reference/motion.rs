@@ -42,6 +42,9 @@ pub enum Motion {
     Spherical,
     /// Any motion. Pose: x, y, z and unit quaternion w, x, y, z.
     Spatial,
+    /// The motion of a free body whose legs leave it fewer motions: which of its six components are
+    /// independent. Pose: as of any motion.
+    Aside([bool; 6]),
 }
 
 impl Motion {
@@ -73,6 +76,7 @@ impl Motion {
             Self::Schoenflies(axis) => vec![0, 1, 2, 3 + axis],
             Self::Spherical => (3..6).collect(),
             Self::Spatial => (0..6).collect(),
+            Self::Aside(_) => self.independent(),
         };
         let mut basis = DMatrix::zeros(6, rows.len());
         for (at, &row) in rows.iter().enumerate() {
@@ -95,7 +99,7 @@ impl Motion {
             Self::Translation => Frame::at(pose[0], pose[1], pose[2]),
             Self::Schoenflies(axis) => Frame::at(pose[0], pose[1], pose[2]) * about(axis, pose[3]),
             Self::Spherical => Frame::new(orientation(pose).into_inner(), Vector3::zeros()),
-            Self::Spatial => Frame::new(
+            Self::Spatial | Self::Aside(_) => Frame::new(
                 orientation(&pose[3..]).into_inner(),
                 Vector3::new(pose[0], pose[1], pose[2]),
             ),
@@ -110,6 +114,12 @@ impl Motion {
         let turn_at = match self {
             Self::Spherical => 0,
             Self::Spatial => 3,
+            // Of the independent components, or of all six.
+            Self::Aside(_) if displacement.len() < 6 => {
+                let whole = self.twist_basis() * displacement;
+                return Self::Spatial.displace(pose, &whole);
+            }
+            Self::Aside(_) => 3,
             _ => {
                 return pose
                     .iter()
@@ -131,7 +141,27 @@ impl Motion {
         moved
     }
 
-    /// Displacement, in twist coordinates, from one pose to another.
+    /// The independent ones of the six components of a platform that moves aside; none of others.
+    #[must_use]
+    pub fn independent(&self) -> Vec<usize> {
+        match self {
+            Self::Aside(own) => (0..6).filter(|&at| own[at]).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The components that the platform's wrench is projected on: D of (14), or all six of a platform that moves
+    /// aside.
+    #[must_use]
+    pub fn free_basis(&self) -> DMatrix<f64> {
+        match self {
+            Self::Aside(_) => Self::Spatial.twist_basis(),
+            _ => self.twist_basis(),
+        }
+    }
+
+    /// Displacement, in twist coordinates, from one pose to another; of a platform that moves aside in all six
+    /// components.
     #[must_use]
     pub fn displacement(&self, from: &[f64], to: &[f64]) -> DVector<f64> {
         if !self.has_platform() {
@@ -141,7 +171,7 @@ impl Motion {
         let shift = b.position - a.position;
         let turn = logarithm(&(b.rotation * a.rotation.transpose()));
         let both = Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z);
-        self.twist_basis().transpose() * both
+        self.free_basis().transpose() * both
     }
 }
 

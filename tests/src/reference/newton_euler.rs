@@ -240,7 +240,7 @@ pub fn projected_platform_wrench(
     if !mechanism.motion.has_platform() {
         return DVector::zeros(mechanism.dof());
     }
-    mechanism.motion.twist_basis().transpose() * platform_wrench(mechanism, state, parameters)
+    mechanism.motion.free_basis().transpose() * platform_wrench(mechanism, state, parameters)
 }
 
 /// Torques of a leg that bears a load and has no parameters of its own, and what its base has to bear.
@@ -262,7 +262,11 @@ fn carried_torques(
 #[must_use]
 pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
     let count = super::parameters::count(mechanism);
-    let (joints, dof) = (mechanism.joints(), mechanism.dof());
+    let joints = mechanism.joints();
+    let dof = match mechanism.motion.has_platform() {
+        true => mechanism.motion.free_basis().ncols(),
+        false => mechanism.dof(),
+    };
     let mut columns = DMatrix::zeros(joints + dof, count);
     let motions = state.legs(mechanism);
     for (k, (leg, range)) in mechanism

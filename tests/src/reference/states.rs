@@ -5,11 +5,13 @@
 //! closure is badly conditioned: comparisons there would measure the conditioning, not the model.
 
 use super::Error;
+use super::aside;
 use super::closure::State;
 use super::linear::condition;
 use super::mechanism::Mechanism;
+use super::motion::Motion;
 use super::parameters::{BODY, INERTIAL, count, platform_start};
-use nalgebra::{DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -37,8 +39,16 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Result<V
         let displacement = random_vector(&mut generator, &scales);
         let twist = random_vector(&mut generator, &vec![MAX_SPEED; dof]);
         let acceleration = random_vector(&mut generator, &vec![MAX_ACCELERATION; dof]);
-        let pose = mechanism.motion.displace(&mechanism.home, &displacement);
-        if let Ok(state) = State::solve(mechanism, &pose, &twist, &acceleration)
+        let solved = if matches!(mechanism.motion, Motion::Aside(_)) {
+            let start = aside::start(mechanism);
+            aside::displaced(mechanism, &mechanism.home, &start, &displacement).and_then(
+                |(pose, q)| State::with_joints(mechanism, &pose, &q, &twist, &acceleration),
+            )
+        } else {
+            let pose = mechanism.motion.displace(&mechanism.home, &displacement);
+            State::solve(mechanism, &pose, &twist, &acceleration)
+        };
+        if let Ok(state) = solved
             && is_regular(mechanism, &state)
         {
             states.push(state);
@@ -57,8 +67,21 @@ pub fn is_regular(mechanism: &Mechanism, state: &State) -> bool {
     state.jacobians(mechanism).is_ok_and(|jacobians| {
         jacobians.worst_leg_condition(mechanism) < MAX_CONDITION
             && condition(&jacobians.inverse) < MAX_CONDITION
-            && condition(&jacobians.a_p) < MAX_CONDITION
+            && condition(&reduced_closure(mechanism, &jacobians.a_p)) < MAX_CONDITION
     })
+}
+
+/// A_p, whose rows are those of the legs' adjugates. Chains of different kinds have determinants of different
+/// dimensions, so that their rows are compared by directions alone.
+fn reduced_closure(mechanism: &Mechanism, a_p: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut rows = a_p.clone();
+    if matches!(mechanism.motion, Motion::Joints(_)) {
+        for mut row in rows.row_iter_mut() {
+            let length = row.norm();
+            row /= length;
+        }
+    }
+    rows
 }
 
 /// Random parameters of bodies that could exist: every mass positive, every central inertia a

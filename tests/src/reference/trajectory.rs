@@ -4,8 +4,10 @@
 //! rotation vector, exact up to the second derivative at t = 0, which is all that is asked of it.
 
 use super::Error;
+use super::aside;
 use super::closure::State;
 use super::mechanism::Mechanism;
+use super::motion::Motion;
 use nalgebra::DVector;
 
 /// Step of the finite differences, s.
@@ -18,8 +20,12 @@ pub const STEP: f64 = 3e-4;
 /// If the robot can't reach the pose.
 pub fn at(mechanism: &Mechanism, state: &State, t: f64) -> Result<State, Error> {
     let displacement = &state.twist * t + &state.acceleration * (0.5 * t * t);
-    let pose = mechanism.motion.displace(&state.pose, &displacement);
     let twist = &state.twist + &state.acceleration * t;
+    if matches!(mechanism.motion, Motion::Aside(_)) {
+        let (pose, q) = aside::displaced(mechanism, &state.pose, &state.q, &displacement)?;
+        return State::with_joints(mechanism, &pose, &q, &twist, &state.acceleration);
+    }
+    let pose = mechanism.motion.displace(&state.pose, &displacement);
     State::solve_near(mechanism, &state.q, &pose, &twist, &state.acceleration)
 }
 

@@ -2,6 +2,7 @@
 
 use super::sample::fitted_acceleration;
 use super::{Failure, Parameters, Sample};
+use crate::reference::aside::rates;
 use crate::reference::dynamics::Partition;
 use crate::reference::linear::pseudo_inverse;
 use crate::reference::parameters::{BODY, INERTIAL, leg_start, names, platform_start};
@@ -301,6 +302,9 @@ fn kinematic(
         Function::ClosureActuatorJacobian => jacobians.b_p.clone(),
         Function::LegsJacobian => jacobians.legs.clone(),
         Function::LegsPlatformJacobian => jacobians.platform.clone(),
+        Function::PlatformJacobian => rates(mechanism, &state.pose, &state.q)?[1].clone(),
+        // The pose is one of the robot's.
+        Function::BlockedError => DMatrix::zeros(6 - mechanism.dof(), 1),
         Function::JointVelocities => vector(&state.qd),
         Function::JointAccelerations => vector(&state.qdd),
         Function::TwistFromActuators => vector(&sample.fitted.twist),

@@ -22,9 +22,11 @@ macro_rules! library {
             dvrk_mtm: DvrkMtm,
             emps: Emps,
             excavator: Excavator,
+            exechon: Exechon,
             five_bar: FiveBar,
             four_bar: FourBar,
             hexapod: Hexapod,
+            humanoid_leg: HumanoidLeg,
             kuka_lwr: KukaLwr,
             octopod: Octopod,
             orthoglide: Orthoglide,
@@ -32,9 +34,13 @@ macro_rules! library {
             planar_3prr: Planar3Prr,
             planar_3rrr: Planar3Rrr,
             planar_4prr: Planar4Prr,
+            reachy_mini: ReachyMini,
             rx90: Rx90,
             schoenflies_4: Schoenflies4,
             scotch_yoke: ScotchYoke,
+            spatial_3prs: Spatial3Prs,
+            spatial_3rps: Spatial3Rps,
+            spatial_3rps_ups: Spatial3RpsUps,
             spherical_3rrr: Spherical3Rrr,
             spherical_4rrr: Spherical4Rrr,
             stanford: Stanford,
@@ -64,8 +70,9 @@ macro_rules! library {
 
 /// Robots of the full tier, each with one of the default tier that has the same motion: they take a third of the
 /// time of all. Redundant robots of other motions are there in either tier.
-const LARGER_BROTHERS: [(&str, &str); 4] = [
+const LARGER_BROTHERS: [(&str, &str); 5] = [
     ("octopod", "hexapod"),
+    ("reachy_mini", "hexapod"),
     ("delta_4", "delta"),
     ("orthoglide", "delta"),
     ("spherical_4rrr", "spherical_3rrr"),

@@ -29,8 +29,13 @@ pub fn against_reference(
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let mut comparisons = [of_base, of_others].map(Comparison::new);
     for function in &model.functions {
-        // The closure error is what Newton's method drives to zero, not a quantity of its own.
-        if function.computes != Function::ClosureError {
+        // The closure error is what Newton's method drives to zero, not a quantity of its own, and of rows that
+        // legs block any multiples would serve.
+        let is_compared = !matches!(
+            function.computes,
+            Function::ClosureError | Function::BlockedJacobian
+        );
+        if is_compared {
             let at = usize::from(!function.name.contains("_base"));
             comparisons[at].function(function, &Evaluated(&model), &all, &truths)?;
         }

@@ -65,6 +65,7 @@ fn is_offered(model: &RobotModel, function: Function) -> bool {
         Condition::Redundancy => mechanism.actuated().len() > mechanism.dof(),
         Condition::Payload => platform.is_some_and(|p| p.payload.is_some()),
         Condition::NumericJoints => model.selection.joints == JointsBy::Newton,
+        Condition::Parasitic => mechanism.is_parasitic(),
         // Whether there is a closed form is the generator's knowledge alone.
         Condition::ClosedForm => model.served(function).is_some(),
         _ => true,
@@ -419,7 +420,9 @@ fn is_alike(one: &SampleError, other: &SampleError) -> bool {
     let error = match (one.error, other.error) {
         (Error::OutOfReach { leg }, Error::OutOfReach { leg: other })
         | (Error::SingularLeg { leg, .. }, Error::SingularLeg { leg: other, .. }) => leg == other,
-        (Error::SingularPlatform { .. }, Error::SingularPlatform { .. })
+        (Error::NotClosed { leg, .. }, Error::NotClosed { leg: other, .. }) => leg == other,
+        (Error::SingularCoordinates { .. }, Error::SingularCoordinates { .. })
+        | (Error::SingularPlatform { .. }, Error::SingularPlatform { .. })
         | (Error::NoConvergence { .. }, Error::NoConvergence { .. }) => true,
         (one, other) => one == other,
     };
@@ -429,7 +432,8 @@ fn is_alike(one: &SampleError, other: &SampleError) -> bool {
 /// The largest difference, relative to the largest number.
 fn difference(found: &[f64], wanted: &[f64]) -> f64 {
     assert_eq!(found.len(), wanted.len());
-    let largest = wanted.iter().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+    // What is zero but for rounding, as by how much a pose misses the closures, is not compared digit by digit.
+    let largest = wanted.iter().fold(1e-6, |m: f64, x| m.max(x.abs()));
     let differences = found
         .iter()
         .zip(wanted)

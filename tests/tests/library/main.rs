@@ -1,5 +1,5 @@
 //! Every robot of `robots/`, compiled and evaluated: against the numeric reference, against the energy,
-//! against the recursive Newton-Euler algorithm, at singularities and where something is exactly zero, the
+//! against the recursive Newton-Euler algorithm, at singularities and where something is exactly zero, platforms that move aside, the
 //! ranks of its regressor, and backend against backend for every kind of input,
 //! and with known parameters.
 //!
@@ -11,6 +11,7 @@ mod finite;
 mod forms;
 mod known;
 mod newton_euler;
+mod parasitic;
 mod power;
 mod ranks;
 mod singularities;

@@ -154,6 +154,14 @@ impl<'a> Robot<'a> {
                     what: "mass matrix".to_owned(),
                     condition: 0.0,
                 },
+                Condition::Closed { leg, .. } => Refusal {
+                    what: leg.clone(),
+                    condition: failed.value.abs(),
+                },
+                Condition::Coordinates { home } => Refusal {
+                    what: "independent coordinates".to_owned(),
+                    condition: home / failed.value.abs(),
+                },
                 Condition::Platform { actuators, home } => Refusal {
                     what: actuators.to_string(),
                     condition: home / failed.value.abs(),

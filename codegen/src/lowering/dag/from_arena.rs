@@ -6,7 +6,7 @@ use crate::cas::hasher::QuickMap;
 use crate::cas::{Arena, Expr};
 use crate::lowering::GuardedExpr;
 
-/// The DAG of some entries. Guards whose value no entry needs are left out.
+/// The DAG of some entries. Guards whose value no entry needs are left out, but for those on the pose itself.
 pub(crate) fn from_arena<'a>(
     arena: &'a Arena,
     entries: &[Expr<'a>],
@@ -19,6 +19,9 @@ pub(crate) fn from_arena<'a>(
     }
     for guard in guards {
         let handle = guard.value.handle();
+        if guard.condition.is_of_pose() {
+            let _ = copy.edge(handle);
+        }
         if let Some(&node) = copy.numbers.get(&handle.index()) {
             copy.dag.push_guard(GuardedEdge {
                 value: Edge::new(node, handle.is_negative()),

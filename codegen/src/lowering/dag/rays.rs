@@ -40,7 +40,12 @@ pub struct States<'s> {
 
 /// All nodes at the states, of a graph that has no nodes of the optimiser's own yet.
 pub(super) fn states(dag: &Dag, known: &States<'_>) -> Vec<State> {
-    let guards: Vec<Edge> = dag.guards().iter().map(|guard| guard.value).collect();
+    // Values that vanish at every pose of the robot have no sign.
+    let guards = dag
+        .guards()
+        .iter()
+        .filter(|guard| !guard.condition.is_of_pose());
+    let guards: Vec<Edge> = guards.map(|guard| guard.value).collect();
     let needed = dag.needed(guards.iter().map(|guard| guard.node()));
     let needed: Vec<usize> = (0..dag.len()).filter(|&node| needed[node]).collect();
     let mut stream = Stream::new(0);

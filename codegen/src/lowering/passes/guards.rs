@@ -1,4 +1,4 @@
-//! A condition matters where its value is divided by or has its root taken.
+//! A condition matters where its value is divided by or has its root taken, and everywhere if it is one on the pose.
 
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition};
@@ -12,5 +12,5 @@ pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
             matters[of.node()] = true;
         }
     }
-    dag.retain_guards(|guard| matters[guard.value.node()]);
+    dag.retain_guards(|guard| guard.condition.is_of_pose() || matters[guard.value.node()]);
 }

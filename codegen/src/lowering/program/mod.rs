@@ -155,8 +155,27 @@ pub enum Condition {
         /// The value's magnitude at the home configuration.
         home: f64,
     },
+    /// The value is at most `within` from zero, else the pose is none that the leg allows.
+    Closed {
+        /// Name of the leg.
+        leg: String,
+        /// How far from zero the value may be, m or rad.
+        within: f64,
+    },
+    /// The value is not small against `home`, else the independent coordinates do not determine the others.
+    Coordinates {
+        /// The value's magnitude at the home configuration.
+        home: f64,
+    },
     /// The value is positive, else the mass matrix is not positive definite.
     Mass,
+}
+
+impl Condition {
+    /// Whether it is a condition on the pose that holds whatever a function computes.
+    pub(crate) const fn is_of_pose(&self) -> bool {
+        matches!(self, Self::Closed { .. })
+    }
 }
 
 /// A condition on a value.

@@ -75,7 +75,10 @@ impl Program {
         for (at, guard) in self.guards.iter().enumerate() {
             self.verify_operand(guard.operand, self.steps.len())
                 .map_err(|broken| format!("guard {at} is on {broken}"))?;
-            if let Condition::Leg { home, .. } | Condition::Platform { home, .. } = guard.condition
+            if let Condition::Leg { home, .. }
+            | Condition::Platform { home, .. }
+            | Condition::Coordinates { home }
+            | Condition::Closed { within: home, .. } = guard.condition
                 && !home.is_finite()
             {
                 return Err(format!("guard {at} compares with {home}"));

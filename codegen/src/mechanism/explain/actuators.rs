@@ -2,9 +2,10 @@
 
 use super::motions::{Motions, listed};
 use crate::description::Description;
+use crate::description::SIX;
 use crate::diagnostic::{Code, Diagnostic, DiagnosticKind};
 use crate::mechanism::mobility::Mobility;
-use crate::mechanism::parasitic::Parasitic;
+use crate::mechanism::parasitic::{Parasitic, Rated};
 use crate::mechanism::singular_values::SingularValues;
 use crate::mechanism::states::random_states;
 use crate::mechanism::{Home, Leg, Mechanism};
@@ -51,10 +52,55 @@ pub(in crate::mechanism) fn too_few_actuators(
 /// A platform that moves aside while it moves: what it does, and a way out.
 fn moves_aside(found: &Parasitic) -> String {
     format!(
-        "these determine the others best (condition number {:.1} at home), and beside the home pose the platform moves aside with them, {}, which no `motion` describes: give the legs more passive joints, or hold the platform with a leg that is a skeleton, as robots/tricept.toml does",
+        "these determine the others best (condition number {:.1} at home), and beside the home pose the platform moves aside with them, {}: write {} beside `motion`, or give the legs more passive joints",
         found.condition,
-        words(&found.following)
+        words(&found.following),
+        key(&found.independent)
     )
+}
+
+/// The key that names independent coordinates.
+fn key(coordinates: &[usize]) -> String {
+    let names = coordinates.iter().map(|&at| format!("\"{}\"", SIX[at]));
+    format!("independent = [{}]", names.collect::<Vec<_>>().join(", "))
+}
+
+/// Independent coordinates of a platform that moves aside which are not as many as the legs leave, or do not
+/// determine the others.
+pub(in crate::mechanism) fn independent(
+    description: &Description,
+    mechanism: &Mechanism,
+    found: Option<&Rated>,
+) -> Diagnostic {
+    let span = description.platform.as_ref().map(|p| p.motion.span.clone());
+    let span = span.unwrap_or(description.name.span.clone());
+    let own = mechanism.dof();
+    let Some(found) = found else {
+        let left = Mobility::at_home(mechanism).map_or(0, |mobility| mobility.count());
+        let help = match Parasitic::at_home(mechanism) {
+            Some(found) => format!("write {}", key(&found.independent)),
+            None if left == 6 => {
+                "leave `independent` out: the legs leave the platform all six".to_owned()
+            }
+            None => "choose a `motion` that the legs allow, or give the legs other passive joints"
+                .to_owned(),
+        };
+        let message = format!(
+            "{own} coordinates are independent, but the legs leave the platform {left} motions"
+        );
+        return Diagnostic::new(Code::NOT_HELD, message, span).help(help);
+    };
+    let message = "the independent coordinates do not determine the platform's motion at home";
+    Diagnostic::new(Code::NOT_HELD, message, span)
+        .label(match found.condition.is_finite() {
+            true => format!("their condition number is {:.1e}", found.condition),
+            false => "the others do not follow from them".to_owned(),
+        })
+        .help(format!(
+            "write {}, whose condition number is {:.1}",
+            key(&found.best),
+            found.least
+        ))
 }
 
 /// "along z, and about x and y".
@@ -85,7 +131,7 @@ pub(in crate::mechanism) fn not_held(description: &Description, mobility: &Mobil
             "they leave it {} motions, {words}, and the actuators drive all of them",
             mobility.count()
         ))
-        .help("choose a `motion` with all of these coordinates: actuators may keep the platform to fewer, but what its model takes for internal torques then moves it; a platform that moves aside while it turns, as that of a 3-RPS, has no word here: its legs need another passive joint to be described")
+        .help("choose a `motion` with all of these coordinates: actuators may keep the platform to fewer, but what its model takes for internal torques then moves it; a platform that moves aside while it turns, as that of a 3-RPS, is `spatial` with `independent` coordinates")
         .kind(DiagnosticKind::NotHeld)
 }
 

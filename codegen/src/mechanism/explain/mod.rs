@@ -4,7 +4,7 @@
 mod actuators;
 mod motions;
 
-pub(super) use actuators::{not_held, too_few_actuators, underactuated};
+pub(super) use actuators::{independent, not_held, too_few_actuators, underactuated};
 
 use super::home::HomeError;
 use super::reach::{Reach, look, wrapped};

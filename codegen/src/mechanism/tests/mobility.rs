@@ -60,11 +60,63 @@ fn more_actuators_are_no_way_out_where_the_legs_leave_fewer_motions() {
             "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
             "these determine the others best (condition number 1.0 at home)",
             "moves aside with them, along x and y",
-            "which no `motion` describes",
+            "write independent = [\"z\", \"rx\", \"ry\"] beside `motion`",
             "leg `rps` has too few joints to follow the platform's motion",
         ],
     );
     assert!(!said(&text).contains("mark more joints"));
+}
+
+/// The three legs with independent coordinates.
+fn with_independent(coordinates: &str) -> String {
+    let key = format!("motion = \"spatial\"\nindependent = [{coordinates}]");
+    three_rps("spatial").replace("motion = \"spatial\"", &key)
+}
+
+#[test]
+fn independent_coordinates_that_determine_the_others_make_a_robot() {
+    assert_eq!(said(&with_independent("\"z\", \"rx\", \"ry\"")), "a robot");
+}
+
+#[test]
+fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
+    assert_said(
+        &with_independent("\"x\", \"rx\", \"ry\""),
+        "5:10",
+        &[
+            "the independent coordinates do not determine the platform's motion at home",
+            "write independent = [\"z\", \"rx\", \"ry\"], whose condition number is 1.0",
+        ],
+    );
+    assert_said(
+        &with_independent("\"z\", \"rx\""),
+        "5:10",
+        &[
+            "2 coordinates are independent, but the legs leave the platform 3 motions",
+            "write independent = [\"z\", \"rx\", \"ry\"]",
+        ],
+    );
+    let twice = said(&with_independent("\"z\", \"z\""));
+    assert!(twice.contains("`z` is there twice"), "{twice}");
+    let all = said(&with_independent(
+        "\"x\", \"y\", \"z\", \"rx\", \"ry\", \"rz\"",
+    ));
+    assert!(
+        all.contains("6 of six coordinates are independent"),
+        "{all}"
+    );
+    let planar = changed(
+        PLANAR,
+        &[(
+            "motion = \"planar\"",
+            "motion = \"planar\"\nindependent = [\"x\"]",
+        )],
+    );
+    let planar = self::said(&planar);
+    assert!(
+        planar.contains("`independent` has no meaning for this motion"),
+        "{planar}"
+    );
 }
 
 /// A pose that is tilted, but not moved aside, is none that the legs allow: it is brought back onto them, and
@@ -81,7 +133,7 @@ fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
         &[
             "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
             "these determine the others best (condition number 1.",
-            "moves aside with them, along x and y, and about z, which no `motion` describes",
+            "moves aside with them, along x and y, and about z: write independent = ",
         ],
     );
     assert!(!said(&tilted).contains("mark more joints"));

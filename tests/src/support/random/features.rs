@@ -71,7 +71,7 @@ impl Sketch {
             Motion::Translation => "translation",
             Motion::Schoenflies(_) => "schoenflies",
             Motion::Spherical => "spherical",
-            Motion::Spatial => "spatial",
+            Motion::Spatial | Motion::Aside(_) => "spatial",
         };
         note(true, format!("motion: {motion}"));
         note(self.shapes.len() > 1, "legs that differ".to_owned());

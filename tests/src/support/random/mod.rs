@@ -9,6 +9,7 @@
 //! A [`Sketch`] is written twice from the same numbers: as TOML, which the generator reads, and as the
 //! plain data of the numeric [`reference`](mod@crate::reference).
 
+mod aside;
 mod chain;
 mod defect;
 mod dice;
@@ -19,6 +20,7 @@ mod plain;
 mod skeleton;
 mod text;
 
+pub use aside::aside;
 pub use defect::Defect;
 pub use dice::Dice;
 pub use friction::Load;

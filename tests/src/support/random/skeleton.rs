@@ -199,7 +199,7 @@ fn place(places: &mut String, name: &str, home: &[String]) {
     );
 }
 
-fn write(text: &mut String, what: std::fmt::Arguments<'_>) {
+pub(super) fn write(text: &mut String, what: std::fmt::Arguments<'_>) {
     // Text takes what is written.
     let _ = text.write_fmt(what);
 }

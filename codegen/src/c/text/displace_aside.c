@@ -1,0 +1,121 @@
+/* Moves a pose by six components of a velocity: the position, and the quaternion (w, x, y, z), which is multiplied
+ * from the left by the exponential of the rotation vector that the last three are. */
+static void rob_displace_freely(double *pose, const double *step)
+{
+    const double *const turn = &step[3];
+    double *const q = &pose[3];
+    const double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+    /* sin(a/2)/a tends to 1/2. */
+    const double scale = (angle > 1e-12) ? (sin(0.5 * angle) / angle) : 0.5;
+    const double a = cos(0.5 * angle);
+    const double b = scale * turn[0];
+    const double c = scale * turn[1];
+    const double d = scale * turn[2];
+    double product[4];
+    double sum = 0.0;
+    for (int i = 0; i < 3; i++) {
+        pose[i] += step[i];
+    }
+    product[0] = a * q[0] - b * q[1] - c * q[2] - d * q[3];
+    product[1] = a * q[1] + b * q[0] + c * q[3] - d * q[2];
+    product[2] = a * q[2] - b * q[3] + c * q[0] + d * q[1];
+    product[3] = a * q[3] + b * q[2] - c * q[1] + d * q[0];
+    for (int i = 0; i < 4; i++) {
+        sum += product[i] * product[i];
+    }
+    sum = sqrt(sum);
+    for (int i = 0; i < 4; i++) {
+        q[i] = product[i] / sum;
+    }
+}
+
+/* Solves a square system in place by elimination with row pivoting; 0 where it is singular. */
+static int rob_eliminate(double matrix[ROB_BLOCKED][ROB_BLOCKED], double *vector)
+{
+    int is_regular = 1;
+    for (int k = 0; (k < ROB_BLOCKED) && (is_regular != 0); k++) {
+        int pivot = k;
+        for (int row = k + 1; row < ROB_BLOCKED; row++) {
+            if (fabs(matrix[row][k]) > fabs(matrix[pivot][k])) {
+                pivot = row;
+            }
+        }
+        if (pivot != k) {
+            double side = vector[k];
+            vector[k] = vector[pivot];
+            vector[pivot] = side;
+            for (int column = k; column < ROB_BLOCKED; column++) {
+                side = matrix[k][column];
+                matrix[k][column] = matrix[pivot][column];
+                matrix[pivot][column] = side;
+            }
+        }
+        is_regular = (fabs(matrix[k][k]) > 0.0) ? 1 : 0;
+        for (int row = k + 1; (row < ROB_BLOCKED) && (is_regular != 0); row++) {
+            const double factor = matrix[row][k] / matrix[k][k];
+            for (int column = k; column < ROB_BLOCKED; column++) {
+                matrix[row][column] -= factor * matrix[k][column];
+            }
+            vector[row] -= factor * vector[k];
+        }
+    }
+    for (int k = ROB_BLOCKED - 1; (k >= 0) && (is_regular != 0); k--) {
+        for (int column = k + 1; column < ROB_BLOCKED; column++) {
+            vector[k] -= matrix[k][column] * vector[column];
+        }
+        vector[k] /= matrix[k][k];
+    }
+    return is_regular;
+}
+
+/* Moves a pose by one displacement, whose independent components are the step; the others are found by Newton's
+ * method so that the legs close. Where they do not, the pose stays on the way: functions refuse it. */
+static void rob_displace(double *pose, const double *step)
+{
+    double whole[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+    double start[ROB_POSE];
+    for (int i = 0; i < ROB_POSE; i++) {
+        start[i] = pose[i];
+    }
+    for (int i = 0; i < ROB_DOF; i++) {
+        whole[rob_independent[i]] = step[i];
+    }
+    for (int count = 0; count < 40; count++) {
+        double errors[ROB_BLOCKED];
+        double jacobian[ROB_BLOCKED * 6];
+        double square[ROB_BLOCKED][ROB_BLOCKED];
+        double largest = 0.0;
+        double scale;
+        for (int i = 0; i < ROB_POSE; i++) {
+            pose[i] = start[i];
+        }
+        rob_displace_freely(pose, whole);
+        if (rob_blocked_error(pose, errors) != ROB_OK) {
+            return;
+        }
+        if (rob_blocked_jacobian(pose, jacobian) != ROB_OK) {
+            return;
+        }
+        for (int row = 0; row < ROB_BLOCKED; row++) {
+            for (int column = 0; column < ROB_BLOCKED; column++) {
+                square[row][column] = jacobian[6 * row + rob_dependent[column]];
+            }
+        }
+        if (rob_eliminate(square, errors) == 0) {
+            return;
+        }
+        for (int i = 0; i < ROB_BLOCKED; i++) {
+            if (!isfinite(errors[i])) {
+                return;
+            }
+            largest = (fabs(errors[i]) > largest) ? fabs(errors[i]) : largest;
+        }
+        if (largest < LIMIT_JOINT_STEP) {
+            return;
+        }
+        scale = (largest > 0.5) ? (0.5 / largest) : 1.0;
+        for (int i = 0; i < ROB_BLOCKED; i++) {
+            whole[rob_dependent[i]] -= scale * errors[i];
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! What the legs of a platform that moves aside block, and how it moves.
+//!
+//! The platform is derived as a free body, and every leg is closed on it as on any other. A leg with more
+//! shared components than joints leaves rows over: a wrench (a, n) at its end that no joint feels,
+//! a · Ṗ + n · ω = 0, which are the rows of A t = 0. Its derivative needs none of A: with the bias accelerations
+//! of the leg's end at u̇ = 0 it is a · (P̈ - b) + n · (ω̇ - β) = 0, and gives the dependent part of ṫ.
+
+use super::bias::end_bias;
+use super::frames::LegFrames;
+use super::guard::{Guard, GuardKind};
+use super::linear::apply;
+use super::names::coordinate_label;
+use super::parasitic::{Aside, SIX};
+use super::platform::PlatformPose;
+use super::robot::Robot;
+use super::underivable::Underivable;
+use crate::cas::{Expr, Number, Ratio, Vector3};
+use crate::mechanism::numeric::best_conditioned;
+use crate::mechanism::{End, Leg, Motion, TwistCoordinate};
+use nalgebra::DMatrix;
+
+impl<'a> Robot<'a> {
+    /// Of a platform that moves aside, how its velocity follows from the independent coordinates: by those rows
+    /// that determine the dependent ones best at home.
+    ///
+    /// # Errors
+    /// Rows that do not determine them.
+    pub(super) fn derive_aside(&mut self) -> Result<Option<Aside<'a>>, Underivable> {
+        let Some(independent) = self.mechanism.independent_coordinates() else {
+            return Ok(None);
+        };
+        let dependent: Vec<usize> = (0..SIX).filter(|at| !independent.contains(at)).collect();
+        let all = self.blocked_rows();
+        let at_home = DMatrix::from_fn(all.len(), dependent.len(), |row, column| {
+            self.at_home(all[row].1[dependent[column]])
+        });
+        let chosen = best_conditioned(&at_home).into_iter();
+        let rows = chosen.map(|row| all[row].clone()).collect();
+        let home = |value: Expr<'a>| self.at_home(value);
+        let solved = Aside::new([independent, dependent], rows, &home);
+        let (aside, determinants) =
+            solved.ok_or_else(|| Underivable::SingularHome { leg: String::new() })?;
+        self.guard_coordinates(&determinants);
+        Ok(Some(aside))
+    }
+
+    /// All rows of A that legs leave over, per component of t, with the leg and their number in it.
+    fn blocked_rows(&self) -> Vec<((usize, usize), Vec<Expr<'a>>)> {
+        let mut all = Vec::new();
+        for (leg, state) in self.legs.iter().enumerate() {
+            let Some(closure) = &state.closure else {
+                continue;
+            };
+            for (at, row) in closure.blocked_rows().into_iter().enumerate() {
+                all.push(((leg, at), row));
+            }
+        }
+        all
+    }
+
+    /// The conditions on which the independent coordinates determine the others.
+    fn guard_coordinates(&mut self, determinants: &[Expr<'a>]) {
+        for determinant in determinants {
+            let (_, base) = determinant.factor_and_base();
+            if base.as_number().is_none() && !self.guards.iter().any(|g| g.value == base) {
+                let kind = GuardKind::Coordinates(self.at_home(base).abs());
+                self.guards.push(Guard {
+                    value: base,
+                    kind,
+                    leg: String::new(),
+                });
+            }
+        }
+    }
+
+    /// What is had per component of the platform's velocity, per independent coordinate.
+    pub(super) fn on_independent(&self, free: Vec<Expr<'a>>) -> Vec<Expr<'a>> {
+        match &self.aside {
+            Some(aside) => aside.on_independent(&free),
+            None => free,
+        }
+    }
+
+    /// Velocity and acceleration of the platform in the directions of its pose. `None` without a platform.
+    pub(super) fn free_motion(
+        &self,
+        twist: &[Expr<'a>],
+        acceleration: &[Expr<'a>],
+    ) -> (Vec<Expr<'a>>, Vec<Expr<'a>>) {
+        let (Some(aside), Some(platform)) = (&self.aside, &self.platform) else {
+            return (twist.to_vec(), acceleration.to_vec());
+        };
+        let velocity = aside.velocity(twist);
+        for &at in &aside.dependent {
+            let _ = velocity[at].named(&coordinate_label(&self.free[at]));
+        }
+        let still = vec![self.arena.zero(); SIX];
+        let moved = platform.motion(&velocity, &still);
+        let missing: Vec<Expr<'a>> = aside
+            .rows
+            .iter()
+            .map(|&(leg, at)| {
+                let state = &self.legs[leg];
+                let Some(closure) = &state.closure else {
+                    return self.arena.zero();
+                };
+                let own = &self.mechanism.legs[leg];
+                self.arena.enter(&own.name);
+                let u = closure.velocities(&moved);
+                let bias = end_bias(self.arena, own, &state.frames, &state.rates, &u);
+                let along = -closure.blocked_acceleration(self.arena, at, &moved, &bias);
+                self.arena.enter("");
+                along
+            })
+            .collect();
+        let own = apply(&aside.follow, acceleration);
+        let bias = apply(&aside.inverse, &missing);
+        let others: Vec<Expr<'a>> = own.iter().zip(&bias).map(|(a, b)| *a + *b).collect();
+        (velocity, aside.together(acceleration, &others))
+    }
+
+    /// By how much the pose misses what the legs allow: for each row of A, with the leg.
+    pub(super) fn blocked_errors(&self) -> Vec<(Expr<'a>, usize)> {
+        let rows = self.aside.iter().flat_map(|aside| &aside.rows);
+        let missed = rows.filter_map(|&(leg, at)| {
+            let state = &self.legs[leg];
+            let closure = state.closure.as_ref()?;
+            let (linear, angular) = missed(
+                state.platform.as_ref()?,
+                closure.arm,
+                &self.mechanism.legs[leg],
+                &state.frames,
+            )?;
+            Some((closure.blocked[at].along(linear, angular), leg))
+        });
+        missed.collect()
+    }
+
+    /// The conditions on which the pose is one that the legs allow.
+    pub(super) fn closed_guards(&self) -> Vec<Guard<'a>> {
+        let scale = self.mechanism.length_scale();
+        let errors = self.blocked_errors().into_iter();
+        let guard = |(value, leg): (Expr<'a>, usize)| Guard {
+            value,
+            kind: GuardKind::Closed(overact_core::CLOSED * scale.max(1e-3)),
+            leg: self.mechanism.legs[leg].name.clone(),
+        };
+        errors.map(guard).collect()
+    }
+
+    /// The components of the platform's velocity, in the directions of its pose.
+    pub(super) fn free_coordinates(motion: Option<Motion>) -> Vec<TwistCoordinate> {
+        motion.map(|own| own.of_pose().twist()).unwrap_or_default()
+    }
+}
+
+/// By how much a leg's end misses its place, in the leg's axes: a position (m), and half the axial vector of the
+/// rotation that is left (rad for small ones).
+pub(super) fn missed<'a>(
+    platform: &PlatformPose<'a>,
+    arm: Vector3<'a>,
+    leg: &Leg,
+    frames: &LegFrames<'a>,
+) -> Option<(Vector3<'a>, Vector3<'a>)> {
+    let arena = arm.x().arena();
+    let last = frames.frames.last()?;
+    let into = frames.axes.transposed();
+    let base = Vector3::constant(arena, leg.base.at);
+    let position = into * (platform.origin + arm - base) - last.origin;
+    let turn = match &leg.end {
+        Some(End::Rigid(placement)) => {
+            let left = (into * platform.orientation(placement)) * last.rotation.transposed();
+            let half = Number::ratio(Ratio::new(1, 2).unwrap_or(Ratio::ONE));
+            let m = left.0;
+            let axial = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
+            Vector3(axial.map(|a| a * half))
+        }
+        _ => Vector3::zero(arena),
+    };
+    Some((position, turn))
+}

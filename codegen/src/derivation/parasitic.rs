@@ -1,0 +1,109 @@
+//! A platform that moves aside: its legs block directions A t = 0 that change with the pose, so that of the
+//! six components of its velocity t the independent ones v give the others.
+//!
+//! With the rows A split by coordinates into those of the independent ones and the dependent ones, t = D v,
+//! where D is the identity on the independent coordinates and -A_d⁻¹ A_i on the others; what is derived per
+//! component of t, rows of reduced Jacobians and forces, goes to v by D.
+
+use super::elimination::{Inverse, Rows, inverse};
+use super::linear::{apply, product};
+use crate::cas::{Arena, Expr};
+
+/// Components of a free body's velocity.
+pub(super) const SIX: usize = 6;
+
+/// How the velocity of a platform that moves aside follows from its independent coordinates.
+#[derive(Debug)]
+pub struct Aside<'a> {
+    /// Which components of t the independent coordinates are.
+    independent: Vec<usize>,
+    /// The others.
+    pub(super) dependent: Vec<usize>,
+    /// The rows of A: the leg, and which of those that it leaves over.
+    pub(super) rows: Vec<(usize, usize)>,
+    /// A, per component of t.
+    pub(super) matrix: Rows<'a>,
+    /// A_d⁻¹.
+    pub(super) inverse: Rows<'a>,
+    /// -A_d⁻¹ A_i.
+    pub(super) follow: Rows<'a>,
+}
+
+impl<'a> Aside<'a> {
+    /// Solves rows of A, as many as there are dependent coordinates, each with its leg and number there; also
+    /// what was divided by. `home` gives an expression's value at home. `None` for rows that do not determine
+    /// the dependent coordinates.
+    pub(super) fn new(
+        [independent, dependent]: [Vec<usize>; 2],
+        rows: Vec<((usize, usize), Vec<Expr<'a>>)>,
+        home: &dyn Fn(Expr<'a>) -> f64,
+    ) -> Option<(Self, Vec<Expr<'a>>)> {
+        let (rows, matrix): (Vec<_>, Rows<'a>) = rows.into_iter().unzip();
+        if rows.len() < dependent.len() {
+            return None;
+        }
+        let part = |columns: &[usize]| -> Rows<'a> {
+            let row = |row: &Vec<Expr<'a>>| columns.iter().map(|&c| row[c]).collect();
+            matrix.iter().map(row).collect()
+        };
+        let (own, others) = (part(&independent), part(&dependent));
+        let Inverse {
+            rows: inverse,
+            determinants,
+            ..
+        } = inverse(&others, home)?;
+        let follow: Rows<'a> = product(&inverse, &own)
+            .into_iter()
+            .map(|row| row.into_iter().map(|entry| -entry).collect())
+            .collect();
+        let solved = Self {
+            independent,
+            dependent,
+            rows,
+            matrix,
+            inverse,
+            follow,
+        };
+        Some((solved, determinants))
+    }
+
+    /// t of the independent velocities.
+    pub(super) fn velocity(&self, twist: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        self.together(twist, &apply(&self.follow, twist))
+    }
+
+    /// Six components from the independent ones and the others.
+    pub(super) fn together(&self, own: &[Expr<'a>], others: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let component = |at: usize| match self.independent.iter().position(|&own| own == at) {
+            Some(place) => own[place],
+            None => {
+                let place = self.dependent.iter().position(|&own| own == at);
+                others[place.unwrap_or_default()]
+            }
+        };
+        (0..SIX).map(component).collect()
+    }
+
+    /// Dᵀ of six components: forces, or a row per component of t.
+    pub(super) fn on_independent(&self, six: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let entry = |(column, &own): (usize, &usize)| {
+            let others = self.dependent.iter().zip(&self.follow);
+            others.fold(six[own], |sum, (&at, row)| sum + row[column] * six[at])
+        };
+        self.independent.iter().enumerate().map(entry).collect()
+    }
+
+    /// D, 6 x r.
+    pub(super) fn platform_jacobian(&self, arena: &'a Arena) -> Rows<'a> {
+        let count = self.independent.len();
+        let unit = |at: usize| (0..count).map(move |c| arena.integer(i64::from(c == at)));
+        let row = |at: usize| match self.independent.iter().position(|&own| own == at) {
+            Some(place) => unit(place).collect(),
+            None => {
+                let place = self.dependent.iter().position(|&own| own == at);
+                self.follow[place.unwrap_or_default()].clone()
+            }
+        };
+        (0..SIX).map(row).collect()
+    }
+}

@@ -1,0 +1,318 @@
+//! Platforms that move aside: a free body and all joints of the legs at once, closed by the equations of all
+//! legs' ends.
+//!
+//! No leg is solved by itself, and no matrix that gives the dependent coordinates is formed. With Φ the
+//! derivative of all ends' equations by all joint rates and the six components of the platform's velocity t,
+//! Φ [q̇; t] = 0 stands above S t = v, which names the independent components, and both are solved together by
+//! least squares: the null space of Φ in the basis in which the independent components are units.
+//! Accelerations follow from the same matrix with the bias accelerations of both sides of every end.
+
+use super::Error;
+use super::closure::{State, closure_residual};
+use super::jacobians::{Jacobians, attachment_jacobian, end_jacobian};
+use super::kinematics::{
+    BodyMotion, end_components, end_equations, end_from_leg, end_from_platform, leg_motion,
+    platform_motion,
+};
+use super::linear::pseudo_inverse;
+use super::mechanism::{Leg, Mechanism};
+use super::motion::Motion;
+use nalgebra::{DMatrix, DVector};
+
+/// Largest relative residual of the equations that counts as rounding.
+const CONSISTENCY: f64 = 1e-9;
+/// Largest closure residual, metres and radians.
+const CLOSED: f64 = 1e-12;
+/// Residual at which Newton's method stops: rounding.
+const EXACT: f64 = 3e-16;
+/// Steps on the way to a pose.
+const STEPS: usize = 8;
+
+/// The same robot with a platform whose six components are all independent.
+#[must_use]
+pub fn freed(mechanism: &Mechanism) -> Mechanism {
+    Mechanism {
+        motion: Motion::Spatial,
+        ..mechanism.clone()
+    }
+}
+
+/// Φ: velocities of all ends less those of their places, per joint rate and per component of t.
+fn closures(free: &Mechanism, pose: &[f64], q: &DVector<f64>) -> DMatrix<f64> {
+    let equations: usize = free.legs.iter().map(end_equations).sum();
+    let joints = free.joints();
+    let mut all = DMatrix::zeros(equations, joints + 6);
+    let mut first = 0;
+    for (leg, range) in free.legs.iter().zip(free.leg_ranges()) {
+        let end = end_jacobian(leg, &q.as_slice()[range.clone()]);
+        let place = attachment_jacobian(free, leg, pose);
+        all.view_mut((first, range.start), end.shape())
+            .copy_from(&end);
+        all.view_mut((first, joints), place.shape())
+            .copy_from(&-place);
+        first += end.nrows();
+    }
+    all
+}
+
+/// Which of the six components are independent, as rows.
+fn selection(mechanism: &Mechanism, joints: usize) -> DMatrix<f64> {
+    let own = mechanism.motion.independent();
+    let mut rows = DMatrix::zeros(own.len(), joints + 6);
+    for (row, at) in own.into_iter().enumerate() {
+        rows[(row, joints + at)] = 1.0;
+    }
+    rows
+}
+
+/// The closures with the independent components, solved for given right-hand sides.
+fn solve(
+    mechanism: &Mechanism,
+    closures: &DMatrix<f64>,
+    sides: [&DMatrix<f64>; 2],
+) -> Result<DMatrix<f64>, Error> {
+    let own = selection(mechanism, mechanism.joints());
+    let matrix = stacked(closures, &own);
+    let sides = stacked(sides[0], sides[1]);
+    let found = pseudo_inverse(&matrix) * &sides;
+    let residual = (matrix * &found - &sides).amax() / (1.0 + sides.amax() + found.amax());
+    if residual < CONSISTENCY {
+        Ok(found)
+    } else {
+        Err(Error::Inconsistent { leg: 0, residual })
+    }
+}
+
+fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut all = DMatrix::zeros(above.nrows() + below.nrows(), above.ncols());
+    all.rows_mut(0, above.nrows()).copy_from(above);
+    all.rows_mut(above.nrows(), below.nrows()).copy_from(below);
+    all
+}
+
+/// Rates of all joints (n_t x r), and D of t = D v (6 x r).
+///
+/// # Errors
+///
+/// If the closures contradict the independent components.
+pub fn rates(
+    mechanism: &Mechanism,
+    pose: &[f64],
+    q: &DVector<f64>,
+) -> Result<[DMatrix<f64>; 2], Error> {
+    let closures = closures(&freed(mechanism), pose, q);
+    let dof = mechanism.dof();
+    let still = DMatrix::zeros(closures.nrows(), dof);
+    let found = solve(mechanism, &closures, [&still, &DMatrix::identity(dof, dof)])?;
+    let joints = mechanism.joints();
+    Ok([
+        found.rows(0, joints).into_owned(),
+        found.rows(joints, 6).into_owned(),
+    ])
+}
+
+/// Accelerations of all joints, and ṫ.
+///
+/// # Errors
+///
+/// If the closures contradict the independent components.
+pub fn accelerations(mechanism: &Mechanism, state: &State) -> Result<[DVector<f64>; 2], Error> {
+    let free = freed(mechanism);
+    let closures = closures(&free, &state.pose, &state.q);
+    let [_, velocities] = rates(mechanism, &state.pose, &state.q)?;
+    let twist = velocities * &state.twist;
+    let platform = platform_motion(&free.motion, &state.pose, &twist, &DVector::zeros(6));
+    let mut wanted = Vec::new();
+    for (leg, range) in free.legs.iter().zip(free.leg_ranges()) {
+        let [q, qd] = [&state.q, &state.qd].map(|all| &all.as_slice()[range.clone()]);
+        let still = vec![0.0; range.len()];
+        let own = end_from_leg(leg, &leg_motion(leg, q, qd, &still)).twist_derivative();
+        let bias = end_from_platform(leg, &platform).twist_derivative() - own;
+        wanted.extend(end_components(leg).into_iter().map(|at| bias[at]));
+    }
+    let bias = DMatrix::from_vec(wanted.len(), 1, wanted);
+    let own = DMatrix::from_column_slice(mechanism.dof(), 1, state.acceleration.as_slice());
+    let found = solve(mechanism, &closures, [&bias, &own])?;
+    let joints = mechanism.joints();
+    let part = |from: usize, count: usize| found.rows(from, count).column(0).into_owned();
+    Ok([part(0, joints), part(joints, 6)])
+}
+
+/// Motion of the platform.
+///
+/// # Errors
+///
+/// If the closures contradict the independent components.
+pub fn platform(mechanism: &Mechanism, state: &State) -> Result<BodyMotion, Error> {
+    let [_, velocities] = rates(mechanism, &state.pose, &state.q)?;
+    let [_, growth] = accelerations(mechanism, state)?;
+    let twist = velocities * &state.twist;
+    Ok(platform_motion(
+        &Motion::Spatial,
+        &state.pose,
+        &twist,
+        &growth,
+    ))
+}
+
+/// Jacobians at a pose and at joint positions that close the loops. `attachments` are those of the free
+/// platform, six columns, so that its wrench is nowhere projected.
+///
+/// # Errors
+///
+/// If the closures contradict the independent components.
+pub fn jacobians(
+    mechanism: &Mechanism,
+    pose: &[f64],
+    q: &DVector<f64>,
+) -> Result<Jacobians, Error> {
+    let free = freed(mechanism);
+    let (total, dof) = (mechanism.joints(), mechanism.dof());
+    let actuated = mechanism.actuated();
+    let [joints, velocities] = rates(mechanism, pose, q)?;
+    let all = closures(&free, pose, q);
+    let mut jacobians = Jacobians {
+        ends: all.columns(0, total).into_owned(),
+        attachments: -all.columns(total, 6).into_owned(),
+        legs: DMatrix::zeros(total, total),
+        platform: DMatrix::zeros(total, dof),
+        inverse: joints.select_rows(&actuated),
+        joints,
+        a_p: DMatrix::zeros(actuated.len(), dof),
+        b_p: DMatrix::zeros(actuated.len(), actuated.len()),
+        actuated,
+    };
+    let mut first = 0;
+    for (leg, range) in mechanism.legs.iter().zip(mechanism.leg_ranges()) {
+        let count = end_equations(leg);
+        let rows: Vec<usize> = longest_rows(&end_jacobian(leg, &leg.start))
+            .into_iter()
+            .map(|row| first + row)
+            .collect();
+        let square = jacobians.ends.select_rows(&rows);
+        let square = square.columns(range.start, range.len()).into_owned();
+        let kept = jacobians.attachments.select_rows(&rows) * &velocities;
+        jacobians
+            .legs
+            .view_mut((range.start, range.start), square.shape())
+            .copy_from(&square);
+        jacobians
+            .platform
+            .rows_mut(range.start, range.len())
+            .copy_from(&kept);
+        jacobians.reduce(range.start, &square, &kept);
+        first += count;
+    }
+    Ok(jacobians)
+}
+
+/// Of a leg's equations as many as it has joints, in order: in turn the row that is longest without its part
+/// along those chosen before, the first of those that are equally so. Which they are is a convention.
+fn longest_rows(matrix: &DMatrix<f64>) -> Vec<usize> {
+    let mut left = matrix.clone();
+    let mut chosen: Vec<usize> = Vec::new();
+    for _ in 0..matrix.ncols() {
+        let lengths: Vec<f64> = left.row_iter().map(|row| row.norm()).collect();
+        let longest = lengths.iter().copied().fold(0.0, f64::max);
+        let found = lengths.iter().position(|l| *l > longest * (1.0 - 1e-8));
+        let Some(row) = found.filter(|row| !chosen.contains(row)) else {
+            break;
+        };
+        let direction = left.row(row).normalize();
+        left = &left - (&left * direction.transpose()) * direction;
+        chosen.push(row);
+    }
+    chosen.sort_unstable();
+    chosen
+}
+
+/// The pose after a displacement of the independent components, with joints that close the loops. The dependent
+/// components of the one displacement vector are found with them, from a pose and joints that are closed.
+///
+/// # Errors
+///
+/// If the loops do not close.
+pub fn displaced(
+    mechanism: &Mechanism,
+    pose: &[f64],
+    near: &DVector<f64>,
+    step: &DVector<f64>,
+) -> Result<(Vec<f64>, DVector<f64>), Error> {
+    let free = freed(mechanism);
+    let own = mechanism.motion.independent();
+    let others: Vec<usize> = (0..6).filter(|at| !own.contains(at)).collect();
+    let mut whole = DVector::zeros(6);
+    let mut q = near.clone();
+    let mut left = f64::INFINITY;
+    for part in 1..=STEPS {
+        for (&at, step) in own.iter().zip(step) {
+            whole[at] = step * part as f64 / STEPS as f64;
+        }
+        left = close(&free, pose, &others, &mut whole, &mut q);
+    }
+    if left < CLOSED {
+        Ok((free.motion.displace(pose, &whole), q))
+    } else {
+        Err(Error::NoConvergence {
+            leg: 0,
+            residual: left,
+        })
+    }
+}
+
+/// Newton's method on all legs' ends, in the joints and the dependent components of a displacement; what is left.
+fn close(
+    free: &Mechanism,
+    from: &[f64],
+    others: &[usize],
+    whole: &mut DVector<f64>,
+    q: &mut DVector<f64>,
+) -> f64 {
+    let joints = free.joints();
+    let mut best = f64::INFINITY;
+    let mut since = 0;
+    for step in 0..60 {
+        let pose = free.motion.displace(from, whole);
+        let residual = residual(free, &pose, q);
+        let size = residual.norm();
+        if size < 0.9 * best {
+            (best, since) = (size, step);
+        }
+        if size < EXACT || step > since + 4 || !size.is_finite() {
+            return size;
+        }
+        let all = closures(free, &pose, q);
+        let columns: Vec<usize> = (0..joints)
+            .chain(others.iter().map(|at| joints + at))
+            .collect();
+        let moved = pseudo_inverse(&all.select_columns(&columns)) * residual;
+        *q += moved.rows(0, joints);
+        for (&at, change) in others.iter().zip(moved.iter().skip(joints)) {
+            whole[at] += change;
+        }
+    }
+    best
+}
+
+/// What all ends still have to move.
+fn residual(free: &Mechanism, pose: &[f64], q: &DVector<f64>) -> DVector<f64> {
+    let legs = free.legs.iter().zip(free.leg_ranges());
+    let of_leg = |(leg, range): (&Leg, std::ops::Range<usize>)| {
+        closure_residual(free, leg, pose, &q.as_slice()[range])
+    };
+    let all: Vec<f64> = legs
+        .flat_map(|leg| of_leg(leg).as_slice().to_vec())
+        .collect();
+    DVector::from_vec(all)
+}
+
+/// The legs' joints at home.
+#[must_use]
+pub fn start(mechanism: &Mechanism) -> DVector<f64> {
+    let all: Vec<f64> = mechanism
+        .legs
+        .iter()
+        .flat_map(|leg| leg.start.clone())
+        .collect();
+    DVector::from_vec(all)
+}

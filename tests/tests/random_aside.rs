@@ -1,0 +1,80 @@
+//! Random platforms that move aside, against the numeric reference in all functions.
+//!
+//! `OVERACT_RANDOM_SEED=17` repeats one of them and shows its description. Where a draw's independent coordinates
+//! are refused, those that are proposed instead have to make a robot. Draws whose legs do not close, or are
+//! nearly singular, are thrown away.
+
+use overact_codegen::Source;
+use overact_tests::support::random::aside;
+use overact_tests::support::{Failure, whole::against_reference};
+use overact_tier::by_tier;
+
+/// Of functions of base parameters, whose regroupings are told from numbers, and of all others.
+const TOLERANCES: [f64; 2] = [1e-7, 1e-9];
+const STATES: usize = 3;
+/// Robots in the default tier and in the full one.
+const COUNT: [usize; 2] = [1, 24];
+/// Draws for each robot, at most.
+const DRAWS: u64 = 10;
+
+#[test]
+fn random_platforms_that_move_aside() -> Result<(), Failure> {
+    let own = std::env::var("OVERACT_RANDOM_SEED");
+    let own: Option<u64> = own.ok().and_then(|seed| seed.parse().ok());
+    let count = if own.is_some() { 1 } else { by_tier(COUNT) };
+    let (mut compared, mut proposed, mut errors) = (0, 0, Vec::new());
+    let mut seed = own.unwrap_or(0);
+    while compared < count {
+        let mut text = aside(seed);
+        let mut outcome = compare(seed, &text);
+        if let Some(better) = outcome
+            .as_ref()
+            .err()
+            .and_then(|e| proposal(&e.to_string()))
+        {
+            let key = text.lines().find(|line| line.starts_with("independent"));
+            text = text.replace(key.unwrap_or_default(), &better);
+            outcome = compare(seed, &text);
+            proposed += 1;
+        }
+        if own.is_some() {
+            println!("{text}");
+        }
+        match outcome {
+            Ok(failures) => {
+                compared += 1;
+                let lines = failures.into_iter();
+                errors.extend(lines.map(|line| format!("seed {seed}: {line}")));
+            }
+            Err(error) => {
+                let words = error.to_string();
+                let expected = ["never reaches", "does not close", "singular", "regular"];
+                if own.is_some() || !expected.iter().any(|word| words.contains(word)) {
+                    errors.push(format!("seed {seed}: {words}"));
+                    compared += 1;
+                }
+            }
+        }
+        seed += 1;
+        let drawn = seed - own.unwrap_or(0);
+        assert!(
+            drawn <= DRAWS * count as u64,
+            "hardly a draw closes: {compared} of {drawn}"
+        );
+    }
+    println!("{compared} robots of {seed} draws, {proposed} with coordinates that were proposed");
+    assert!(errors.is_empty(), "{}", errors.join("\n"));
+    Ok(())
+}
+
+fn compare(seed: u64, text: &str) -> Result<Vec<String>, Failure> {
+    let source = Source::new(format!("random{seed}.toml"), text.to_owned());
+    against_reference(source, STATES, TOLERANCES)
+}
+
+/// The key that is proposed in the place of a draw's own.
+fn proposal(words: &str) -> Option<String> {
+    let start = words.find("write independent = [")? + "write ".len();
+    let rest = &words[start..];
+    Some(rest[..=rest.find(']')?].to_owned())
+}
