@@ -58,12 +58,24 @@ impl Medium {
     }
 
     /// The path of a file on a disk.
-    #[cfg(any(feature = "hdf5", feature = "mcap"))]
     pub(super) fn path(&self) -> Option<&Path> {
         match self {
             Self::Disk(path) => Some(path),
             Self::Memory(_) => None,
         }
+    }
+}
+
+impl Opened {
+    /// The same file at the same position.
+    ///
+    /// # Errors
+    /// A file that can't be opened once more.
+    pub(super) fn try_clone(&self) -> Result<Self> {
+        Ok(match self {
+            Self::Disk(file) => Self::Disk(file.try_clone()?),
+            Self::Memory(bytes) => Self::Memory(bytes.clone()),
+        })
     }
 }
 

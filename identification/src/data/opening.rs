@@ -210,16 +210,16 @@ impl Files {
 }
 
 /// What is said of one file that is to be joined with itself.
-fn twice(files: &[&Path]) -> Option<Problem> {
+fn twice(files: &[(String, Medium)]) -> Option<Problem> {
     let places: Vec<_> = files
         .iter()
-        .map(|file| std::fs::canonicalize(file).ok())
+        .map(|(_, medium)| std::fs::canonicalize(medium.path()?).ok())
         .collect();
     let mut all = places.iter().enumerate();
     let (number, _) = all.find(|(number, own)| own.is_some() && places[..*number].contains(own))?;
     let message =
         "the file is given twice in one run, so that its columns would stand for two things";
-    let problem = Problem::new(Code::LOG_FILES, message).file(display_name(files[number]));
+    let problem = Problem::new(Code::LOG_FILES, message).file(files[number].0.as_str());
     Some(
         problem.help(
             "give the file once, or the other one that is meant: `positions.csv+torques.csv`",

@@ -166,14 +166,17 @@ pub(crate) fn fit(
         system,
         selected,
         (settings.weighted, settings.normalisation),
+        settings.decimation,
     )
 }
 
-/// [`fit`] with lines that are weighted or not, and one of the rules for σ_ρ.
+/// [`fit`] with lines that are weighted or not, and one of the rules for σ_ρ, of equations that were made of so many
+/// samples each.
 pub(crate) fn fit_with(
     system: &System,
     selected: &[usize],
     (weighted, normalisation): (bool, Normalisation),
+    decimation: usize,
 ) -> Result<Estimation, Error> {
     let unknowns = selected.len();
     let equations: usize = system.lines.iter().map(Factor::equations).sum();
@@ -182,7 +185,7 @@ pub(crate) fn fit_with(
             Code::NOTHING_DETERMINED,
             format!(
                 "{equations} equations do not determine {unknowns} parameters{}",
-                match settings.decimation {
+                match decimation {
                     0 | 1 => String::new(),
                     kept => format!(": `decimation` makes one equation of {kept} samples"),
                 }

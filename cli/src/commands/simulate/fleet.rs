@@ -172,7 +172,10 @@ fn check(arguments: &Arguments, robots: usize) -> Result<(), Failure> {
         return usage("there are four faults: each concerns 0 to 25 percent of the robots");
     }
     let drifts = [arguments.friction_drift, arguments.moment_drift];
-    if drifts.iter().any(|drift| !(drift.abs() < 100.0)) {
+    if drifts
+        .iter()
+        .any(|drift| drift.is_nan() || drift.abs() >= 100.0)
+    {
         return usage("a drift is less than 100 percent");
     }
     Ok(())
@@ -302,7 +305,7 @@ impl Work<'_> {
             let text = text.map_err(|error| Problem::new(Code::NO_RESULT_TEXT, error.to_string()));
             text.map(|text| (self.folder.join(format!("{name}.csv")), text))
         });
-        Ok(output::write(files.into_iter().collect::<Result<_, _>>()?)?)
+        output::write(files.into_iter().collect::<Result<_, _>>()?)
     }
 }
 
@@ -342,5 +345,5 @@ fn write(file: PathBuf, bytes: Vec<u8>, made: &mut Made) -> Result<(), Failure> 
     made.files += 1;
     let files = vec![(file, bytes)];
     output::make_folders(&files)?;
-    Ok(output::write(files)?)
+    output::write(files)
 }

@@ -86,7 +86,7 @@ impl Row<'_> {
         let dialect = &self.text.dialect;
         let beyond = self.cells.iter().enumerate().skip(dialect.most);
         let filled = beyond.filter(|(_, cell)| !cell.trim_ascii().is_empty());
-        match filled.map(|(at, _)| at).last() {
+        match filled.map(|(at, _)| at).next_back() {
             Some(last) => {
                 let file = self.text.file.as_str();
                 Err(dialect.wider(file, self.line, last + 1).into())
