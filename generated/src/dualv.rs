@@ -259,7 +259,7 @@ impl DualV {
             Parameter::of_payload("m_payload", StandardParameter::M, "kg"),
         ]
     };
-    /// The base parameters and what is regrouped into them, in the symmetric order (43).
+    /// The base parameters in the order in which functions take them, and what is regrouped into them.
     pub const BASE_PARAMETERS: [::overact::BaseParameter; 49] = {
         use ::overact::BaseParameter;
         [

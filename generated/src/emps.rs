@@ -103,7 +103,7 @@ impl Emps {
     };
     /// The payload's parameters, in column order.
     pub const PAYLOAD_PARAMETERS: [::overact::Parameter; 0] = { [] };
-    /// The base parameters and what is regrouped into them, in the symmetric order (43).
+    /// The base parameters in the order in which functions take them, and what is regrouped into them.
     pub const BASE_PARAMETERS: [::overact::BaseParameter; 4] = {
         use ::overact::BaseParameter;
         [
