@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import casadi_peer, controller, dynamics, forward, ours, report, timing
+from . import casadi_peer, controller, dynamics, forward, instructions, ours, report, timing
 from .casadi_peer import Casadi
 from .count import Count
 from .description import load
@@ -68,6 +68,8 @@ class Cell:
     sample: object
     #: Nanoseconds of (build, title) for overact, whose title is empty, and for every peer.
     times: dict = field(default_factory=dict)
+    #: Instructions, misses and bytes of overact's function and of the peer that is fastest in default builds.
+    instructions: list = field(default_factory=list)
 
     @property
     def name(self):
@@ -95,7 +97,7 @@ def kept(name, made_of, make):
 
 
 def regressor(robot, columns, source):
-    """A cell of the identification model, or none where the robot has no other source than the first."""
+    """A cell of the identification model."""
     work = Work(robot, robot, columns, source)
     function = ours.function(work)
 
@@ -151,7 +153,7 @@ def kinematics(robot):
 
 def cells(robot):
     """All cells of a robot."""
-    is_parallel = bool(ours.inspect(robot)["home_pose"])
+    is_parallel = any(f["from"] == "pose" for f in ours.inspect(robot)["functions"])
     for columns in ("standard", "base"):
         yield regressor(robot, columns, "joints")
         if is_parallel:
@@ -180,6 +182,8 @@ def time(cell, own, core, rounds):
         controller.check(f"{cell.name}, {title}, {build}", found, expected)
     times = timing.compare([program for _, program in programs], path, core, rounds)
     cell.times = dict(zip((key for key, _ in programs), times, strict=True))
+    fastest = min((k for k in cell.times if k[1] and k[0] in [b.title for b in DEFAULT]), key=cell.times.get)
+    cell.instructions = [instructions.per_call(p, path) for p in (own[0], dict(programs)[fastest])]
 
 
 def line(robot, cell):
@@ -193,6 +197,15 @@ def line(robot, cell):
         found += [f"{time:.0f}", f"{peer:.0f}", f"{time / peer:.2f}"]
     fast, _ = cell.fastest(FAST)
     return [*found, f"{fast:.0f}", f"{cell.times[('native', '')] / fast:.2f}"]
+
+
+def counts(robot, cell):
+    """Instructions of default builds and misses of the instruction cache, and whose the peer's are."""
+    (own, missed), (peer, peers_missed) = cell.instructions
+    ratio = f"{own / peer:.2f}"
+    names = [cell.fastest(builds)[1] for builds in (DEFAULT, NATIVE, FAST)]
+    misses = f"{missed:.1f}", f"{peers_missed:.1f}"
+    return [f"{ROBOTS[robot]}, {cell.title}", f"{own:.0f}", f"{peer:.0f}", ratio, *misses, *names]
 
 
 def measured(only, core, rounds):
@@ -212,6 +225,8 @@ def measured(only, core, rounds):
 
 
 def table(found):
-    """The cells as Markdown."""
+    """The cells as Markdown: operations and times, then what does not depend on other work."""
     header = ["function", "operations", "peer", "ratio", "default, ns", "peer", "ratio", "native, ns", "peer", "ratio"]
-    return report.table([*header, "peer, -ffast-math", "ratio"], [line(robot, cell) for robot, cell in found])
+    times = report.table([*header, "peer, -ffast-math", "ratio"], [line(robot, cell) for robot, cell in found])
+    header = ["function", "instructions", "peer", "ratio", "misses", "peer", "fastest, default", "native", "-ffast-math"]
+    return f"{times}\n\n{report.table(header, [counts(robot, cell) for robot, cell in found])}"

@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let start = Instant::now();
             match what {
                 0 => states.iter().for_each(|s| {
-                    let _ = black_box(@CALL@(@ARGUMENTS@));
+                    black_box(&@CALL@(@ARGUMENTS@));
                 }),
                 1 => {
                     let take = |number: Number<'_>| {
