@@ -241,13 +241,14 @@ fn a_seed_is_for_virtual_runs() {
 #[test]
 fn columns_that_a_log_lacks_are_told_with_the_line_that_names_them() {
     let bench = Bench::with("serial-2r", |text| {
-        let names = "positions = [\"q1\", \"q2\"]\ntorques = [\"t1\",\n\"t2\"]\n";
+        let names = "positions = [\"q1\", \"q2\"]\ntorques = [\"left\",\n\"right\"]\n";
         format!("{text}\n[data]\nsampling = \"1 kHz\"\n{names}")
     });
-    bench.write("log.csv", "q1,q2,t1,T22\n0,0,0,0\n1,1,1,1\n");
+    bench.write("log.csv", "q1,q2,left,rigth\n0,0,0,0\n1,1,1,1\n");
     let said = bench.bad(&["identify", "my.toml", "--data", "log.csv"]);
-    let line = line(&bench, "\"t2\"]");
-    let expected =
-        format!("did you mean `T22` for `t2`? The names stand in the table [data], my.toml:{line}");
+    let line = line(&bench, "\"right\"]");
+    let expected = format!(
+        "did you mean `rigth` for `right`? The names stand in the table [data], my.toml:{line}"
+    );
     assert!(said.contains(&expected), "{said}");
 }

@@ -1,6 +1,6 @@
 //! `overact factor`: logs as R factors of their equations.
 
-use super::{factors::instant, runs};
+use super::{dates::instant, runs};
 use crate::{failure::Failure, output, progress::Progress};
 use overact_identification::{
     Progress as Doing,

@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand.
 
 mod check;
+mod dates;
 mod evaluate;
 mod excite;
 mod explain;

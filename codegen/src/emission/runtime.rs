@@ -34,12 +34,16 @@ fn rename(tokens: TokenStream, path: &TokenStream) -> TokenStream {
     out.into_iter().collect()
 }
 
+/// Words of the language behind which a path begins.
+const WORDS: [&str; 8] = ["as", "dyn", "for", "impl", "in", "return", "use", "where"];
+
 /// Whether the last two tokens are `::`, and what stands before them ends no part of a path.
 fn begins_a_path(tokens: &[TokenTree]) -> bool {
     let is_colon = |token: &TokenTree| matches!(token, TokenTree::Punct(p) if p.as_char() == ':');
     match tokens {
         [before @ .., first, second] if is_colon(first) && is_colon(second) => {
-            !matches!(before.last(), Some(TokenTree::Ident(_)))
+            let is_name = |token: &TokenTree| matches!(token, TokenTree::Ident(name) if !WORDS.iter().any(|word| name == word));
+            !before.last().is_some_and(is_name)
         }
         _ => false,
     }
@@ -55,10 +59,12 @@ mod tests {
         let tokens = quote! {
             #[doc = "::overact"]
             fn overact(a: &::overact::Error) -> [::overact::Parameter; 2] { b::overact(::core::a) }
+            impl ::overact::Model for A { use ::overact::Error; }
         };
         let wanted = quote! {
             #[doc = "::overact"]
             fn overact(a: &crate::my::Error) -> [crate::my::Parameter; 2] { b::overact(::core::a) }
+            impl crate::my::Model for A { use crate::my::Error; }
         };
         let path = Runtime::new("crate::my").expect("a path");
         assert_eq!(

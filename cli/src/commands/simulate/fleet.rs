@@ -5,7 +5,7 @@
 //! robots are, `left_out.csv` what could not be factored. They are written last: where they are, all is.
 
 use crate::{
-    commands::factors::{date, instant},
+    commands::dates::{date, instant},
     failure::{Failure, Problem},
     output::{self, counted, json, print},
     progress::Progress,

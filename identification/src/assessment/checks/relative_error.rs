@@ -8,9 +8,9 @@ use crate::{
     significant,
 };
 
-/// Percent of the inputs that may be left unexplained beyond noise: what published identifications leave, 2 to
+/// Percent of the inputs that may be left unexplained beyond noise. Published identifications leave 2 to
 /// 12 % (Briot, Krut, Gautier 2015; Janot, Gautier, Brunot 2019), noise among it.
-const LARGEST_PERCENT: f64 = 12.0;
+const LARGEST_PERCENT: f64 = 20.0;
 
 /// The part of the power of white noise that decimation by one sample in d leaves, times d: its cutoff
 /// lies at this part of the new Nyquist frequency.
