@@ -4,6 +4,7 @@ use crate::cas::Arena;
 use crate::derivation::{Derived, MotionInput, Selection, Underivable, derive};
 use crate::diagnostic::Source;
 use crate::mechanism::numeric::{platform_frame, target};
+use crate::mechanism::states::random_states;
 use crate::mechanism::{Home, Mechanism, check};
 use overact_core::Function;
 use std::path::PathBuf;
@@ -59,6 +60,15 @@ fn displaced(mechanism: &Mechanism, number: usize) -> Vec<f64> {
         .sqrt();
     pose[first_angle..].iter_mut().for_each(|q| *q /= norm);
     pose
+}
+
+/// A displaced pose that the legs allow: of a platform that moves aside, one that was brought back onto them.
+fn allowed(mechanism: &Mechanism, number: usize) -> Vec<f64> {
+    if !mechanism.is_parasitic() {
+        return displaced(mechanism, number);
+    }
+    let states = random_states(mechanism, POSES, 1).into_iter();
+    states.map(|state| state.pose).nth(number).expect("a state")
 }
 
 /// The values of a function without rates for given inputs.
@@ -118,7 +128,7 @@ fn legs_close(name: &str, mechanism: &Mechanism) {
         );
     }
     for number in 0..POSES {
-        let pose = displaced(mechanism, number);
+        let pose = allowed(mechanism, number);
         let found = joints.of_pose(&pose);
         let frame = platform_frame(platform.motion, &pose);
         for (index, leg) in mechanism.legs.iter().enumerate() {
