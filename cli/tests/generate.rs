@@ -261,10 +261,18 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
         "standard",
     ]));
     assert!(said.contains("ask for `bias`"), "{said}");
-    let said = bench.bad(&quick(&["--lang", "c", "--crate", "my::facade", "-o", "c"]));
-    assert!(said.contains("C calls no crate"), "{said}");
-    let said = bench.bad(&quick(&["--crate", "my facade"]));
-    assert!(said.contains("no path of the crate"), "{said}");
+    // Options that make no sense are errors of usage.
+    for (options, words) in [
+        (
+            &["--lang", "c", "--crate", "my::facade", "-o", "c"][..],
+            "C calls no crate",
+        ),
+        (&["--crate", "my facade"], "no path of the crate"),
+    ] {
+        let outcome = bench.run(&quick(options));
+        assert!(matches!(outcome.code, Some(1 | 2)), "{}", outcome.err);
+        assert!(outcome.err.contains(words), "{}", outcome.err);
+    }
     let said = bench.bad(&quick(&[
         "--functions",
         "null_space,jacobian,idm_red_payload",

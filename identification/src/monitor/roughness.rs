@@ -106,9 +106,10 @@ impl Roughness {
         self.twins.retain(|twins| !is_idle(twins.pair.0));
     }
 
-    /// Pairs of signals that are one throughout, in whatever unit.
-    pub(super) fn twins(&self) -> Vec<(usize, usize)> {
-        let one = self.twins.iter().filter(|twins| twins.is_one());
+    /// Pairs of signals that are equal throughout, or one in whatever unit where these count, too.
+    pub(super) fn twins(&self, in_any_unit: bool) -> Vec<(usize, usize)> {
+        let is_one = |twins: &&Twins| twins.equal || in_any_unit && twins.is_one();
+        let one = self.twins.iter().filter(is_one);
         one.map(|twins| twins.pair).collect()
     }
 }
@@ -137,7 +138,7 @@ mod tests {
         assert!(still < 1e-17, "{still}");
         // Uniform noise of width 0.1 has the variance 0.01/12.
         assert!((noisy * 12.0 / 0.01 - 1.0).abs() < 0.05, "{noisy}");
-        assert_eq!(roughness.twins(), [(0, 2)]);
+        assert_eq!(roughness.twins(true), [(0, 2)]);
     }
 
     #[test]
@@ -150,6 +151,6 @@ mod tests {
             let other = 0.3 - own / 45.0;
             roughness.take(&[own / 32.0, other, own + 1e-3 * phase.cos(), 0.7, 0.0]);
         }
-        assert_eq!(roughness.twins(), [(0, 1)]);
+        assert_eq!(roughness.twins(true), [(0, 1)]);
     }
 }

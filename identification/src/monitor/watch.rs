@@ -205,8 +205,8 @@ impl Monitor {
             .collect()
     }
 
-    /// Columns that are one.
-    fn duplicates(&self, names: &[&str]) -> Vec<Suspicion> {
+    /// Columns that are one. Loops may move two actuators in proportion: there they have to be equal.
+    fn duplicates(&self, names: &[&str], coupled: bool) -> Vec<Suspicion> {
         let of = |what: &str, roughness: &Roughness| -> Vec<Suspicion> {
             let name = |index: usize| names.get(index).copied().unwrap_or_default();
             let one = |&(i, j): &(usize, usize)| Suspicion {
@@ -220,7 +220,7 @@ impl Monitor {
                     name(i)
                 ),
             };
-            roughness.twins().iter().map(one).collect()
+            roughness.twins(!coupled).iter().map(one).collect()
         };
         let [positions, torques] = &self.roughness;
         let mut all = of("position", positions);
@@ -258,7 +258,7 @@ impl Monitor {
             });
             return suspicions;
         }
-        suspicions.extend(self.duplicates(names));
+        suspicions.extend(self.duplicates(names, coupled));
         let stuck: Vec<Option<(f64, String)>> = (0..names.len())
             .map(|actuator| self.stuck(actuator, coupled))
             .collect();

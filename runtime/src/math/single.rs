@@ -5,7 +5,7 @@
 
 use overact_core::trigonometry::single::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
 
-/// Sine and cosine of an angle in radians, within 2 units in the last place up to 8192 rad; beyond it
+/// Sine and cosine of an angle in radians, within 2.5 units in the last place up to 8192 rad; beyond it
 /// those of the standard library, or of `libm` without the feature `std`.
 #[inline]
 #[must_use]
@@ -143,7 +143,7 @@ mod tests {
                 let (s, c) = libm::sincos(f64::from(angle));
                 worst = worst.max(ulps(sine, s)).max(ulps(cosine, c));
             }
-            assert!(worst <= 2.0, "up to {scale} rad: {worst} ulps");
+            assert!(worst <= 2.5, "up to {scale} rad: {worst} ulps");
         }
     }
 
@@ -154,7 +154,7 @@ mod tests {
             let (sine, cosine) = sin_cos(x);
             let (s, c) = libm::sincos(f64::from(x));
             assert!(
-                ulps(sine, s) <= 2.0 && ulps(cosine, c) <= 2.0,
+                ulps(sine, s) <= 2.5 && ulps(cosine, c) <= 2.5,
                 "{n}: {sine} {s}"
             );
         }
