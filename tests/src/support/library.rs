@@ -34,7 +34,6 @@ macro_rules! library {
             planar_3prr: Planar3Prr,
             planar_3rrr: Planar3Rrr,
             planar_4prr: Planar4Prr,
-            reachy_mini: ReachyMini,
             rx90: Rx90,
             schoenflies_4: Schoenflies4,
             scotch_yoke: ScotchYoke,
@@ -70,9 +69,8 @@ macro_rules! library {
 
 /// Robots of the full tier, each with one of the default tier that has the same motion: they take a third of the
 /// time of all. Redundant robots of other motions are there in either tier.
-const LARGER_BROTHERS: [(&str, &str); 5] = [
+const LARGER_BROTHERS: [(&str, &str); 4] = [
     ("octopod", "hexapod"),
-    ("reachy_mini", "hexapod"),
     ("delta_4", "delta"),
     ("orthoglide", "delta"),
     ("spherical_4rrr", "spherical_3rrr"),
