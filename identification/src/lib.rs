@@ -9,7 +9,7 @@
 //!
 //! | folder | what |
 //! |---|---|
-//! | `error`, `significant`, `blocks` | problems with a place and a way out; numbers in sentences; a model evaluated in blocks |
+//! | `error`, `significant`, `widest`, `blocks` | problems with a place and a way out; numbers in sentences; work with wide vectors; a model evaluated in blocks |
 //! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series that are plotted |
 //! | [`data`] | a run is read from text or MATLAB and checked; a mapping names its columns and units |
 //! | [`filters`] | zero-phase filtering, decimation, differences |

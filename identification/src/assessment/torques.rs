@@ -349,7 +349,7 @@ fn run_factors(
 ) -> Result<Vec<Factor>, Error> {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
-    let mut motions = Motions::new(model, log, settings)?;
+    let mut motions = Motions::new(model, log, settings)?.unwatched();
     let decimator = settings.decimator(settings.decimation, log.sampling_frequency())?;
     let more = match drives {
         Drives::OneByOne => n * n,

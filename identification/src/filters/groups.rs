@@ -12,18 +12,15 @@
 //! weights. All signals do that side by side, and no sample is filtered that is not kept.
 
 use nalgebra::Complex;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::modes::{Mode, Modes};
-use crate::widest::{Fused, fused, product_sum};
 
 /// Modes of the low-pass: half its order.
-pub(super) const MODES: usize = 4;
+const MODES: usize = 4;
 
 /// Real and imaginary parts of all modes.
 pub(super) const PARTS: usize = 2 * MODES;
-
-/// Signals that go side by side.
-const LANES: usize = 8;
 
 /// What groups of one length do.
 #[derive(Debug, PartialEq)]
@@ -72,7 +69,7 @@ impl Groups {
         (before, after): (&[f64], &mut [f64]),
         told: &mut [f64],
     ) {
-        fused(Pass {
+        Arch::new().dispatch(Pass {
             groups: self,
             rows,
             width,
@@ -90,7 +87,7 @@ impl Groups {
         behind: &mut [f64],
         kept: Option<&mut [f64]>,
     ) {
-        fused(Backwards {
+        Arch::new().dispatch(Backwards {
             groups: self,
             told,
             behind,
@@ -109,102 +106,138 @@ struct Pass<'a> {
     told: &'a mut [f64],
 }
 
-impl Fused for Pass<'_> {
+impl WithSimd for Pass<'_> {
+    type Output = ();
+
     #[inline(always)]
-    fn run<const FUSED: bool>(mut self) {
-        let mut folded = vec![[[0.0; LANES]; 2]; self.groups.even.len()];
-        let whole = self.width / LANES * LANES;
-        for column in (0..whole).step_by(LANES) {
-            self.columns::<LANES, FUSED>(column, &mut folded);
-        }
-        if whole == self.width {
-            return;
-        }
-        if whole > 0 {
-            // Some signals once more, to the same result.
-            self.columns::<LANES, FUSED>(self.width - LANES, &mut folded);
-            return;
-        }
-        let mut folded = vec![[[0.0]; 2]; self.groups.even.len()];
-        for column in 0..self.width {
-            self.columns::<1, FUSED>(column, &mut folded);
+    fn with_simd<S: Simd>(self, simd: S) {
+        if self.width < S::F64_LANES {
+            self.padded(simd);
+        } else {
+            self.all(simd);
         }
     }
 }
 
 impl Pass<'_> {
+    /// Passes all signals, at least as many as go side by side.
+    #[inline(always)]
+    fn all<S: Simd>(mut self, simd: S) {
+        let (lanes, width) = (S::F64_LANES, self.width);
+        let zero = simd.splat_f64s(0.0);
+        let mut sums = vec![zero; self.groups.even.len()];
+        let mut differences = vec![zero; self.groups.odd.len()];
+        for first in (0..width).step_by(lanes) {
+            // The last signals are passed with some before them once more, to the same result.
+            let column = first.min(width - lanes);
+            self.columns(simd, column, (&mut sums, &mut differences));
+        }
+    }
+
+    /// Passes fewer signals than go side by side.
+    #[inline(always)]
+    fn padded<S: Simd>(self, simd: S) {
+        let (lanes, width) = (S::F64_LANES, self.width);
+        let widened = |values: &[f64]| -> Vec<f64> {
+            let mut all = vec![0.0; values.len() / width * lanes];
+            let rows = all.chunks_exact_mut(lanes).zip(values.chunks_exact(width));
+            rows.for_each(|(to, from)| to[..width].copy_from_slice(from));
+            all
+        };
+        let (rows, before) = (widened(self.rows), widened(self.before));
+        let mut after = vec![0.0; before.len()];
+        let mut told = vec![0.0; (PARTS + 1) * lanes];
+        let wide = Pass {
+            groups: self.groups,
+            rows: &rows,
+            width: lanes,
+            before: &before,
+            after: &mut after,
+            told: &mut told,
+        };
+        wide.all(simd);
+        for (to, from) in [(self.after, &after), (self.told, &told)] {
+            let rows = to.chunks_exact_mut(width).zip(from.chunks_exact(lanes));
+            rows.for_each(|(to, from)| to.copy_from_slice(&from[..width]));
+        }
+    }
+
     /// Passes some signals, from number `column` on.
     #[inline(always)]
-    fn columns<const L: usize, const FUSED: bool>(
+    fn columns<S: Simd>(
         &mut self,
+        simd: S,
         column: usize,
-        folded: &mut [[[f64; L]; 2]],
+        (sums, differences): (&mut [S::f64s], &mut [S::f64s]),
     ) {
         let (groups, width) = (self.groups, self.width);
-        let length = groups.length;
-        for (k, [sum, difference]) in folded.iter_mut().enumerate() {
-            let near = lanes::<L>(self.rows, k * width + column);
-            let far = lanes::<L>(self.rows, (length - 1 - k) * width + column);
-            let is_middle = 2 * k + 1 == length;
-            for lane in 0..L {
-                sum[lane] = near[lane] + if is_middle { 0.0 } else { far[lane] };
-                difference[lane] = near[lane] - far[lane];
-            }
+        let last = groups.length - 1;
+        for (k, difference) in differences.iter_mut().enumerate() {
+            let near = vector::<S>(self.rows, k * width + column);
+            let far = vector::<S>(self.rows, (last - k) * width + column);
+            sums[k] = simd.add_f64s(near, far);
+            *difference = simd.sub_f64s(near, far);
         }
-        let mut even = [[0.0; L]; PARTS];
-        let mut odd = [[0.0; L]; PARTS];
-        // Half of the sums at a time have room in the registers.
-        for half in [0, MODES] {
-            let all = folded.iter().zip(&groups.even);
-            for ([sum, _], weights) in all {
-                for part in 0..MODES {
-                    let weight = weights[half + part];
-                    for lane in 0..L {
-                        let to = &mut even[half + part][lane];
-                        *to = product_sum::<FUSED>(weight, sum[lane], *to);
-                    }
-                }
-            }
-            for ([_, difference], weights) in folded.iter().zip(&groups.odd) {
-                for part in 0..MODES {
-                    let weight = weights[half + part];
-                    for lane in 0..L {
-                        let to = &mut odd[half + part][lane];
-                        *to = product_sum::<FUSED>(weight, difference[lane], *to);
-                    }
-                }
-            }
+        if let Some(middle) = sums.get_mut(differences.len()) {
+            *middle = vector::<S>(self.rows, last / 2 * width + column);
         }
-        let mut kept = lanes::<L>(self.rows, column).map(|own| groups.modes.direct * own);
+        let even = weighted(simd, sums, &groups.even);
+        let odd = weighted(simd, differences, &groups.odd);
+        let direct = simd.splat_f64s(groups.modes.direct);
+        let mut kept = simd.mul_f64s(direct, vector::<S>(self.rows, column));
         for mode in 0..MODES {
-            let [real, imaginary] = [2 * mode, 2 * mode + 1];
-            let (pole, power) = (groups.modes.poles[mode], groups.powers[mode]);
-            let share = groups.modes.shares[mode];
-            let places = [real, imaginary].map(|part| part * width + column);
-            let [x, y] = places.map(|place| lanes::<L>(self.before, place));
-            for lane in 0..L {
-                let (a, b) = (even[real][lane], odd[real][lane]);
-                let (c, d) = (even[imaginary][lane], odd[imaginary][lane]);
-                kept[lane] += 2.0 * (share.re * x[lane] - share.im * y[lane]);
-                let (f, g) = (a - b, c - d);
-                self.told[places[0] + lane] = a + b;
-                self.told[places[1] + lane] = c + d;
-                self.after[places[0] + lane] =
-                    power.re * x[lane] - power.im * y[lane] + (pole.re * f - pole.im * g);
-                self.after[places[1] + lane] =
-                    power.re * y[lane] + power.im * x[lane] + (pole.re * g + pole.im * f);
+            let places = [2 * mode, 2 * mode + 1].map(|part| part * width + column);
+            let [x, y] = places.map(|place| vector::<S>(self.before, place));
+            let (a, b) = (even[2 * mode], odd[2 * mode]);
+            let (c, d) = (even[2 * mode + 1], odd[2 * mode + 1]);
+            let share = 2.0 * groups.modes.shares[mode];
+            kept = simd.add_f64s(kept, times(simd, share, [x, y])[0]);
+            *vector_mut::<S>(self.told, places[0]) = simd.add_f64s(a, b);
+            *vector_mut::<S>(self.told, places[1]) = simd.add_f64s(c, d);
+            let late = [simd.sub_f64s(a, b), simd.sub_f64s(c, d)];
+            let late = times(simd, groups.modes.poles[mode], late);
+            let old = times(simd, groups.powers[mode], [x, y]);
+            for part in 0..2 {
+                let new = simd.add_f64s(old[part], late[part]);
+                *vector_mut::<S>(self.after, places[part]) = new;
             }
         }
-        self.told[PARTS * width + column..][..L].copy_from_slice(&kept);
+        *vector_mut::<S>(self.told, PARTS * width + column) = kept;
     }
+}
+
+/// Sums of samples, each by its weights.
+#[inline(always)]
+fn weighted<S: Simd>(simd: S, samples: &[S::f64s], weights: &[[f64; PARTS]]) -> [S::f64s; PARTS] {
+    let mut sums = [simd.splat_f64s(0.0); PARTS];
+    for (sample, weights) in samples.iter().zip(weights) {
+        for (sum, weight) in sums.iter_mut().zip(weights) {
+            *sum = simd.mul_add_e_f64s(simd.splat_f64s(*weight), *sample, *sum);
+        }
+    }
+    sums
+}
+
+/// A complex number times others, their real and imaginary parts.
+#[inline(always)]
+fn times<S: Simd>(simd: S, factor: Mode, [x, y]: [S::f64s; 2]) -> [S::f64s; 2] {
+    let [a, b] = [factor.re, factor.im].map(|part| simd.splat_f64s(part));
+    [
+        simd.sub_f64s(simd.mul_f64s(a, x), simd.mul_f64s(b, y)),
+        simd.add_f64s(simd.mul_f64s(a, y), simd.mul_f64s(b, x)),
+    ]
 }
 
 /// Successive numbers.
 #[inline(always)]
-fn lanes<const L: usize>(values: &[f64], first: usize) -> [f64; L] {
-    let mut own = [0.0; L];
-    own.copy_from_slice(&values[first..first + L]);
-    own
+fn vector<S: Simd>(values: &[f64], first: usize) -> S::f64s {
+    S::as_simd_f64s(&values[first..first + S::F64_LANES]).0[0]
+}
+
+/// The place of successive numbers.
+#[inline(always)]
+fn vector_mut<S: Simd>(values: &mut [f64], first: usize) -> &mut S::f64s {
+    &mut S::as_mut_simd_f64s(&mut values[first..first + S::F64_LANES]).0[0]
 }
 
 /// A group on its way back.
@@ -215,9 +248,11 @@ struct Backwards<'a> {
     kept: Option<&'a mut [f64]>,
 }
 
-impl Fused for Backwards<'_> {
+impl WithSimd for Backwards<'_> {
+    type Output = ();
+
     #[inline(always)]
-    fn run<const FUSED: bool>(mut self) {
+    fn with_simd<S: Simd>(mut self, simd: S) {
         let width = self.behind.len() / PARTS;
         if let Some(kept) = &mut self.kept {
             kept.copy_from_slice(&self.told[PARTS * width..]);
@@ -225,17 +260,26 @@ impl Fused for Backwards<'_> {
         let told = self.told.chunks_exact(2 * width);
         let modes = self.behind.chunks_exact_mut(2 * width).zip(told);
         for ((mode, (behind, told)), power) in modes.enumerate().zip(&self.groups.powers) {
-            let share = self.groups.modes.shares[mode];
+            let share = 2.0 * self.groups.modes.shares[mode];
             let (real, imaginary) = behind.split_at_mut(width);
             let (f, g) = told.split_at(width);
-            for k in 0..width {
-                let (x, y) = (real[k], imaginary[k]);
-                real[k] = f[k] + (power.re * x - power.im * y);
-                imaginary[k] = g[k] + (power.re * y + power.im * x);
+            let (real, more) = S::as_mut_simd_f64s(real);
+            let (imaginary, rest) = S::as_mut_simd_f64s(imaginary);
+            let ((f, last), (g, end)) = (S::as_simd_f64s(f), S::as_simd_f64s(g));
+            let mut kept = self.kept.as_deref_mut().map(S::as_mut_simd_f64s);
+            for k in 0..real.len().min(imaginary.len()).min(f.len()).min(g.len()) {
+                let [x, y] = times(simd, *power, [real[k], imaginary[k]]);
+                let both = [simd.add_f64s(f[k], x), simd.add_f64s(g[k], y)];
+                [real[k], imaginary[k]] = both;
+                if let Some((kept, _)) = &mut kept {
+                    kept[k] = simd.add_f64s(kept[k], times(simd, share, both)[0]);
+                }
             }
-            if let Some(kept) = &mut self.kept {
-                for k in 0..width {
-                    kept[k] += 2.0 * (share.re * real[k] - share.im * imaginary[k]);
+            for k in 0..more.len().min(rest.len()).min(last.len()).min(end.len()) {
+                let own = Mode::new(last[k], end[k]) + power * Mode::new(more[k], rest[k]);
+                (more[k], rest[k]) = (own.re, own.im);
+                if let Some((_, kept)) = &mut kept {
+                    kept[k] += (share * own).re;
                 }
             }
         }

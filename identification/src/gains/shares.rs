@@ -61,7 +61,7 @@ fn run(
     let (model, settings) = (observer.model, observer.settings);
     let sizes = model.info().sizes;
     let (r, n) = (sizes.dof, sizes.actuators);
-    let mut motions = Motions::new(model, log, settings)?;
+    let mut motions = Motions::new(model, log, settings)?.unwatched();
     let samples = motions.samples();
     let decimator = settings.decimator(settings.decimation, log.sampling_frequency())?;
     let plan = Plan::new(decimator.kept(samples), 0);

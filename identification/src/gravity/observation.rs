@@ -87,7 +87,7 @@ impl Observer<'_> {
     ) -> Result<(), Error> {
         let sizes = self.model.info().sizes;
         let (r, n) = (sizes.dof, sizes.actuators);
-        let mut motions = Motions::new(self.model, log, self.settings)?;
+        let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
         let samples = motions.samples();
         let decimator = self
             .settings

@@ -1,8 +1,8 @@
 //! The poses of a run.
 //!
 //! Some samples, the anchors, are solved one after the other, each from the one before, so that the
-//! assembly mode stays that of the home pose. The samples between two anchors start from the straight
-//! way between their poses, where Gauss-Newton needs two or three steps, and all of them step
+//! assembly mode stays that of the home pose. The samples between two anchors start from the cubic through
+//! four anchors around them, where Gauss-Newton needs one or two steps, and all of them step
 //! together: a model evaluates many samples at once much faster than one by one. What does not
 //! converge that way is solved sample by sample, which also tells where a run leaves the workspace.
 
@@ -115,21 +115,31 @@ impl<'a> Forward<'a> {
             self.model.pose_from_actuators(actuators, &mut pose).ok()?;
             found.push(pose);
         }
-        // Poses with a quaternion have no straight way: all start from the anchor before.
+        // Poses with a quaternion have no way between: all start from the anchor before.
         let is_straight = size == self.model.info().sizes.dof;
+        // The pose before the first sample is an anchor, too.
+        let places: Vec<f64> = std::iter::once(-1.0)
+            .chain(anchors.iter().map(|anchor| *anchor as f64))
+            .collect();
         let mut poses = Vec::with_capacity(samples * size);
-        for (ends, &anchor) in found.windows(2).zip(&anchors) {
-            let before = poses.len() / size;
-            let count = anchor + 1 - before;
-            for step in 1..=count {
-                let part = step as f64 / count as f64;
-                let way = ends[0].iter().zip(&ends[1]);
-                if step == count {
-                    poses.extend_from_slice(&ends[1]);
+        for (interval, &anchor) in anchors.iter().enumerate() {
+            let first = interval
+                .saturating_sub(1)
+                .min(found.len().saturating_sub(4));
+            let around = first..(first + 4).min(found.len());
+            for sample in poses.len() / size..=anchor {
+                if sample == anchor {
+                    poses.extend_from_slice(&found[interval + 1]);
                 } else if is_straight {
-                    poses.extend(way.map(|(from, to)| from + part * (to - from)));
+                    let here = poses.len();
+                    poses.resize(here + size, 0.0);
+                    for own in around.clone() {
+                        let weight = lagrange(&places[around.clone()], own - first, sample as f64);
+                        let to = poses[here..].iter_mut().zip(&found[own]);
+                        to.for_each(|(to, from)| *to += weight * from);
+                    }
                 } else {
-                    poses.extend_from_slice(&ends[0]);
+                    poses.extend_from_slice(&found[interval]);
                 }
             }
         }
@@ -139,6 +149,14 @@ impl<'a> Forward<'a> {
             .try_for_each(|(poses, positions)| settle(self.model, positions, poses))?;
         Some(poses)
     }
+}
+
+/// The weight of place number `own` in the polynomial through some places, at `x`.
+fn lagrange(places: &[f64], own: usize, x: f64) -> f64 {
+    let others = places.iter().enumerate().filter(|(place, _)| *place != own);
+    others
+        .map(|(_, other)| (x - other) / (places[own] - other))
+        .product()
 }
 
 /// Moves poses until none moves any more: Gauss-Newton for all samples at once, with the tolerance of

@@ -27,6 +27,8 @@ pub(super) struct Derivatives {
 pub(super) struct Stream<'a> {
     reader: Reader<'a>,
     monitor: Monitor,
+    /// Whether the raw numbers are watched.
+    is_watched: bool,
     filter: ZeroPhase,
     /// Filter of the velocities, where they were measured.
     velocity_filter: Option<ZeroPhase>,
@@ -63,6 +65,7 @@ impl<'a> Stream<'a> {
             torque_filter: torque_filter.transpose()?,
             reader: log.reader()?,
             monitor: Monitor::new(log.actuators(), frequency),
+            is_watched: true,
             frequency,
             samples: log.samples(),
             width: log.actuators(),
@@ -73,6 +76,11 @@ impl<'a> Stream<'a> {
             next: 0,
             reach: settings.difference_order / 2,
         })
+    }
+
+    /// Leaves the raw numbers unwatched.
+    pub(super) fn leave_unwatched(&mut self) {
+        self.is_watched = false;
     }
 
     /// What has been watched of the raw numbers.
@@ -102,7 +110,9 @@ impl<'a> Stream<'a> {
             let Some(block) = self.reader.next()? else {
                 return Ok(None);
             };
-            self.monitor.take(&block);
+            if self.is_watched {
+                self.monitor.take(&block);
+            }
             self.filter.push(&block.positions, &mut self.positions);
             if let Some(filter) = &mut self.velocity_filter {
                 filter.push(&block.velocities, &mut self.velocities);

@@ -1,6 +1,8 @@
 //! What is suspicious in the raw numbers of a run, told while it is gone through: clipped torques,
 //! encoders that are stuck, samples that are lost, a robot that stands still.
 
+use std::collections::VecDeque;
+
 use super::{
     clipping::clipping,
     peaks,
@@ -54,7 +56,7 @@ pub(crate) struct Monitor {
     /// Noise of positions and of torques.
     roughness: [Roughness; 2],
     /// The last [`SPEED_SAMPLES`] + 1 rows of positions, the newest last.
-    recent: Vec<Vec<f64>>,
+    recent: VecDeque<Vec<f64>>,
 }
 
 /// What is known of the positions of an actuator.
@@ -103,7 +105,7 @@ impl Monitor {
             torques: vec![[Extreme::default(); 2]; actuators],
             means: Means::new(actuators, frequency),
             roughness: [Roughness::new(actuators), Roughness::new(actuators)],
-            recent: Vec::new(),
+            recent: VecDeque::new(),
         }
     }
 
@@ -126,7 +128,7 @@ impl Monitor {
                 self.recent.rotate_left(1);
                 self.recent[SPEED_SAMPLES].copy_from_slice(positions);
             } else {
-                self.recent.push(positions.to_vec());
+                self.recent.push_back(positions.to_vec());
             }
             self.samples += 1;
         }
@@ -397,9 +399,9 @@ impl Monitor {
 
 impl Position {
     /// Takes the position of the actuator in the row of sample `sample`; `recent` are the rows before.
-    fn take(&mut self, actuator: usize, sample: usize, row: &[f64], recent: &[Vec<f64>]) {
+    fn take(&mut self, actuator: usize, sample: usize, row: &[f64], recent: &VecDeque<Vec<f64>>) {
         let position = row[actuator];
-        let Some(last) = recent.last() else {
+        let Some(last) = recent.back() else {
             (self.low, self.high) = (position, position);
             self.bounds = row.iter().map(|q| (*q, *q)).collect();
             return;
@@ -434,7 +436,7 @@ impl Position {
         if self.since + 1 == sample {
             // The first equal value: how fast was it before?
             self.speed_before = recent
-                .first()
+                .front()
                 .filter(|_| recent.len() > SPEED_SAMPLES)
                 .map_or(0.0, |first| (position - first[actuator]).abs());
         }
@@ -443,6 +445,9 @@ impl Position {
     /// Keeps the largest changes.
     fn note_jump(&mut self, size: f64, sample: usize) {
         const KEPT: usize = 16;
+        if self.jumps.len() == KEPT && self.jumps[KEPT - 1].0 >= size {
+            return;
+        }
         let place = self.jumps.partition_point(|(other, _)| *other >= size);
         if place < KEPT {
             self.jumps.insert(place, (size, sample));

@@ -16,6 +16,8 @@
 //! the interval is none of either direction, both columns have their part, which is told from their sum, the
 //! column of the sign. Friction that rises towards standstill (Stribeck) takes its own mean over the interval.
 
+use std::cell::Cell;
+
 use overact::{Body, Columns, Function, Info, Model, Parameter, SampleError, StandardParameter};
 
 use super::{
@@ -24,6 +26,11 @@ use super::{
 };
 use crate::{data::Load, error::Error, settings::Settings};
 use StandardParameter as P;
+
+thread_local! {
+    /// Memory for the numbers of the model's columns, which are many, from one block to the next.
+    static NUMBERS: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
+}
 
 /// Where the numbers of a column come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -382,21 +389,25 @@ impl ColumnSet {
     ) -> Result<Vec<Vec<f64>>, SampleError> {
         let sizes = model.info().sizes;
         let carried = carried.into();
-        let ask = |function: Function, wanted: bool| -> Result<Vec<f64>, SampleError> {
+        let fill = |function: Function, mut output: Vec<f64>| -> Result<Vec<f64>, SampleError> {
             let (rows, columns) = function.shape(&sizes);
-            let mut output = vec![0.0; if wanted { samples * rows * columns } else { 0 }];
+            output.resize(samples * rows * columns, 0.0);
             if !output.is_empty() {
                 let inputs = &states[..function.inputs().len()];
                 model.evaluate(function, inputs, &mut output)?;
             }
             Ok(output)
         };
+        let ask = |function: Function, wanted: bool| match wanted {
+            true => fill(function, Vec::new()),
+            false => Ok(Vec::new()),
+        };
         let columns = || picked.iter().filter_map(|&index| self.columns.get(index));
         let split = columns().any(|column| column.rate.is_some());
         let of_payload =
             |column: &Column| matches!(column.origin, Origin::Payload(_)) && column.counts(carried);
         let has_payload = columns().any(of_payload);
-        let robot = ask(Function::IdmRedPlatform(Columns::Standard), true)?;
+        let robot = fill(Function::IdmRedPlatform(Columns::Standard), NUMBERS.take())?;
         let payload = ask(Function::IdmRedPayload, has_payload)?;
         let averaged = columns().any(|column| column.reversal.is_some_and(|own| own.averaged));
         let velocities = ask(Function::JointVelocities, split)?;
@@ -422,6 +433,7 @@ impl ColumnSet {
         let mut lines: Vec<Vec<f64>> = (0..sizes.dof)
             .map(|line| gathered(&sources, (line, sizes.dof), (samples, width)))
             .collect();
+        NUMBERS.set(robot);
         for (place, column) in columns().enumerate() {
             let Some(rate) = &column.rate else {
                 continue;

@@ -43,7 +43,7 @@ impl<'a> Companion<'a> {
             .file(log.name())
             .into());
         }
-        let motions = Motions::new(model, log, settings)?;
+        let motions = Motions::new(model, log, settings)?.unwatched();
         Ok(Self {
             motions,
             motion: None,
@@ -68,7 +68,7 @@ impl<'a> Companion<'a> {
             return Vec::new();
         };
         let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
-        let chunks = observer.chunks(motion, blocks, &mut failed);
+        let chunks = observer.chunks_with(motion, blocks, &mut failed, false);
         let error = failed.into_iter().flatten().next();
         match (chunks, error) {
             (Ok(chunks), None) => chunks,

@@ -191,11 +191,26 @@ impl Observer<'_> {
         blocks: Range<usize>,
         failed: &mut [Option<Error>],
     ) -> Result<Vec<Chunk>, Error> {
+        self.chunks_with(motion, blocks, failed, true)
+    }
+
+    /// The same, with `conditions` or without.
+    ///
+    /// # Errors
+    /// A sample at which the model has no value.
+    pub(super) fn chunks_with(
+        &self,
+        motion: &Motion,
+        blocks: Range<usize>,
+        failed: &mut [Option<Error>],
+        conditions: bool,
+    ) -> Result<Vec<Chunk>, Error> {
         let scales = home_scales(self.model);
+        let scales = (&scales[..], conditions);
         let wanted: Vec<bool> = failed.iter().map(Option::is_none).collect();
         let chunks: Vec<(Chunk, Vec<Option<usize>>)> = blocks
             .into_par_iter()
-            .map(|index| self.chunk(motion, index * BLOCK, &scales, &wanted))
+            .map(|index| self.chunk(motion, index * BLOCK, scales, &wanted))
             .collect::<Result<_, _>>()?;
         for (projection, failed) in failed.iter_mut().enumerate() {
             let first = chunks.iter().find_map(|(_, singular)| singular[projection]);
@@ -212,7 +227,7 @@ impl Observer<'_> {
         &self,
         motion: &Motion,
         first: usize,
-        scales: &[f64],
+        (scales, conditions): (&[f64], bool),
         wanted: &[bool],
     ) -> Result<(Chunk, Vec<Option<usize>>), Error> {
         let info = self.model.info();
@@ -236,18 +251,24 @@ impl Observer<'_> {
             let all = || (0..n).collect();
             let kept = projection.kept(&info).unwrap_or_else(all);
             let choice = KeptActuators::new(kept, scales);
-            chunk.conditions.push(choice.conditions(&jacobians, n * r));
-            if *projection == Projection::Platform {
-                chunk.lines.push(platform.clone());
+            if conditions {
+                chunk.conditions.push(choice.conditions(&jacobians, n * r));
+            }
+            if *projection == Projection::Platform || !*wanted {
+                chunk.lines.push(Vec::new());
                 singular.push(None);
-            } else if *wanted {
+            } else {
                 let (lines, failed) = projected(&platform, &choice, &jacobians, n * r);
                 chunk.lines.push(lines);
                 singular.push(failed.map(|sample| first + sample));
-            } else {
-                chunk.lines.push(Vec::new());
-                singular.push(None);
             }
+        }
+        // The rows on the platform are made into the others first.
+        let places = self.projections.iter().zip(&mut chunk.lines);
+        let mut places = places.filter(|(projection, _)| **projection == Projection::Platform);
+        if let Some((_, own)) = places.next() {
+            places.for_each(|(_, more)| more.clone_from(&platform));
+            *own = platform;
         }
         Ok((chunk, singular))
     }

@@ -157,15 +157,31 @@ pub(super) struct Sample<'a> {
 }
 
 impl Sample<'_> {
-    /// The entry of a suspect's column in a line of Γ¹.
-    pub(super) fn entry(&self, suspect: Suspect, line: usize) -> f64 {
+    /// What the entries of a suspect's column have in common in all lines of Γ¹.
+    pub(super) fn factor(&self, suspect: Suspect) -> f64 {
+        let shaped = |i: usize, shape: Shape| shape.value(self.actuators[i], self.reaches[i]);
+        match suspect {
+            Suspect::Play(i) => shaped(i, Shape::Sign),
+            Suspect::Torque(i, shape) => shaped(i, shape),
+            Suspect::Force(own, shape) => {
+                let here = Moment {
+                    position: self.pose.get(own).copied().unwrap_or(0.0),
+                    ..Moment::default()
+                };
+                shape.value(here, Reach::default())
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// The entry of a suspect's column in a line of Γ¹, of its factor.
+    pub(super) fn entry(&self, suspect: Suspect, factor: f64, line: usize) -> f64 {
         let r = self.jacobian.len() / self.torques.len();
         let share = |actuator: usize| self.jacobian[actuator * r + line];
         let misread = |i: usize, error: Misreading| {
             let place = i * Misreading::ALL.len() + error as usize;
             self.misread[place * r + line]
         };
-        let shaped = |i: usize, shape: Shape| shape.value(self.actuators[i], self.reaches[i]);
         match suspect {
             Suspect::Delay => {
                 let rates = self.torque_rates.iter().enumerate();
@@ -176,17 +192,11 @@ impl Sample<'_> {
             Suspect::Clock => self.clock[line],
             Suspect::Offset(i) => misread(i, Misreading::Offset),
             Suspect::Eccentric(i, error) => misread(i, error),
-            Suspect::Play(i) => shaped(i, Shape::Sign) * misread(i, Misreading::Offset),
+            Suspect::Play(i) => factor * misread(i, Misreading::Offset),
             Suspect::Length(length) => self.lengths[length * r + line],
-            Suspect::Torque(i, shape) => share(i) * shaped(i, shape),
+            Suspect::Torque(i, _) => share(i) * factor,
             Suspect::Force(own, _) if own != line => 0.0,
-            Suspect::Force(own, shape) => {
-                let here = Moment {
-                    position: self.pose.get(own).copied().unwrap_or(0.0),
-                    ..Moment::default()
-                };
-                shape.value(here, Reach::default())
-            }
+            Suspect::Force(..) => factor,
         }
     }
 }

@@ -220,7 +220,7 @@ impl Pass<'_> {
 
     fn run(&self, log: &Log) -> Result<RunScores, Error> {
         let lines = self.model.info().sizes.dof;
-        let mut motions = Motions::new(self.model, log, self.settings)?;
+        let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
         let decimator = self
             .settings
             .decimator(self.decimation, log.sampling_frequency())?;
@@ -238,10 +238,14 @@ impl Pass<'_> {
             velocities: vec![0.0; actuators],
             accelerations: vec![0.0; actuators],
         };
+        let mut rows = vec![Vec::new(); lines];
         while let Some(motion) = motions.next()? {
-            let (rows, positions) = self.rows(&motion, &mut tempo)?;
+            let jacobians = self.jacobians(&motion)?;
+            let positions = self.rows(&motion, &jacobians, &mut tempo, &mut rows)?;
+            let projected = self.projected(&rows, &jacobians);
+            let rows = projected.as_ref().unwrap_or(&rows);
             let mut kept: Vec<Vec<f64>> = vec![Vec::new(); lines];
-            let all = streams.par_iter_mut().zip(&mut kept).zip(&rows);
+            let all = streams.par_iter_mut().zip(&mut kept).zip(rows);
             all.for_each(|((stream, kept), rows)| stream.push(rows, kept));
             let mut at = Vec::new();
             places.push(&positions, &mut at);
@@ -250,9 +254,27 @@ impl Pass<'_> {
         Ok(sink.told(tempo))
     }
 
-    /// The rows of all samples of a motion, line by line of the estimate's inputs, and the positions of the
-    /// actuators, whose motion is noted.
-    fn rows(&self, motion: &Motion, tempo: &mut Tempo) -> Result<(Vec<Vec<f64>>, Vec<f64>), Error> {
+    /// J_p^inv at all samples of a motion, n x r each.
+    fn jacobians(&self, motion: &Motion) -> Result<Vec<f64>, Error> {
+        let inputs: [&[f64]; 1] = [&motion.pose];
+        evaluate(
+            self.model,
+            Function::InverseJacobian,
+            &inputs,
+            motion.samples,
+        )
+        .map_err(|error| motion.outside(error.sample, error.error).into())
+    }
+
+    /// The rows of all samples of a motion, line by line of Γ¹, in the place of those of another one; gives the
+    /// positions of the actuators, whose motion is noted.
+    fn rows(
+        &self,
+        motion: &Motion,
+        jacobians: &[f64],
+        tempo: &mut Tempo,
+        lines: &mut [Vec<f64>],
+    ) -> Result<Vec<f64>, Error> {
         let info = self.model.info();
         let (n, r) = (info.sizes.actuators, info.sizes.dof);
         let at =
@@ -261,7 +283,6 @@ impl Pass<'_> {
             evaluate(self.model, function, inputs, motion.samples).map_err(at)
         };
         let states: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
-        let jacobians = ask(Function::InverseJacobian, &states[..1])?;
         let positions = ask(Function::ActuatorPositions, &states[..1])?;
         let payload = match info.sizes.payload_parameters {
             0 => Vec::new(),
@@ -269,7 +290,10 @@ impl Pass<'_> {
         };
         let (layout, p) = (self.frame.layout, self.base.len());
         let more = self.width() - p;
-        let mut lines: Vec<Vec<f64>> = vec![Vec::new(); r];
+        for rows in &mut *lines {
+            rows.clear();
+            rows.reserve_exact(motion.samples * self.width());
+        }
         for first in (0..motion.samples).step_by(BLOCK) {
             let count = BLOCK.min(motion.samples - first);
             let states = [
@@ -294,7 +318,7 @@ impl Pass<'_> {
                 .for_each(|(all, rows)| all.extend(rows));
         }
         for (to, from) in self.friction.iter().enumerate() {
-            for rows in &mut lines {
+            for rows in &mut *lines {
                 let column = rows.iter().skip(*from).step_by(self.width());
                 let column: Vec<f64> = column.copied().collect();
                 let late = rates(&column, 1, motion.sampling_frequency);
@@ -302,7 +326,7 @@ impl Pass<'_> {
                 places.zip(late).for_each(|(place, rate)| *place = -rate);
             }
         }
-        let torques = self.inputs(motion, &jacobians, &mut lines);
+        let torques = self.inputs(motion, jacobians, lines);
         let torque_rates = rates(&torques, n, motion.sampling_frequency);
         let nearby = Nearby {
             model: self.model,
@@ -310,7 +334,7 @@ impl Pass<'_> {
             base: self.base,
             values: self.frame.values,
         };
-        let [velocities, accelerations] = nearby.actuators(motion, &jacobians)?;
+        let [velocities, accelerations] = nearby.actuators(motion, jacobians)?;
         tempo.take([&velocities, &accelerations]);
         let signals: [&[f64]; 4] = [&positions, &velocities, &accelerations, &torques];
         let actuators = moments((motion, Reversal::new(self.settings)), signals);
@@ -321,7 +345,7 @@ impl Pass<'_> {
             .iter()
             .any(|one| matches!(one, Suspect::Offset(_)));
         let misread = match moved {
-            true => nearby.misread(motion, (&torques, &jacobians), &actuators, &Misreading::ALL)?,
+            true => nearby.misread(motion, (&torques, jacobians), &actuators, &Misreading::ALL)?,
             false => Vec::new(),
         };
         let width = self.width();
@@ -329,7 +353,7 @@ impl Pass<'_> {
         let own = layout.base + 1;
         for sample in 0..motion.samples {
             let here = Sample {
-                jacobian: slice(&jacobians, n * r, sample, 1),
+                jacobian: slice(jacobians, n * r, sample, 1),
                 torques: slice(&torques, n, sample, 1),
                 torque_rates: slice(&torque_rates, n, sample, 1),
                 actuators: &actuators[sample * n..(sample + 1) * n],
@@ -339,18 +363,25 @@ impl Pass<'_> {
                 misread: slice(&misread, Misreading::ALL.len() * n * r, sample, 1),
                 lengths: slice(&lengths, self.variants.len() * r, sample, 1),
             };
+            // Waves, which come last, are made of decimated positions.
+            let narrow = self
+                .frame
+                .suspects
+                .iter()
+                .take(layout.decimated - layout.base);
+            let factors: Vec<f64> = narrow.map(|suspect| here.factor(*suspect)).collect();
             for (line, rows) in lines.iter_mut().enumerate() {
                 let row = &mut rows[sample * width..(sample + 1) * width];
                 let narrow = row.len() - own - self.model.info().sizes.payload_parameters;
                 let (suspects, load) = row[own..].split_at_mut(narrow);
-                // Waves, which come last, are made of decimated positions.
-                for (to, suspect) in suspects.iter_mut().zip(self.frame.suspects) {
-                    *to = here.entry(*suspect, line);
+                let all = self.frame.suspects.iter().zip(&factors);
+                for (to, (suspect, factor)) in suspects.iter_mut().zip(all) {
+                    *to = here.entry(*suspect, *factor, line);
                 }
                 load.copy_from_slice(slice(&payload, load.len(), sample * r + line, 1));
             }
         }
-        Ok((self.kept(lines, &jacobians), positions))
+        Ok(positions)
     }
 
     /// Puts the measured inputs into the rows, and gives the torques freed of the residual.
@@ -388,15 +419,15 @@ impl Pass<'_> {
         freed
     }
 
-    /// Rows of Γ¹ as the estimate's model takes them.
-    fn kept(&self, lines: Vec<Vec<f64>>, jacobians: &[f64]) -> Vec<Vec<f64>> {
+    /// Rows of Γ¹ as the estimate's model takes them, where it takes others.
+    fn projected(&self, lines: &[Vec<f64>], jacobians: &[f64]) -> Option<Vec<Vec<f64>>> {
         let sizes = self.model.info().sizes;
         let kept = match self.kind {
-            ModelKind::Platform => return lines,
+            ModelKind::Platform => return None,
             ModelKind::Joints => (0..sizes.actuators).collect(),
             ModelKind::Actuators => self.settings.kept_actuators.clone(),
         };
         let choice = KeptActuators::new(kept, &home_scales(self.model));
-        projected(&lines, &choice, jacobians, sizes.actuators * sizes.dof).0
+        Some(projected(lines, &choice, jacobians, sizes.actuators * sizes.dof).0)
     }
 }

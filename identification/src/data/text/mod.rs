@@ -1,8 +1,13 @@
 //! Text: lines of numbers, separated by commas, semicolons, tabs or blanks, with or without names.
 //!
 //! A file is looked through once, from end to end, when it is opened: every cell is checked, samples
-//! are counted and the frequency is told. A small one is in memory then; a large one is read again,
-//! row by row, whenever its run is gone through.
+//! are counted and the frequency is told. A small one is in memory then; the numbers of a large one stand in a
+//! temporary file, or it is read again, row by row, whenever its run is gone through.
+//!
+//! - `dialect`: what separates columns and decimals, and where the names are;
+//! - `lines`, `cells`: plain lines and their numbers, where they stand;
+//! - `squeeze`: columns apart by any number of blanks;
+//! - `rows`: rows of plain lines, or of records with quotation marks.
 
 mod cells;
 mod closely;

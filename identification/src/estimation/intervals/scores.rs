@@ -280,14 +280,15 @@ impl<'a> Context<'a> {
         let lines = stretch.lines.iter().zip(&self.estimation.weights);
         for (number, (line, weight)) in lines.enumerate() {
             let rows = line.rows(range.start, range.len());
-            let own = self.rows(stretch, number, range.clone()) * *weight;
+            let mut own = self.rows(stretch, number, range.clone());
+            own *= *weight;
             let mut residual = rows.column(rows.ncols() - 1) * *weight;
             // The columns come before the instruments.
             for (column, value) in own.column_iter().zip(&self.estimation.values) {
                 residual.axpy(-value, &column, 1.0);
             }
             for (mut scores, column) in told.scores.column_iter_mut().zip(own.column_iter()) {
-                scores += column.component_mul(&residual);
+                scores.zip_zip_apply(&column, &residual, |sum, x, rest| *sum += x * rest);
             }
             if wanted {
                 told.gram.gemm(1.0, &own.transpose(), &own, 1.0);
