@@ -115,7 +115,7 @@ impl Spill {
 #[cfg(all(test, not(target_family = "wasm")))]
 mod tests {
     use super::Spill;
-    use crate::data::{Gain, Log, Mapping, Time, samples::Samples, source::Files};
+    use crate::data::{Gain, Log, Mapping, Time, medium::Medium, samples::Samples, source::Files};
     use std::fs;
 
     #[test]
@@ -154,7 +154,8 @@ mod tests {
             resample: None,
             transmission: Vec::new(),
         };
-        let files = Files::new(&path, &[&path], &mapping).expect("files");
+        let file = (String::from("log.csv"), Medium::Disk(path.clone()));
+        let files = Files::new(String::from("run"), &[file], &mapping).expect("files");
         let log = Log::in_files(files, 10.0, 100, false);
         let (positions, torques) = log.load().expect("numbers");
         assert_eq!((positions[99], torques[50]), (99.0, 100.0));
