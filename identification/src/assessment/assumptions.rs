@@ -2,7 +2,14 @@
 
 use overact::Model;
 
-use crate::regression::{columns::ColumnSet, projection::ModelKind};
+use super::check::{Check, CheckKind};
+use crate::{
+    regression::{columns::ColumnSet, projection::ModelKind},
+    significant,
+};
+
+/// A fault that may be hidden is told where it moves a parameter by more than so many deviations.
+const HARMFUL: f64 = 3.0;
 
 /// What no data of these runs can show to be wrong: faults whose effect on the data is that of other
 /// parameters.
@@ -37,4 +44,23 @@ pub(crate) fn assumptions(
         ));
     }
     all
+}
+
+/// What the checks would have missed though it spoils parameters: the zero of an encoder or the length that does most
+/// harm at the size that would just have been seen.
+pub(crate) fn hidden(checks: &[Check]) -> Option<String> {
+    let own = |check: &&Check| {
+        check.passed && matches!(check.kind, CheckKind::EncoderOffset | CheckKind::Length)
+    };
+    let all = checks.iter().filter(own).flat_map(|one| &one.detectable);
+    let harmful = all.filter(|one| one.moves > HARMFUL && one.moves.is_finite());
+    let worst = harmful.max_by(|a, b| a.moves.total_cmp(&b.moves))?;
+    Some(format!(
+        "zeros of encoders and lengths are right: an error of {} {} of `{}`, the least that these data would have shown, moves `{}` by {:.0} of its standard deviations, and a smaller one in proportion",
+        significant(worst.size, 2),
+        worst.unit,
+        worst.name,
+        worst.parameter,
+        worst.moves
+    ))
 }

@@ -64,6 +64,10 @@ pub struct Detectable {
     pub deviation: f64,
     /// The size that nine of ten such data would have shown, were it there.
     pub size: f64,
+    /// The parameter that a fault of this size moves most, of those that are estimated.
+    pub parameter: String,
+    /// By how many of the parameter's standard deviations it moves it: what may be hidden in data that show nothing.
+    pub moves: f64,
 }
 
 /// What a check is about.

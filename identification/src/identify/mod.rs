@@ -34,7 +34,7 @@ use prepare::{check_runs, prepared_warnings};
 use crate::{
     assessment::{
         self, Context, Watched,
-        assumptions::assumptions,
+        assumptions::{assumptions, hidden},
         check::Check,
         suspects::{Reach, scores},
         verdict::verdicts,
@@ -162,7 +162,9 @@ pub fn identify_after(
         without_effect: prepared.without_effect(),
         runs: prepared.runs,
         warnings,
-        assumptions: assumptions(model, &prepared.columns, &models),
+        assumptions: { assumptions(model, &prepared.columns, &models).into_iter() }
+            .chain(hidden(&checks))
+            .collect(),
         verdicts: verdicts(&estimates, &checks),
         checks,
         thresholds: Thresholds::default(),

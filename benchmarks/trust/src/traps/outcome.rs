@@ -3,7 +3,8 @@
 use super::Trap;
 use crate::{Failure, Subject};
 use overact_identification::{
-    Check, CheckKind, Dataset, Estimate, Grade, Identification, LineError, Log, Stage, identify,
+    Check, CheckKind, Dataset, Detectable, Estimate, Grade, Identification, LineError, Log, Stage,
+    identify,
 };
 use overact_simulation::{Experiment, Record, simulate};
 use serde::Serialize;
@@ -47,7 +48,7 @@ pub struct Outcome {
     pub found: Vec<String>,
     /// The first reason, or the error.
     pub words: String,
-    /// Whether an assumption of every report says that no data can show it.
+    /// Whether an assumption of every report says that no data can show it, or this report that so much may be hidden.
     pub assumed: bool,
 }
 
@@ -62,7 +63,7 @@ pub enum Standing {
     Named,
     /// One is, and no test of these data could know.
     Invisible,
-    /// One is, and an assumption of every report says why.
+    /// One is, and an assumption of the report says why.
     Assumed,
     /// One is, and nothing tells.
     Missed,
@@ -102,18 +103,21 @@ impl Standing {
     }
 }
 
-/// The chance that a test of two sides at the level of a family sees what lies so many deviations from
-/// zero, with white noise and all else known: no test does better.
-fn power(deviations: f64) -> f64 {
-    // The normal quantile of the level, by halving.
+/// The chance that a test of two sides with a threshold in deviations sees what lies so many of them from zero.
+fn power(deviations: f64, threshold: f64) -> f64 {
+    let tail = |at: f64| 0.5 * libm::erfc(at / std::f64::consts::SQRT_2);
+    tail(threshold - deviations) + tail(threshold + deviations)
+}
+
+/// How many deviations white noise exceeds as often as a level: no test of a family does better.
+fn quantile(level: f64) -> f64 {
     let (mut low, mut high) = (0.0, 10.0);
     for _ in 0..60 {
         let middle: f64 = 0.5 * (low + high);
         let beyond = libm::erfc(middle / std::f64::consts::SQRT_2);
-        *(if beyond > LEVEL { &mut low } else { &mut high }) = middle;
+        *(if beyond > level { &mut low } else { &mut high }) = middle;
     }
-    let tail = |at: f64| 0.5 * libm::erfc(at / std::f64::consts::SQRT_2);
-    tail(low - deviations) + tail(low + deviations)
+    low
 }
 
 /// The records of a subject's experiment, which makes all traps.
@@ -150,10 +154,12 @@ pub fn outcome(
         Ok(result) => {
             let oracle = oracle(&result, faultless);
             let honest = trap.size.and_then(|size| honest(faultless, size));
+            let at_report = honest.map(|(size, threshold)| power(size, threshold));
             Outcome {
                 oracle,
-                honest,
-                power: honest.or(oracle).map(power),
+                honest: honest.map(|(size, _)| size),
+                power: at_report.or(oracle.map(|size| power(size, quantile(LEVEL)))),
+                assumed: start.assumed || trap.size.is_some_and(|size| is_stated(&result, size)),
                 ..told(&result, start)
             }
         }
@@ -195,12 +201,31 @@ fn oracle(result: &Identification, faultless: &Identification) -> Option<f64> {
     Some(added.max(0.0).sqrt() / without.residual_deviation)
 }
 
-/// The size of a fault by its deviation in faultless data.
-fn honest(faultless: &Identification, (kind, name, size): (CheckKind, &str, f64)) -> Option<f64> {
-    let own = faultless.checks.iter().filter(|check| check.kind == kind);
-    let mut detectable = own.flat_map(|check| &check.detectable);
-    let found = detectable.find(|one| one.name == name)?;
-    Some(size.abs() / found.deviation)
+/// The check of an identification that looks for faults of a kind and a name, and how well it tells them.
+fn looked_for<'a>(
+    result: &'a Identification,
+    (kind, name): (CheckKind, &str),
+) -> Option<(&'a Check, &'a Detectable)> {
+    let own = result.checks.iter().filter(|check| check.kind == kind);
+    let mut all = own.flat_map(|check| check.detectable.iter().map(move |one| (check, one)));
+    all.find(|(_, one)| one.name == name)
+}
+
+/// The size of a fault by its deviation in faultless data, and the threshold of the check that looks for it.
+fn honest(
+    faultless: &Identification,
+    (kind, name, size): (CheckKind, &str, f64),
+) -> Option<(f64, f64)> {
+    let (check, found) = looked_for(faultless, (kind, name))?;
+    Some((size.abs() / found.deviation, check.threshold))
+}
+
+/// Whether the report says itself that a fault of this size may be hidden in the data and spoil parameters.
+fn is_stated(result: &Identification, (kind, name, size): (CheckKind, &str, f64)) -> bool {
+    let found = looked_for(result, (kind, name));
+    found.is_some_and(|(check, one)| {
+        check.passed && one.moves > LARGEST_ERROR && size.abs() <= one.size
+    })
 }
 
 /// Identifies from records.

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Detectable},
-        suspects::{Accused, Group, Suspect},
+        suspects::{Group, Scores, Suspect},
     },
     error::Error,
     significant,
@@ -51,7 +51,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         level,
         harmless,
     };
-    let check = told.check(&shown.accused, shown);
+    let check = told.check((context, scores), shown);
     let accused = &shown.accused;
     let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);
     let number = |value: f64| significant(value, 3);
@@ -117,7 +117,8 @@ struct Told {
 
 impl Told {
     /// The check of a delay, without words.
-    fn check(&self, accused: &Accused, one: &Tested) -> Check {
+    fn check(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
+        let accused = &one.accused;
         let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);
         let beyond = (size.abs() - 1e3 * self.harmless).max(0.0);
         Check::new(CheckKind::Delay, About::Model, "")
@@ -131,7 +132,7 @@ impl Told {
             )
             .detecting(vec![Detectable {
                 size: self.harmless + accused.visible(self.level),
-                ..one.detectable(String::new(), "s", self.level)
+                ..one.detectable(of, (String::new(), "s"), self.level)
             }])
             .shown_by(parabola(
                 accused,

@@ -45,7 +45,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let detectable: Vec<Detectable> = actuators
         .iter()
         .zip(&found)
-        .map(|(actuator, one)| one.detectable(name(*actuator).to_owned(), "", level))
+        .map(|(actuator, one)| {
+            one.detectable((context, scores), (name(*actuator).to_owned(), ""), level)
+        })
         .collect();
     let Some(worst) = guilty(&found, level) else {
         let visible: Vec<String> = detectable

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Detectable},
-        suspects::{Group, Misreading, Suspect},
+        suspects::{Group, Misreading, Scores, Suspect},
     },
     error::Error,
     significant,
@@ -46,7 +46,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }
     let level = level(tests);
     let Some(worst) = guilty(&found, level) else {
-        return Ok(vec![nothing(context, (&suspects, &found), level)]);
+        return Ok(vec![nothing((context, scores), (&suspects, &found), level)]);
     };
     let place = found
         .iter()
@@ -99,7 +99,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .against(worst.accused.quantile(level), origin(tests))
         .shown_by(parabola(&worst.accused, &title, (axis, unit, 1.0)))
         .because(&harm);
-    let detectable = detectable(context, (&suspects, &found), level).into_iter();
+    let detectable = detectable((context, scores), (&suspects, &found), level).into_iter();
     let check = check.detecting(detectable.map(|(_, one)| one).collect());
     Ok(vec![match suspect {
         Suspect::Length(_) => check,
@@ -108,8 +108,12 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 }
 
 /// What is said where none of the suspects is guilty: from which size on they would have been seen.
-fn nothing(context: &Context<'_>, (suspects, found): (&[Suspect], &[Tested]), level: f64) -> Check {
-    let detectable = detectable(context, (suspects, found), level);
+fn nothing(
+    (context, scores): (&Context<'_>, &Scores),
+    (suspects, found): (&[Suspect], &[Tested]),
+    level: f64,
+) -> Check {
+    let detectable = detectable((context, scores), (suspects, found), level);
     let visible = |of: fn(&Suspect) -> bool| -> String {
         let own = detectable.iter().filter(|(suspect, _)| of(suspect));
         let each = own.map(|(_, one)| {
@@ -143,7 +147,7 @@ fn nothing(context: &Context<'_>, (suspects, found): (&[Suspect], &[Tested]), le
 
 /// From which size on each offset and each length would have been seen.
 fn detectable(
-    context: &Context<'_>,
+    (context, scores): (&Context<'_>, &Scores),
     (suspects, found): (&[Suspect], &[Tested]),
     level: f64,
 ) -> Vec<(Suspect, Detectable)> {
@@ -152,7 +156,10 @@ fn detectable(
         both.filter(|(suspect, _)| !matches!(suspect, Suspect::Play(_) | Suspect::Eccentric(..)));
     let one = |(&suspect, one): (&Suspect, &Tested)| {
         let (name, unit) = (name(context, suspect), unit(context, suspect));
-        (suspect, one.detectable(name, unit, level))
+        (
+            suspect,
+            one.detectable((context, scores), (name, unit), level),
+        )
     };
     sizes.map(one).collect()
 }

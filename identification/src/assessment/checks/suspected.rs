@@ -30,13 +30,48 @@ pub(super) struct Tested {
 
 impl Tested {
     /// How well the data tell its size.
-    pub(super) fn detectable(&self, name: String, unit: &'static str, level: f64) -> Detectable {
+    pub(super) fn detectable(
+        &self,
+        (context, scores): (&Context<'_>, &Scores),
+        (name, unit): (String, &'static str),
+        level: f64,
+    ) -> Detectable {
+        let size = self.accused.visible(level);
+        let all = self.moves(context, scores);
+        let most = all.iter().find(|(by, _)| by.is_finite());
+        let base = context.estimates_of(Stage::Base).next();
         Detectable {
             name,
             unit,
             deviation: self.accused.deviation,
-            size: self.accused.visible(level),
+            size,
+            parameter: base
+                .zip(most)
+                .map_or_else(String::new, |(base, (_, column))| self::name(base, *column)),
+            moves: most.map_or(0.0, |(by, _)| {
+                by * size / self.accused.size().abs().max(f64::MIN_POSITIVE)
+            }),
         }
+    }
+
+    /// By how many of their deviations it moves the base and the recommended parameters of the first model, with
+    /// their columns, the largest first.
+    fn moves(&self, context: &Context<'_>, scores: &Scores) -> Vec<(f64, usize)> {
+        let Some(base) = context.estimates_of(Stage::Base).next() else {
+            return Vec::new();
+        };
+        let mut recommended = context.estimates_of(Stage::Recommended);
+        let smaller = recommended.find(|one| one.model == base.model);
+        let beside =
+            smaller.and_then(|one| Some((one, scores.test(&self.group, &one.columns())?.moves)));
+        let mut all = by_deviation(base, &self.accused.moves);
+        all.extend(
+            beside
+                .iter()
+                .flat_map(|(one, moves)| by_deviation(one, moves)),
+        );
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all
     }
 }
 
@@ -108,17 +143,7 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
     let Some(base) = context.estimates_of(Stage::Base).next() else {
         return Harm::none();
     };
-    let mut recommended = context.estimates_of(Stage::Recommended);
-    let smaller = recommended.find(|one| one.model == base.model);
-    let beside =
-        smaller.and_then(|one| Some((one, scores.test(&tested.group, &one.columns())?.moves)));
-    let mut all = by_deviation(base, &tested.accused.moves);
-    all.extend(
-        beside
-            .iter()
-            .flat_map(|(one, moves)| by_deviation(one, moves)),
-    );
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let all = tested.moves(context, scores);
     let Some(&(worst, column)) = all.first() else {
         return Harm::none();
     };
