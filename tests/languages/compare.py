@@ -126,7 +126,7 @@ def library(robot, folder):
     subprocess.run([BINARY, "generate", path, "--effort", "quick", "--lang", "c", "-o", folder], check=True, capture_output=True)
     (source,) = pathlib.Path(folder).glob("*.c")
     shared = pathlib.Path(folder) / "robot.so"
-    subprocess.run(["gcc", "-std=c99", "-O1", "-fPIC", "-shared", source, "-o", shared, "-lm"], check=True)
+    subprocess.run(["gcc", "-std=c99", "-O0", "-fPIC", "-shared", source, "-o", shared, "-lm"], check=True)
     header = source.with_suffix(".h").read_text()
     return ctypes.CDLL(str(shared)), header, source.stem
 
