@@ -215,7 +215,13 @@ fn inspect_says_what_a_model_is() {
         Some(4)
     );
     let text = bench.good(&["inspect", &robot("dualv.toml"), "--effort", "none"]);
-    assert!(text.contains("zz_1_leg1R = zz_1_leg1 + ia_1_leg1 - 0.28 mx_2_leg1 + 0.0784 m_2_leg1"));
+    assert!(
+        text.contains("zz_1_leg1R   = zz_1_leg1 + ia_1_leg1 - 0.28 mx_2_leg1 + 0.0784 m_2_leg1")
+    );
+    assert!(
+        text.lines().all(|line| line.chars().count() <= 100),
+        "{text}"
+    );
 }
 
 fn check_function(function: &Value) {

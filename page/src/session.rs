@@ -6,7 +6,7 @@ use crate::{
 };
 use overact::Model;
 use overact_identification::{Grade, Identification, Progress};
-use overact_report::{About, Units, document, numbers, whole_page};
+use overact_report::{About, Extent, Units, document, numbers, whole_page};
 use overact_robot::{Identifier, Robot, Runs, drawing};
 use overact_simulation::{Record, write_csv};
 use serde::Serialize;
@@ -146,7 +146,7 @@ impl Identified {
         };
         let document = document(result).map_err(thrown)?;
         Ok(Self {
-            summary: overact_report::summary(result, None),
+            summary: overact_report::summary(result, None, Extent::Whole),
             page: whole_page(result, &about, "identification").map_err(thrown)?,
             document,
             numbers: numbers(result).map_err(thrown)?,
@@ -157,7 +157,7 @@ impl Identified {
 
 #[wasm_bindgen]
 impl Identified {
-    /// What `overact identify` prints.
+    /// What `overact identify --all` prints.
     #[must_use]
     pub fn summary(&self) -> String {
         self.summary.clone()

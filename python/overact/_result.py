@@ -222,7 +222,7 @@ class Identification:
         return self._handle.json()
 
     def summary(self) -> str:
-        """What ``overact identify`` prints."""
+        """What ``overact identify --all`` prints."""
         return self._handle.summary()
 
     def tables(self) -> str:

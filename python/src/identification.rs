@@ -8,7 +8,7 @@ use crate::{
 use overact::Model;
 use overact_cli::report;
 use overact_identification::{CalibrationScope, Grade, Identification, Progress};
-use overact_report::Published;
+use overact_report::{Extent, Published};
 use overact_robot::{Error, Identifier, Robot, Runs, kept_actuators, tracking};
 use pyo3::{
     conversion::FromPyObjectOwned,
@@ -205,9 +205,9 @@ impl Identified {
             .map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
-    /// What `overact identify` prints.
+    /// What `overact identify --all` prints.
     fn summary(&self) -> String {
-        overact_report::summary(&self.result, None)
+        overact_report::summary(&self.result, None, Extent::Whole)
     }
 
     /// What `overact identify --tables` prints below the summary.

@@ -3,8 +3,17 @@
 
 use crate::text::{fitted, visible};
 
-/// Characters of a cell at most; sums of parameters stand in tables without columns to their right.
+/// Characters of a line: what the narrower terminals show.
+pub const WIDTH: usize = 100;
+
+/// Characters of a cell at most: two of them, and the space between, stand in a line.
 const WIDEST: usize = 48;
+
+/// Characters at most of what stands before a text that goes on below itself.
+const WIDEST_LEAD: usize = 60;
+
+/// Spaces between two columns.
+const GAP: usize = 2;
 
 /// Adds a line.
 pub(crate) fn line(text: &mut String, words: &str) {
@@ -12,52 +21,106 @@ pub(crate) fn line(text: &mut String, words: &str) {
     text.push('\n');
 }
 
-/// The cells of a row as they are shown.
-fn cells(row: Vec<String>) -> Vec<String> {
-    let shown = |cell: String| fitted(&visible(&cell), WIDEST);
-    row.into_iter().map(shown).collect()
+/// A paragraph of lines that are not too long, behind `lead` and indented like it.
+pub fn paragraph(text: &mut String, lead: &str, words: &str) {
+    let indent = " ".repeat(lead.chars().count());
+    let mut current = lead.to_owned();
+    let mut is_empty = true;
+    // A number keeps its percent sign beside it.
+    let words = visible(words).replace(" %", "\u{a0}%");
+    for word in words.split(' ').filter(|word| !word.is_empty()) {
+        let word = fitted(&word.replace('\u{a0}', " "), WIDTH);
+        if !is_empty && current.chars().count() + 1 + word.chars().count() > WIDTH {
+            line(text, &current);
+            current.clone_from(&indent);
+            is_empty = true;
+        }
+        if !is_empty {
+            current.push(' ');
+        }
+        current.push_str(&word);
+        is_empty = false;
+    }
+    line(text, &current);
 }
 
-/// Rows under a header: the first column to the left, the others to the right.
+/// Rows under a header with a rule below: the first column to the left, the others to the right. Cells are shortened
+/// where they are longer than a name can be.
 pub(crate) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
-    let header = header.iter().map(|cell| (*cell).to_owned());
-    let mut all = vec![cells(header.collect())];
-    all.extend(rows.into_iter().map(cells));
-    let widths = widths(&all);
-    let rule: usize = widths.iter().sum::<usize>() + 2 * widths.len().saturating_sub(1);
-    let mut text = String::new();
-    for (index, row) in all.iter().enumerate() {
-        let cells: Vec<String> = row
-            .iter()
-            .zip(&widths)
-            .enumerate()
-            .map(|(column, (cell, &width))| {
-                if column == 0 {
-                    format!("{cell:<width$}")
-                } else {
-                    format!("{cell:>width$}")
+    let header = header.iter().map(|cell| (*cell).to_owned()).collect();
+    let shown = |row: Vec<String>| {
+        row.iter()
+            .map(|cell| fitted(&visible(cell), WIDEST))
+            .collect()
+    };
+    let all: Vec<Vec<String>> = std::iter::once(header).chain(rows).map(shown).collect();
+    in_parts(&all, &[true], true)
+}
+
+/// Rows in columns as wide as their widest cells; `left` tells which columns are aligned to the left. What is too wide
+/// for a line comes in parts below each other, each of which begins with the first column.
+#[must_use]
+pub fn columns(rows: &[Vec<String>], left: &[bool]) -> String {
+    in_parts(rows, left, false)
+}
+
+/// Columns, with a rule below the first row or without.
+fn in_parts(rows: &[Vec<String>], left: &[bool], is_ruled: bool) -> String {
+    let widths = widths(rows);
+    let parts = parts(&widths);
+    let parts = parts.iter().map(|part| {
+        let rule: usize = part.iter().map(|&column| GAP + widths[column]).sum();
+        let mut text = String::new();
+        for (index, row) in rows.iter().enumerate() {
+            let cells = part.iter().map(|&column| {
+                let (cell, width) = (row.get(column).map_or("", String::as_str), widths[column]);
+                match left.get(column) {
+                    Some(true) => format!("{cell:<width$}"),
+                    _ => format!("{cell:>width$}"),
                 }
-            })
-            .collect();
-        line(&mut text, cells.join("  ").trim_end());
-        if index == 0 {
-            line(&mut text, &"-".repeat(rule));
+            });
+            let cells: Vec<String> = cells.collect();
+            line(&mut text, cells.join(&" ".repeat(GAP)).trim_end());
+            if index == 0 && is_ruled {
+                line(&mut text, &"-".repeat(rule.saturating_sub(GAP)));
+            }
+        }
+        text
+    });
+    parts.collect::<Vec<String>>().join("\n")
+}
+
+/// The columns of each part of a table, the first one in all of them.
+fn parts(widths: &[usize]) -> Vec<Vec<usize>> {
+    let mut parts: Vec<Vec<usize>> = vec![vec![0]];
+    let first = widths.first().copied().unwrap_or(0);
+    let mut used = first;
+    for (column, width) in widths.iter().enumerate().skip(1) {
+        if used + GAP + width > WIDTH && used > first {
+            parts.push(vec![0]);
+            used = first;
+        }
+        used += GAP + width;
+        if let Some(last) = parts.last_mut() {
+            last.push(column);
         }
     }
-    text
+    parts
 }
 
-/// Rows without a header, all to the left.
-pub(crate) fn left_table(rows: Vec<Vec<String>>) -> String {
-    let widths = widths(&rows);
+/// Names and what stands for them, all names as wide as the widest; what is too long for a line goes on below itself.
+#[must_use]
+pub fn definitions(rows: &[(String, String)], between: &str) -> String {
+    let shown = |name: &str| fitted(&visible(name), WIDEST_LEAD);
+    let width = rows.iter().map(|(name, _)| shown(name).chars().count());
+    let width = width.max().unwrap_or(0);
     let mut text = String::new();
-    for row in &rows {
-        let cells: Vec<String> = row
-            .iter()
-            .zip(&widths)
-            .map(|(cell, &width)| format!("{cell:<width$}"))
-            .collect();
-        line(&mut text, cells.join(" ").trim_end());
+    for (name, words) in rows {
+        paragraph(
+            &mut text,
+            &format!("{:<width$}{between}", shown(name)),
+            words,
+        );
     }
     text
 }
@@ -78,7 +141,14 @@ fn widths(rows: &[Vec<String>]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{line, table};
+    use super::{WIDTH, columns, definitions, line, paragraph, table};
+
+    #[test]
+    fn columns_are_aligned() {
+        let row = |a: &str, b: &str| vec![a.to_owned(), b.to_owned()];
+        let rows = [row("name", "n"), row("x", "12")];
+        assert_eq!(columns(&rows, &[true, false]), "name   n\nx     12\n");
+    }
 
     #[test]
     fn hostile_cells_stay_in_their_columns() {
@@ -93,9 +163,63 @@ mod tests {
     }
 
     #[test]
+    fn a_wide_table_comes_in_parts_that_fit_and_loses_no_cell() {
+        let names: Vec<String> = (0..9).map(|column| format!("column {column:9}")).collect();
+        let header: Vec<&str> = names.iter().map(String::as_str).collect();
+        let row = |row: usize| (0..9).map(|column| format!("r{row}c{column}")).collect();
+        let text = table(&header, vec![row(0), row(1)]);
+        assert!(
+            text.lines().all(|line| line.chars().count() <= WIDTH),
+            "{text}"
+        );
+        let heads: Vec<&str> = text
+            .lines()
+            .filter(|line| line.contains("column"))
+            .collect();
+        assert_eq!(heads.len(), 2, "{text}");
+        assert!(
+            heads.iter().all(|line| line.starts_with(&names[0])),
+            "{text}"
+        );
+        for (row, column) in (0..2).flat_map(|row| (1..9).map(move |column| (row, column))) {
+            assert_eq!(
+                text.matches(&format!("r{row}c{column}")).count(),
+                1,
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
     fn a_line_is_one_line() {
         let mut text = String::new();
         line(&mut text, "a\nb\u{1b}[2J");
         assert_eq!(text, "a b\u{FFFD}[2J\n");
+    }
+
+    #[test]
+    fn a_paragraph_is_broken_between_words_and_loses_none() {
+        let words = "one two three ".repeat(30);
+        let mut text = String::new();
+        paragraph(&mut text, "  - ", &words);
+        assert!(text.lines().count() > 3);
+        assert!(text.lines().all(|line| line.chars().count() <= WIDTH));
+        assert!(text.lines().skip(1).all(|line| line.starts_with("    ")));
+        let told: Vec<&str> = text.split_whitespace().skip(1).collect();
+        assert_eq!(told, words.split_whitespace().collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn long_sums_go_on_below_themselves() {
+        let sum = "m_1 + ".repeat(40);
+        let rows = [("a".to_owned(), "b".to_owned()), ("longer".to_owned(), sum)];
+        let text = definitions(&rows, " = ");
+        assert!(text.starts_with("a      = b\nlonger = m_1 + "), "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= WIDTH));
+        assert!(
+            text.lines()
+                .skip(2)
+                .all(|line| line.starts_with("         m_1"))
+        );
     }
 }

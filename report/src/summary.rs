@@ -1,49 +1,72 @@
 //! What a person who has just identified a robot reads in the terminal: what may be used, why, the
 //! recommended parameters, and what to do next. All tables are in `terminal`.
 
+mod parameters;
+
 use crate::{
     choice::{answers, of, projection, stage_name},
-    intervals::{excludes_zero, half_width_percent, is_outside},
+    intervals::{excludes_zero, half_width_percent},
     judgement::{grade_words, passed},
-    layout::{line, table},
+    layout::{line, paragraph},
     terminal::{calibration, gains, gravity, motors},
-    text::{fitted, visible},
 };
 use overact_identification::{
     Estimate, Estimator, Grade, Identification, ParameterEstimate, Stage, Verdict, objections,
     significant,
 };
 
-/// Characters of a line of prose.
-const WIDTH: usize = 100;
+/// Lines of a short summary: what a terminal shows at once.
+const LINES: usize = 50;
+
+/// Parameters that a short summary has at least, however much is to be said besides.
+const FEWEST: usize = 10;
+
+/// Names in a row that a short summary lists at most.
+const NAMES: usize = 24;
+
+/// How much of a result is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// What is needed first, in 50 lines where verdicts, warnings and ten parameters leave room for it: of the
+    /// parameters those that may be used and those that are known best.
+    Short,
+    /// Everything.
+    Whole,
+}
 
 /// The summary; `page` is where the page with all evidence has been written.
 #[must_use]
-pub fn summary(identification: &Identification, page: Option<&str>) -> String {
-    let mut text = String::new();
-    paragraph(&mut text, "", &headline(identification));
+pub fn summary(identification: &Identification, page: Option<&str>, extent: Extent) -> String {
+    let mut above = String::new();
+    paragraph(&mut above, "", &headline(identification));
     if let Some(calibration) = &identification.calibration {
-        for told in calibration::calibration(calibration).lines() {
-            line(&mut text, told);
-        }
+        above.push_str(&calibration::calibration(calibration));
     }
-    for told in gravity::gravity(identification.gravity.as_ref()).lines() {
-        line(&mut text, told);
-    }
-    for told in gains::gains(&identification.gains).lines() {
-        line(&mut text, told);
-    }
+    above.push_str(&gravity::gravity(identification.gravity.as_ref()));
+    above.push_str(&gains::gains(&identification.gains));
     for estimate in answers(identification) {
-        text.push('\n');
-        text.push_str(&model(identification, estimate));
+        above.push('\n');
+        above.push_str(&model(identification, estimate, extent));
     }
-    text.push_str(&parameters(identification));
-    for told in motors::motors(&identification.motors).lines() {
-        line(&mut text, told);
+    let below = consistent(identification) + &next(identification, page);
+    let rows = parameters::rows(identification);
+    let motors = motors::motors(&identification.motors);
+    let whole = rows.table(rows.count()) + &motors;
+    let room = LINES.saturating_sub(above.lines().count() + below.lines().count());
+    if extent == Extent::Whole || whole.lines().count() <= room {
+        return above + &whole + &below;
     }
-    text.push_str(&consistent(identification));
-    text.push_str(&next(identification, page));
-    text
+    let mut motors = String::new();
+    if !identification.motors.is_empty() {
+        line(
+            &mut motors,
+            "--all has the parameters of the drives in front of their gears, too.",
+        );
+    }
+    let room = room.saturating_sub(motors.lines().count());
+    let fits = |count: &usize| rows.table(*count).lines().count() <= room;
+    let count = (FEWEST..rows.count()).rev().find(fits);
+    above + &rows.table(count.unwrap_or(FEWEST)) + &motors + &below
 }
 
 /// What was identified from what.
@@ -84,15 +107,16 @@ fn consistent(identification: &Identification) -> String {
 }
 
 /// The verdict on one model and its reasons.
-fn model(identification: &Identification, estimate: &Estimate) -> String {
+fn model(identification: &Identification, estimate: &Estimate, extent: Extent) -> String {
     let mut text = String::new();
     let mut verdicts = identification.verdicts.iter();
     let verdict = verdicts.find(|one| one.model == estimate.model);
     let grade = verdict.map_or_else(String::new, |one| {
         format!(": {}", grade_words(one.grade).to_uppercase())
     });
-    line(
+    paragraph(
         &mut text,
+        "",
         &format!(
             "{} ({}){grade}",
             estimate.model.case(),
@@ -115,7 +139,7 @@ fn model(identification: &Identification, estimate: &Estimate) -> String {
         paragraph(&mut text, "  ", &others);
     }
     if let Some(verdict) = verdict {
-        text.push_str(&reasons(identification, verdict));
+        text.push_str(&reasons(identification, verdict, extent));
     }
     text
 }
@@ -187,27 +211,30 @@ fn sureness(estimate: &Estimate) -> String {
     }
 }
 
+/// Names behind each other, the first ones of very many.
+fn list(names: &[&str], extent: Extent) -> String {
+    match (extent, names.get(..NAMES)) {
+        (Extent::Short, Some(first)) if names.len() > NAMES + 1 => {
+            format!("{} and {} more", first.join(", "), names.len() - NAMES)
+        }
+        _ => names.join(", "),
+    }
+}
+
 /// What speaks against an estimate, or that nothing does.
-fn reasons(identification: &Identification, verdict: &Verdict) -> String {
+fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -> String {
     let mut text = String::new();
     if verdict.grade == Grade::UseListed {
-        paragraph(
-            &mut text,
-            "  ",
-            &format!("To be used: {}.", verdict.listed.join(", ")),
-        );
+        let listed: Vec<&str> = verdict.listed.iter().map(String::as_str).collect();
+        let told = format!("To be used: {}.", list(&listed, extent));
+        paragraph(&mut text, "  ", &told);
         let estimate = of(identification, verdict.model, verdict.stage);
         let names = estimate.iter().flat_map(|one| &one.parameters);
         let names = names.map(|one| one.name.as_str());
-        let others: Vec<&str> = names
-            .filter(|name| !verdict.listed.iter().any(|own| own == name))
-            .collect();
+        let others: Vec<&str> = names.filter(|name| !listed.contains(name)).collect();
         if !others.is_empty() {
-            paragraph(
-                &mut text,
-                "  ",
-                &format!("Not to be used: {}.", others.join(", ")),
-            );
+            let told = format!("Not to be used: {}.", list(&others, extent));
+            paragraph(&mut text, "  ", &told);
         }
     }
     let found = objections(&identification.checks, verdict.model, verdict.stage);
@@ -223,93 +250,6 @@ fn reasons(identification: &Identification, verdict: &Verdict) -> String {
         line(&mut text, &format!("  {count} check{s} found nothing."));
     }
     text
-}
-
-/// The parameters of all answers side by side.
-fn parameters(identification: &Identification) -> String {
-    let answers = answers(identification);
-    let Some(first) = answers.first() else {
-        return String::new();
-    };
-    let all = || answers.iter().flat_map(|one| &one.parameters);
-    let truth = all().any(|one| one.true_value.is_some());
-    let mut names: Vec<&str> = Vec::new();
-    for one in all() {
-        if !names.contains(&one.name.as_str()) {
-            names.push(&one.name);
-        }
-    }
-    let base = &identification.base_parameters;
-    names.sort_by_key(|name| base.iter().position(|one| one.name == *name));
-    // Two answers side by side have to fit into a line.
-    let value_digits = if answers.len() > 1 { 5 } else { 6 };
-    let mut header = vec!["parameter"];
-    if truth {
-        header.push("true value");
-    }
-    for answer in &answers {
-        header.extend([answer.model.case(), "95 % interval"]);
-    }
-    header.push("unit");
-    let rows = names.iter().map(|name| {
-        let find = |estimate: &&Estimate| -> Option<ParameterEstimate> {
-            estimate
-                .parameters
-                .iter()
-                .find(|one| one.name == *name)
-                .cloned()
-        };
-        let some = answers.iter().find_map(find);
-        let mut row = vec![(*name).to_owned()];
-        let number = |value: Option<f64>, digits| {
-            value.map_or_else(|| String::from("-"), |value| significant(value, digits))
-        };
-        if truth {
-            row.push(number(some.as_ref().and_then(|one| one.true_value), 6));
-        }
-        for answer in &answers {
-            let own = find(answer);
-            row.push(number(own.as_ref().map(|one| one.value), value_digits));
-            row.push(own.as_ref().map_or_else(|| String::from("-"), interval));
-        }
-        row.push(some.map_or_else(String::new, |one| one.unit));
-        row
-    });
-    let title = match stage_name(first.stage).split_at_checked(1) {
-        Some((letter, rest)) => letter.to_uppercase() + rest,
-        None => String::new(),
-    };
-    let mut text = format!("\n{title}\n{}", table(&header, rows.collect()));
-    if all().any(is_outside) {
-        paragraph(
-            &mut text,
-            "",
-            "* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it",
-        );
-    }
-    text
-}
-
-/// The ends of an interval, marked where the estimate lies outside.
-fn interval(one: &ParameterEstimate) -> String {
-    let [low, high] = one.interval_95;
-    let digits = digits(one);
-    let mark = if is_outside(one) { " *" } else { "" };
-    format!(
-        "{} .. {}{mark}",
-        significant(low, digits),
-        significant(high, digits)
-    )
-}
-
-/// Digits at which the ends of an interval differ.
-fn digits(one: &ParameterEstimate) -> usize {
-    let [low, high] = one.interval_95;
-    let ratio = low.abs().max(high.abs()) / (high - low).abs();
-    match ratio.is_finite() && ratio > 1.0 {
-        true => (ratio.log10().ceil() as usize + 1).min(7),
-        false => 2,
-    }
 }
 
 /// Warnings that no check tells of, and what to do next.
@@ -343,47 +283,4 @@ fn next(identification: &Identification, page: Option<&str>) -> String {
         },
     );
     text
-}
-
-/// A paragraph of lines that are not too long, behind `lead` and indented like it.
-fn paragraph(text: &mut String, lead: &str, words: &str) {
-    let indent = " ".repeat(lead.chars().count());
-    let mut current = lead.to_owned();
-    let mut is_empty = true;
-    // A number keeps its percent sign beside it.
-    let words = visible(words).replace(" %", "\u{a0}%");
-    for word in words.split(' ').filter(|word| !word.is_empty()) {
-        let word = fitted(&word.replace('\u{a0}', " "), WIDTH);
-        if !is_empty && current.chars().count() + 1 + word.chars().count() > WIDTH {
-            line(text, &current);
-            current.clone_from(&indent);
-            is_empty = true;
-        }
-        if !is_empty {
-            current.push(' ');
-        }
-        current.push_str(&word);
-        is_empty = false;
-    }
-    line(text, &current);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::paragraph;
-
-    #[test]
-    fn a_paragraph_is_broken_between_words_and_loses_none() {
-        let words = "one two three ".repeat(30);
-        let mut text = String::new();
-        paragraph(&mut text, "  - ", &words);
-        assert!(text.lines().count() > 3);
-        assert!(
-            text.lines()
-                .all(|line| line.chars().count() <= super::WIDTH)
-        );
-        assert!(text.lines().skip(1).all(|line| line.starts_with("    ")));
-        let told: Vec<&str> = text.split_whitespace().skip(1).collect();
-        assert_eq!(told, words.split_whitespace().collect::<Vec<_>>());
-    }
 }

@@ -7,7 +7,7 @@ pub(crate) mod motors;
 
 use crate::{
     intervals::{half_width_percent, is_outside},
-    layout::{left_table, line, table},
+    layout::{definitions, paragraph, table},
 };
 use overact_identification::{
     BaseParameter, Consistent, CrossValidation, Estimate, Estimator, Identification, LineError,
@@ -26,8 +26,9 @@ pub fn tables(identification: &Identification) -> String {
     let mut text = runs(identification);
     text.push_str(&base_parameters(&identification.base_parameters));
     if !identification.without_effect.is_empty() {
-        line(
+        paragraph(
             &mut text,
+            "",
             &format!(
                 "without effect: {}",
                 identification.without_effect.join(", ")
@@ -98,24 +99,24 @@ pub fn base_parameters(parameters: &[BaseParameter]) -> String {
     let (alone, regrouped): (Vec<&BaseParameter>, Vec<&BaseParameter>) = parameters
         .iter()
         .partition(|base| base.regrouping.is_empty());
-    let rows = regrouped
+    let rows: Vec<(String, String)> = regrouped
         .iter()
         .map(|base| {
             let mut sum = base.parameter.clone();
             for term in &base.regrouping {
                 sum.push_str(&signed_term(term));
             }
-            vec![base.name.clone(), String::from("="), sum]
+            (base.name.clone(), sum)
         })
         .collect();
     let mut text = format!(
         "\nBase parameters ({})\n{}",
         parameters.len(),
-        left_table(rows)
+        definitions(&rows, " = ")
     );
     if !alone.is_empty() {
         let names: Vec<&str> = alone.iter().map(|base| base.name.as_str()).collect();
-        line(&mut text, &format!("alone: {}", names.join(", ")));
+        paragraph(&mut text, "", &format!("alone: {}", names.join(", ")));
     }
     text
 }
@@ -181,8 +182,9 @@ pub fn estimate(estimate: &Estimate) -> String {
         Estimator::InstrumentalVariables => ", by instruments",
     };
     let mut text = String::new();
-    line(
+    paragraph(
         &mut text,
+        "",
         &format!("{what}: {} parameters{how}", estimate.stage.name()),
     );
     let truth = estimate
@@ -217,8 +219,9 @@ pub fn estimate(estimate: &Estimate) -> String {
     });
     text.push_str(&table(&header, rows.collect()));
     if estimate.parameters.iter().any(is_outside) {
-        line(
+        paragraph(
             &mut text,
+            "",
             "* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it",
         );
     }
@@ -236,8 +239,9 @@ fn interval(parameter: &ParameterEstimate) -> String {
 /// Errors, condition and the path of the elimination of an estimate.
 fn quality(estimate: &Estimate) -> String {
     let mut text = String::new();
-    line(
+    paragraph(
         &mut text,
+        "",
         &format!(
             "relative error {:.4} %, residual norm {}, condition number {}, {} equations{}",
             estimate.relative_error_percent,
@@ -253,13 +257,14 @@ fn quality(estimate: &Estimate) -> String {
             .iter()
             .map(|line| format!("{} {:.3} %", line.name, line.relative_error_percent))
             .collect();
-        line(&mut text, &format!("by line: {}", lines.join(", ")));
+        paragraph(&mut text, "", &format!("by line: {}", lines.join(", ")));
     }
     if let Some(partition) = &estimate.partition
         && estimate.model == ModelKind::Actuators
     {
-        line(
+        paragraph(
             &mut text,
+            "",
             &format!(
                 "condition of the kept actuators: at most {} ({}, t = {:.3} s)",
                 significant(partition.largest, 4),
@@ -296,7 +301,7 @@ fn quality(estimate: &Estimate) -> String {
         text.push_str(&table(&header, rows.collect()));
     }
     if let Some(stop) = &estimate.stop {
-        line(&mut text, &format!("the elimination ended: {stop}"));
+        paragraph(&mut text, "", &format!("the elimination ended: {stop}"));
     }
     text
 }

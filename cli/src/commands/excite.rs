@@ -3,11 +3,12 @@
 use crate::{
     failure::Failure,
     input,
-    output::{self, counted, json, print, table},
+    output::{self, counted, json, print},
     progress::Progress,
 };
 use overact::{Info, Model};
 use overact_identification::significant;
+use overact_report::layout::columns;
 use overact_robot::{Excitation, ExcitationEffort, JudgedRuns, Limit};
 use std::{
     path::{Path, PathBuf},
@@ -129,7 +130,7 @@ fn comparison(found: &Excitation) -> String {
             rows.push(row);
         }
     }
-    table(&rows, &[true, true])
+    columns(&rows, &[true, true])
 }
 
 /// How much of each limit the sets of runs take.
@@ -148,7 +149,7 @@ fn limits(found: &Excitation) -> String {
         row.extend(used.map(|used| used.map_or_else(|| "-".to_owned(), percent)));
         rows.push(row);
     }
-    table(&rows, &[true, true, true])
+    columns(&rows, &[true, true, true])
 }
 
 /// A part of a limit, rounded up so that what goes beyond it is seen.

@@ -2,9 +2,10 @@
 
 use crate::{
     failure::Failure,
-    output::{json, print, table},
+    output::{json, print},
 };
 use overact_codegen::diagnostic::{Code, Explanation};
+use overact_report::layout::definitions;
 use serde_json::{Value, json as document};
 
 /// Arguments of the command.
@@ -44,9 +45,9 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         return print(&json(&document!({ "codes": all }))?);
     }
     if arguments.codes.is_empty() {
-        let row = |one: &&Explanation| vec![one.code.to_string(), one.title.to_owned()];
-        let rows: Vec<Vec<String>> = wanted.iter().map(row).collect();
-        return print(&table(&rows, &[true, true]));
+        let row = |one: &&Explanation| (one.code.to_string(), one.title.to_owned());
+        let rows: Vec<(String, String)> = wanted.iter().map(row).collect();
+        return print(&definitions(&rows, "  "));
     }
     let texts: Vec<String> = wanted.iter().map(|one| as_text(one)).collect();
     print(&texts.join("\n"))

@@ -14,6 +14,7 @@ use clap::ValueEnum;
 use overact::Model;
 use overact_codegen::diagnostic::Code;
 use overact_identification::{CalibrationScope, Grade, Identification, Progress as Doing};
+use overact_report::Extent;
 use overact_robot::{Identifier, tracking};
 use std::path::PathBuf;
 
@@ -41,7 +42,10 @@ pub(crate) struct Arguments {
     /// End with exit code 3 where the verdict is not to use the result
     #[arg(long)]
     strict: bool,
-    /// Print all tables below the summary
+    /// List all parameters, however many: without it the summary has about 50 lines
+    #[arg(long)]
+    all: bool,
+    /// Print all tables below the whole summary
     #[arg(long)]
     tables: bool,
     /// Write the text (with --json the document) to a file instead of stdout
@@ -143,7 +147,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         output::json(&result)?
     } else {
         let page = reports.page().map(|path| path.display().to_string());
-        let mut text = overact_report::summary(&result, page.as_deref());
+        let extent = match arguments.all || arguments.tables {
+            true => Extent::Whole,
+            false => Extent::Short,
+        };
+        let mut text = overact_report::summary(&result, page.as_deref(), extent);
         if arguments.tables {
             text.push_str(&overact_report::tables(&result));
             text.push_str(&overact_report::beside(&result, reports.published()));

@@ -3,10 +3,11 @@
 use crate::{
     failure::{Failure, Problem},
     input::is_stream,
-    output::{json, print, table, write},
+    output::{json, print, write},
 };
 use clap::builder::PossibleValuesParser;
 use overact_codegen::diagnostic::Code;
+use overact_report::layout::definitions;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -106,12 +107,10 @@ fn list(as_json: bool) -> Result<(), Failure> {
     if as_json {
         return print(&json(&serde_json::json!({ "templates": all }))?);
     }
-    let rows: Vec<Vec<String>> = all
-        .iter()
-        .map(|l| vec![l.template.to_owned(), l.robot.to_owned()])
-        .collect();
+    let row = |one: &Listed| (one.template.to_owned(), one.robot.to_owned());
+    let rows: Vec<(String, String)> = all.iter().map(row).collect();
     print(&format!(
         "{}\n`overact new TEMPLATE my.toml` writes one",
-        table(&rows, &[true, true])
+        definitions(&rows, "  ")
     ))
 }

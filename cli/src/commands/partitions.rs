@@ -9,6 +9,7 @@ use crate::{
 use overact::Model;
 use overact_codegen::diagnostic::Code;
 use overact_identification::{Progress as Doing, RankedProjection, Study, significant};
+use overact_report::layout::{columns, paragraph};
 use overact_robot::Identifier;
 use std::path::PathBuf;
 
@@ -100,10 +101,10 @@ fn text(study: &Study) -> String {
     rows.push(cells(&study.platform, "platform (case 1)".to_owned()));
     let partitions = study.partitions.iter();
     rows.extend(partitions.map(|row| cells(row, row.kept_actuators.join(", "))));
-    let mut text = output::table(&rows, &[true]);
+    let mut text = columns(&rows, &[true]);
     text += "ranks: by conditioning, parameters, prediction; choices that can't be trusted stand last\n";
     for warning in &study.warnings {
-        text += &format!("warning: {warning}\n");
+        paragraph(&mut text, "", &format!("warning: {warning}"));
     }
     text
 }

@@ -7,12 +7,13 @@ use crate::{
     input,
     names::file_stem,
     note::{is_quiet, tell_doubts},
-    output::{self, json, print, table},
+    output::{self, json, print},
     progress::Progress,
 };
 use overact::Model;
 use overact_codegen::diagnostic::Code;
 use overact_identification::significant;
+use overact_report::layout::columns;
 use overact_robot::{VirtualExperiment, read_parameters};
 use overact_simulation::{Experiment, Record, write_csv};
 use serde::Serialize;
@@ -219,5 +220,5 @@ fn text(summaries: &[Summary]) -> String {
             errors.join(" "),
         ]);
     }
-    table(&rows, &[true, true])
+    columns(&rows, &[true, true])
 }

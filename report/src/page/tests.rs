@@ -3,11 +3,11 @@
 mod example;
 
 use super::{Attachment, Contents, page};
-use crate::{Units, beside, numbers, summary, tables};
+use crate::{Extent, Units, beside, numbers, summary, tables};
 use example::{HOSTILE, identification, published, series, settings, units};
 use overact_identification::{
-    CalibratedParameter, Calibration, CalibrationScope, Figures, HeldParameter, Identification,
-    ParameterKind, Thresholds,
+    CalibratedParameter, Calibration, CalibrationScope, Estimate, Figures, HeldParameter,
+    Identification, ParameterEstimate, ParameterKind, Thresholds,
 };
 use roxmltree::{Document, ParsingOptions};
 
@@ -126,7 +126,7 @@ fn no_name_becomes_markup_and_nothing_is_loaded() {
 fn no_name_reaches_the_terminal_but_as_text() {
     let mut identification = identification();
     identification.robot += &"x".repeat(5000);
-    let told = summary(&identification, Some("report.html"))
+    let told = summary(&identification, Some("report.html"), Extent::Whole)
         + &tables(&identification)
         + &beside(&identification, Some(&published()));
     let hidden = |c: char| c != '\n' && overact_core::text::is_invisible(c);
@@ -145,6 +145,57 @@ fn no_name_reaches_the_terminal_but_as_text() {
     let page = full(&identification);
     let hidden = |c: char| c != '\n' && overact_core::text::is_invisible(c);
     assert!(!page.contains(hidden));
+}
+
+#[test]
+fn a_short_summary_has_fifty_lines_and_what_may_be_used() {
+    let mut identification = identification();
+    identification.warnings.clear();
+    identification.calibration = None;
+    // The worst known one is the only one that may be used; all others can't be.
+    let verdict = &mut identification.verdicts[0];
+    verdict.listed = vec![String::from("p_0")];
+    let (model, stage) = (verdict.model, verdict.stage);
+    identification.estimates.retain(|one| one.model == model);
+    let own = |one: &&mut Estimate| one.stage == stage;
+    let estimate = identification
+        .estimates
+        .iter_mut()
+        .find(own)
+        .expect("an answer");
+    let known = estimate.parameters[1].clone();
+    estimate.parameters = (0..90)
+        .map(|number| ParameterEstimate {
+            name: format!("p_{number}"),
+            interval_95: [-9.0, -1.0 - f64::from(number) * 0.01],
+            ..known.clone()
+        })
+        .collect();
+    let whole = summary(&identification, None, Extent::Whole);
+    assert!(
+        (0..90).all(|number| whole.contains(&format!("\np_{number} "))),
+        "{whole}"
+    );
+    let short = summary(&identification, None, Extent::Short);
+    let rows = short.lines().filter(|line| line.starts_with("p_")).count();
+    assert!(
+        short.lines().count() <= 50 && (10..40).contains(&rows),
+        "{short}"
+    );
+    assert!(
+        short.lines().all(|line| line.chars().count() <= 100),
+        "{short}"
+    );
+    assert!(
+        short.contains("\np_0 ") && short.contains("\np_89 "),
+        "{short}"
+    );
+    assert!(!short.contains("\np_1 "), "{short}");
+    assert!(
+        short.contains(" more; the best of them is known to "),
+        "{short}"
+    );
+    assert!(short.contains("and 65 more."), "{short}");
 }
 
 #[test]
@@ -171,7 +222,7 @@ fn what_there_is_not_is_not_spoken_of() {
     identification.cross_validation.clear();
     let html = of(&identification, &Units::default());
     assert!(!html.contains("runs that were held out are predicted no worse"));
-    let told = summary(&identification, None);
+    let told = summary(&identification, None, Extent::Whole);
     assert!(
         told.contains("base parameters leave ") && told.contains("by the r_sigma rule leave "),
         "{told}"

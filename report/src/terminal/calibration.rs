@@ -4,13 +4,10 @@ use std::fmt::Write;
 
 use overact_identification::{Calibration, HeldParameter, significant};
 
-use crate::layout::table;
+use crate::layout::{WIDTH, paragraph, table};
 
 /// Digits of a deviation.
 const DIGITS: usize = 2;
-
-/// Characters of a line of names.
-const WIDTH: usize = 100;
 
 /// What is changed, what stays as described, and what the data can't tell.
 pub(crate) fn calibration(calibration: &Calibration) -> String {
@@ -30,7 +27,7 @@ pub(crate) fn calibration(calibration: &Calibration) -> String {
     text.push_str(&changes(calibration));
     text.push_str(&held(&calibration.held));
     for remark in &calibration.remarks {
-        let _ = writeln!(text, "- {remark}");
+        paragraph(&mut text, "- ", remark);
     }
     text
 }
@@ -86,7 +83,7 @@ fn held(held: &[HeldParameter]) -> String {
         }
     }
     for (reason, names) in reasons {
-        let _ = writeln!(text, "not determined, since {reason}:");
+        paragraph(&mut text, "", &format!("not determined, since {reason}:"));
         text.push_str(&wrapped(&names));
     }
     text

@@ -7,6 +7,11 @@ use overact_core::trigonometry::single::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
 
 /// Sine and cosine of an angle in radians, within 2.5 units in the last place up to 8192 rad; beyond it
 /// those of the standard library, or of `libm` without the feature `std`.
+///
+/// Of four million angles up to 8192 rad the worst is 2.34 units off, at a reduced angle just above 0.25, whose sine
+/// lies below 0.25, so that what rounds the angle counts twice: two of the four subtractions of the reduction round.
+/// The nearest number of 32 bits to the reduced angle would leave 1.54, the polynomial itself is off by 0.1. Less than
+/// 1.5 takes a reduced angle in two parts, and more operations.
 #[inline]
 #[must_use]
 pub fn sin_cos(angle: f32) -> (f32, f32) {

@@ -1,8 +1,11 @@
 //! What `inspect` tells, for people.
 
-use crate::output::{counted, table};
+use crate::output::counted;
 use overact_identification::significant;
-use overact_report::coefficient;
+use overact_report::{
+    coefficient,
+    layout::{columns, definitions, paragraph},
+};
 use overact_robot::{Inspection, inspection};
 use std::fmt::Write;
 
@@ -29,7 +32,7 @@ pub(super) fn text(document: &Inspection) -> String {
 fn heading(document: &Inspection) -> String {
     let mut text = format!("{} ({})\n", document.robot, document.file);
     if !document.summary.is_empty() {
-        let _ = writeln!(text, "{}", document.summary);
+        paragraph(&mut text, "", &document.summary);
     }
     let _ = writeln!(
         text,
@@ -44,7 +47,8 @@ fn heading(document: &Inspection) -> String {
     };
     let _ = writeln!(text, "pose: {}", document.pose.join(", "));
     let _ = writeln!(text, "home: {}", numbers(&document.home_pose));
-    let _ = writeln!(text, "actuators: {}", document.actuator_names.join(", "));
+    let actuators = document.actuator_names.join(", ");
+    paragraph(&mut text, "", &format!("actuators: {actuators}"));
     if document.actuators > document.dof {
         let _ = writeln!(
             text,
@@ -65,21 +69,27 @@ fn bodies(document: &Inspection) -> String {
             true => "-".to_owned(),
             false => body.parameters.join(" "),
         };
-        vec![body.name.clone(), body.joint.to_owned(), motor, parameters]
+        (
+            vec![body.name.clone(), body.joint.to_owned(), motor],
+            parameters,
+        )
     };
-    let rows: Vec<Vec<String>> = document.bodies.iter().map(row).collect();
-    table(&rows, &[true; 4])
+    let (heads, parameters): (Vec<Vec<String>>, Vec<String>) =
+        document.bodies.iter().map(row).unzip();
+    let heads = columns(&heads, &[true; 3]);
+    let rows: Vec<(String, String)> = heads.lines().map(str::to_owned).zip(parameters).collect();
+    definitions(&rows, "  ")
 }
 
 fn base_parameters(all: &[inspection::Base]) -> String {
-    let mut text = String::new();
+    let mut rows = Vec::new();
     let mut alone = Vec::new();
     for base in all {
         if base.regrouping.len() == 1 {
             alone.push(base.name.as_str());
             continue;
         }
-        let _ = write!(text, "{} =", base.name);
+        let mut sum = String::new();
         for (index, term) in base.regrouping.iter().enumerate() {
             let sign = match (index, term.coefficient < 0.0) {
                 (0, _) => "",
@@ -90,12 +100,13 @@ fn base_parameters(all: &[inspection::Base]) -> String {
                 "1" => String::new(),
                 number => format!(" {number}"),
             };
-            let _ = write!(text, "{sign}{factor} {}", term.parameter);
+            let _ = write!(sum, "{sign}{factor} {}", term.parameter);
         }
-        text.push('\n');
+        rows.push((base.name.clone(), sum));
     }
+    let mut text = definitions(&rows, " = ");
     if !alone.is_empty() {
-        let _ = writeln!(text, "alone: {}", alone.join(", "));
+        paragraph(&mut text, "", &format!("alone: {}", alone.join(", ")));
     }
     text
 }
@@ -142,7 +153,7 @@ fn functions(document: &Inspection) -> String {
         row.push(iterations(function));
         rows.push(row);
     }
-    table(&rows, &[true])
+    columns(&rows, &[true])
         + "op: + - * and /, products with a sign among them; what a function calls is counted in.\n"
 }
 
@@ -172,5 +183,5 @@ fn conditioning(document: &Inspection) -> String {
         let name = format!("kept {}{chosen}", partition.kept_actuators.join(", "));
         rows.push(vec![name, number(partition.condition)]);
     }
-    table(&rows, &[true])
+    columns(&rows, &[true])
 }

@@ -1,0 +1,181 @@
+//! The parameters of all answers side by side.
+
+use crate::{
+    choice::{answers, stage_name},
+    intervals::{half_width_percent, is_outside},
+    layout::{WIDTH, paragraph, table},
+};
+use overact_identification::{
+    Estimate, Grade, Identification, ParameterEstimate, Verdict, significant,
+};
+
+/// The answers and the names of their parameters.
+pub(super) struct Rows<'a> {
+    answers: Vec<&'a Estimate>,
+    /// In the order of the base parameters.
+    names: Vec<&'a str>,
+    /// Places among the names, the first ones to be shown before others.
+    ranked: Vec<usize>,
+}
+
+/// The parameters that there are to show.
+pub(super) fn rows(identification: &Identification) -> Rows<'_> {
+    let answers = answers(identification);
+    let mut names: Vec<&str> = Vec::new();
+    for one in answers.iter().flat_map(|one| &one.parameters) {
+        if !names.contains(&one.name.as_str()) {
+            names.push(&one.name);
+        }
+    }
+    let base = &identification.base_parameters;
+    names.sort_by_key(|name| base.iter().position(|one| one.name == *name));
+    let usable = |verdict: &Verdict, name: &str| match verdict.grade {
+        Grade::Use => true,
+        Grade::UseListed => verdict.listed.iter().any(|own| own == name),
+        Grade::DoNotUse => false,
+    };
+    let rank = |&place: &usize| {
+        let mut verdicts = identification.verdicts.iter();
+        let is_usable = verdicts.any(|verdict| usable(verdict, names[place]));
+        (!is_usable, best_known(&answers, names[place]))
+    };
+    let mut ranked: Vec<usize> = (0..names.len()).collect();
+    ranked.sort_by(|a, b| {
+        let ((a_last, a_width), (b_last, b_width)) = (rank(a), rank(b));
+        a_last.cmp(&b_last).then(a_width.total_cmp(&b_width))
+    });
+    Rows {
+        answers,
+        names,
+        ranked,
+    }
+}
+
+/// Half of the narrowest interval of a parameter in percent of its value; infinite where there is none.
+fn best_known(answers: &[&Estimate], name: &str) -> f64 {
+    let all = answers.iter().filter_map(|answer| own(answer, name));
+    all.filter_map(half_width_percent)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// A parameter of an estimate.
+fn own<'a>(estimate: &'a Estimate, name: &str) -> Option<&'a ParameterEstimate> {
+    estimate.parameters.iter().find(|one| one.name == name)
+}
+
+impl Rows<'_> {
+    /// How many parameters there are.
+    pub(super) fn count(&self) -> usize {
+        self.names.len()
+    }
+
+    /// The table of so many of them at most, below its title, with what is to be known of it; empty without answers.
+    pub(super) fn table(&self, most: usize) -> String {
+        let Some(first) = self.answers.first() else {
+            return String::new();
+        };
+        let (shown, left) = self.ranked.split_at(most.min(self.ranked.len()));
+        let mut shown = shown.to_vec();
+        shown.sort_unstable();
+        let names: Vec<&str> = shown.iter().map(|&place| self.names[place]).collect();
+        let title = match stage_name(first.stage).split_at_checked(1) {
+            Some((letter, rest)) => letter.to_uppercase() + rest,
+            None => String::new(),
+        };
+        let mut text = format!("\n{title}\n");
+        let owns = || {
+            names
+                .iter()
+                .flat_map(|name| self.answers.iter().filter_map(|one| own(one, name)))
+        };
+        let has_truth = owns().any(|one| one.true_value.is_some());
+        let with_truth = self.side_by_side(&names, has_truth);
+        let fits = |text: &str| text.lines().all(|line| line.chars().count() <= WIDTH);
+        // A table that is too wide has come in parts.
+        let is_whole = fits(&with_truth) && with_truth.lines().count() == names.len() + 2;
+        match has_truth && !is_whole {
+            true => {
+                text.push_str(&self.side_by_side(&names, false));
+                paragraph(&mut text, "", "--tables has the true values.");
+            }
+            false => text.push_str(&with_truth),
+        }
+        if owns().any(is_outside) {
+            paragraph(
+                &mut text,
+                "",
+                "* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it",
+            );
+        }
+        if !left.is_empty() {
+            let best = left
+                .iter()
+                .map(|&place| best_known(&self.answers, self.names[place]));
+            let best = best.fold(f64::INFINITY, f64::min);
+            let known = match best.is_finite() {
+                true => format!("; the best of them is known to {} %", significant(best, 2)),
+                false => String::new(),
+            };
+            let told = format!("--all lists {} more{known}.", left.len());
+            paragraph(&mut text, "", &told);
+        }
+        text
+    }
+
+    fn side_by_side(&self, names: &[&str], with_truth: bool) -> String {
+        // Two answers side by side have to fit into a line.
+        let most = if self.answers.len() > 1 { 5 } else { 6 };
+        let mut header = vec!["parameter"];
+        if with_truth {
+            header.push("true value");
+        }
+        for answer in &self.answers {
+            header.extend([answer.model.case(), "95 % interval"]);
+        }
+        header.push("unit");
+        let nothing = || String::from("-");
+        let rows = names.iter().map(|name| {
+            let some = self.answers.iter().find_map(|answer| own(answer, name));
+            let mut row = vec![(*name).to_owned()];
+            if with_truth {
+                let truth = some.and_then(|one| one.true_value);
+                row.push(truth.map_or_else(nothing, |value| significant(value, 6)));
+            }
+            for answer in &self.answers {
+                let own = own(answer, name);
+                row.push(own.map_or_else(nothing, |one| {
+                    significant(one.value, value_digits(one, most))
+                }));
+                row.push(own.map_or_else(nothing, interval));
+            }
+            row.push(some.map_or_else(String::new, |one| one.unit.clone()));
+            row
+        });
+        table(&header, rows.collect())
+    }
+}
+
+/// The ends of an interval, marked where the estimate lies outside.
+fn interval(one: &ParameterEstimate) -> String {
+    let [low, high] = one.interval_95;
+    let digits = interval_digits(one).unwrap_or(2);
+    let mark = if is_outside(one) { " *" } else { "" };
+    format!(
+        "{} .. {}{mark}",
+        significant(low, digits),
+        significant(high, digits)
+    )
+}
+
+/// Digits at which the ends of an interval differ; none where they do not.
+fn interval_digits(one: &ParameterEstimate) -> Option<usize> {
+    let [low, high] = one.interval_95;
+    let ratio = low.abs().max(high.abs()) / (high - low).abs();
+    let digits = ratio.log10().ceil().max(1.0) + 1.0;
+    ratio.is_finite().then_some((digits as usize).min(7))
+}
+
+/// Digits of a value: one more than its interval has, and no more than `most`.
+fn value_digits(one: &ParameterEstimate, most: usize) -> usize {
+    interval_digits(one).map_or(most, |digits| (digits + 1).min(most))
+}
