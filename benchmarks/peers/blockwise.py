@@ -14,7 +14,7 @@ from scipy import signal
 
 from .casadi_peer import c_code
 from .identification import DECIMATION, DECIMATION_ORDER, RIPPLE, Pipeline
-from .timing import BUILD, CFLAGS, write
+from .timing import BUILD, NATIVE, write
 
 LOOP = """
 void all(long samples, const double **inputs, const long *lengths, long count, double *output, long width) {
@@ -107,7 +107,7 @@ class Blockwise(Pipeline):
         folder = BUILD / "c" / "identification"
         write(folder / "model.c", c_code(self.function) + LOOP)
         library = folder / "model.so"
-        subprocess.run(["cc", *CFLAGS, "-shared", "-fPIC", "-o", library, folder / "model.c", "-lm"], check=True)
+        subprocess.run([NATIVE.compiler, *NATIVE.flags, "-shared", "-fPIC", "-o", library, folder / "model.c", "-lm"], check=True)
         self.library = ctypes.CDLL(library)
         self.decimation = Decimation(DECIMATION)
 

@@ -209,19 +209,18 @@ def counts(robot, cell):
 
 
 def measured(only, core, rounds):
-    """All cells with their times."""
-    found = []
+    """The cells of one robot after the other, with their times."""
     for robot in ROBOTS:
         if only and only not in robot:
             continue
         print(f"{ROBOTS[robot]} …", file=sys.stderr, flush=True)
-        found += [(robot, cell) for cell in cells(robot)]
-    functions = [cell.function for _, cell in found]
-    own = zip(timing.rust_programs(functions), timing.rust_programs(functions, native=True), strict=True)
-    for (robot, cell), programs in zip(found, own, strict=True):
-        print(f"{ROBOTS[robot]}, {cell.title}: times …", file=sys.stderr, flush=True)
-        time(cell, programs, core, rounds)
-    return found
+        found = list(cells(robot))
+        functions = [cell.function for cell in found]
+        own = zip(timing.rust_programs(functions), timing.rust_programs(functions, native=True), strict=True)
+        for cell, programs in zip(found, own, strict=True):
+            print(f"{ROBOTS[robot]}, {cell.title}: times …", file=sys.stderr, flush=True)
+            time(cell, programs, core, rounds)
+        yield [(robot, cell) for cell in found]
 
 
 def table(found):

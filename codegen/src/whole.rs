@@ -136,7 +136,8 @@ impl RobotModel {
         }
     }
 
-    /// `pose_from_actuators`: the closed form where it is taken, else Gauss and Newton's steps.
+    /// `pose_from_actuators`: the closed form where it is taken, and Gauss and Newton's steps where actuators are
+    /// too many for it or there is none.
     fn forward_kinematics(&self) -> WholeCost {
         let (n, r) = (self.mechanism.actuated().len(), self.mechanism.dof());
         let mut whole = WholeCost::from(self.scaled_quaternion());
@@ -144,6 +145,12 @@ impl RobotModel {
         if let Some(closed) = closed.filter(|_| n == r) {
             whole.call(self.cost(closed));
             return whole;
+        }
+        if let Some(closed) = closed {
+            // It is compared with the start.
+            whole.call(self.cost(closed));
+            whole.once.additions += self.mechanism.pose_len();
+            whole.once.guards += self.mechanism.pose_len();
         }
         let mut step = WholeCost::from(gauss_newton_step(n, r));
         step.call(WholeCost::from(displacement(r, self.has_quaternion())));
@@ -196,17 +203,19 @@ impl RobotModel {
 
 /// A step of `forward::gauss_newton` for n actuators and r coordinates, without what it evaluates.
 fn gauss_newton_step(n: usize, r: usize) -> Cost {
+    let half = r * (r + 1) / 2;
     let mut cost = Cost {
-        // Differences, Jᵀ Δq and JᵀJ.
-        additions: n * (1 + r + r * r),
-        multiplications: n * (r + r * r) + r,
+        // Differences, Jᵀ Δq and the upper triangle of JᵀJ; the bounds of the next step and of a pivot.
+        additions: n * (1 + r + half),
+        multiplications: n * (r + half) + r + 3,
         guards: r,
         ..Cost::default()
     };
     for below in 0..r {
         // Elimination of the rows below a pivot, and substitution of what is behind it.
-        cost.additions += below * below + below + below;
-        cost.multiplications += below * below + below + below;
+        let products = below * (below + 1) / 2 + below + below;
+        cost.additions += products;
+        cost.multiplications += products;
         cost.divisions += below + 1;
     }
     cost

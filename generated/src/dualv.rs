@@ -27,28 +27,28 @@
 /// | `acceleration_from_actuators` | 271, 4 √, 1 sc, 15 gd |  |
 /// | `idm_red_platform` | 454, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `idm_red_platform_from_joints` | 404, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_from_actuators` | 624, 4 √, 1 sc, 12 sg, 18 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_platform_from_actuators` | 688, 7 √, 5 sc, 1 at, 12 sg, 26 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `idm_red_actuators` | 526, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `idm_red_actuators_from_joints` | 479, 9 sc, 12 sg, 7 gd |  |
-/// | `idm_red_actuators_from_actuators` | 682, 4 √, 1 sc, 12 sg, 21 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_actuators_from_actuators` | 746, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `idm_red_platform_base` | 398, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `idm_red_platform_base_from_joints` | 346, 9 sc, 12 sg, 4 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 551, 4 √, 1 sc, 12 sg, 18 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_platform_base_from_actuators` | 615, 7 √, 5 sc, 1 at, 12 sg, 26 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `idm_red_actuators_base` | 477, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 430, 9 sc, 12 sg, 7 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 637, 4 √, 1 sc, 12 sg, 21 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_actuators_base_from_actuators` | 701, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `idm_red_payload` | 18, 1 sc |  |
 /// | `idm_red_payload_from_joints` | 18, 1 sc |  |
-/// | `idm_red_payload_from_actuators` | 320, 4 √, 1 sc, 18 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `idm_red_payload_from_actuators` | 384, 7 √, 5 sc, 1 at, 26 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `idm_red_payload_actuators` | 149, 3 √, 1 sc, 12 gd |  |
 /// | `project_platform` | 101, 4 √, 1 sc, 12 gd |  |
 /// | `project_actuators` | 136, 4 √, 1 sc, 15 gd |  |
 /// | `inverse_dynamics` | 585, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `inverse_dynamics_from_joints` | 523, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_from_actuators` | 686, 4 √, 1 sc, 12 sg, 21 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `inverse_dynamics_from_actuators` | 750, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `inverse_dynamics_base` | 522, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 448, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 623, 4 √, 1 sc, 12 sg, 21 gd | 294, 8 √, 2 sc, 4 at, 23 gd |
+/// | `inverse_dynamics_base_from_actuators` | 687, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
 /// | `mass_matrix` | 325, 4 √, 1 sc, 12 gd |  |
 /// | `mass_matrix_base` | 297, 4 √, 1 sc, 12 gd |  |
 /// | `bias` | 469, 4 √, 1 sc, 12 sg, 12 gd |  |
@@ -2626,8 +2626,8 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 624 operations (225 additions, 382 multiplications, 17 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 18 guards, 50 negations, 455 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// 688 operations (255 additions, 413 multiplications, 20 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 26 guards, 51 negations, 526 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4002,8 +4002,8 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 682 operations (252 additions, 418 multiplications, 12 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 48 negations, 557 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// 746 operations (282 additions, 449 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 49 negations, 628 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5182,8 +5182,8 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 551 operations (194 additions, 334 multiplications, 23 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 18 guards, 42 negations, 415 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// 615 operations (224 additions, 365 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 26 guards, 43 negations, 486 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6481,8 +6481,8 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 637 operations (229 additions, 396 multiplications, 12 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 39 negations, 536 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 40 negations, 607 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7151,8 +7151,8 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 320 operations (126 additions, 183 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 18 guards, 4 negations, 319 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// 384 operations (156 additions, 214 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 26 guards, 5 negations, 390 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8545,8 +8545,8 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 686 operations (294 additions, 381 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 1 negation, 688 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// 750 operations (324 additions, 412 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 2 negations, 759 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -9706,8 +9706,8 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 623 operations (267 additions, 345 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 21 guards, 1 negation, 625 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 294 operations (134 additions, 142 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
+    /// 687 operations (297 additions, 376 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 2 negations, 696 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -12812,7 +12812,7 @@ impl DualV {
             [inv_norm_4],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. The iteration starts from `pose_in_closed_form` where that is near `start`, or where it fails from there.
     ///
     /// # Errors
     /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.
@@ -12821,40 +12821,40 @@ impl DualV {
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
-        let from = |mut pose: [::core::primitive::f64; Self::POSE]| {
-            ::overact::forward::gauss_newton(
-                    ::overact::forward::Measured {
-                        positions: actuators,
-                        is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-                    },
-                    &mut pose,
-                    ::overact::forward::Workspace {
-                        actuators: &mut [0.0; Self::ACTUATORS],
-                        inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                        normal: &mut [0.0; Self::DOF * Self::DOF],
-                        step: &mut [0.0; Self::DOF],
-                    },
-                    |pose, positions, jacobian| {
-                        let pose = ::overact::block::array(pose)?;
-                        ::overact::block::write(
-                            &Self::actuator_positions(pose)?,
-                            positions,
-                        );
-                        ::overact::block::write(
-                            &Self::inverse_jacobian(pose)?,
-                            jacobian,
-                        );
-                        ::core::result::Result::Ok(())
-                    },
-                    ::overact::forward::displace,
-                )
-                .map(|()| pose)
-        };
-        from(*start)
-            .or_else(|error| match Self::pose_in_closed_form(actuators) {
-                ::core::result::Result::Ok(pose) => from(pose),
-                ::core::result::Result::Err(_) => ::core::result::Result::Err(error),
-            })
+        let closed = Self::pose_in_closed_form(actuators).ok();
+        ::overact::forward::from_closed_form(
+            closed,
+            *start,
+            |mut pose: [::core::primitive::f64; Self::POSE]| {
+                ::overact::forward::gauss_newton(
+                        ::overact::forward::Measured {
+                            positions: actuators,
+                            is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                        },
+                        &mut pose,
+                        ::overact::forward::Workspace {
+                            actuators: &mut [0.0; Self::ACTUATORS],
+                            inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                            normal: &mut [0.0; Self::DOF * Self::DOF],
+                            step: &mut [0.0; Self::DOF],
+                        },
+                        |pose, positions, jacobian| {
+                            let pose = ::overact::block::array(pose)?;
+                            ::overact::block::write(
+                                &Self::actuator_positions(pose)?,
+                                positions,
+                            );
+                            ::overact::block::write(
+                                &Self::inverse_jacobian(pose)?,
+                                jacobian,
+                            );
+                            ::core::result::Result::Ok(())
+                        },
+                        ::overact::forward::displace,
+                    )
+                    .map(|()| pose)
+            },
+        )
     }
 }
 impl DualV {

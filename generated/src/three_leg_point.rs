@@ -27,24 +27,24 @@
 /// | `acceleration_from_actuators` | 174, 3 √, 11 gd |  |
 /// | `idm_red_platform` | 244, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_from_joints` | 212, 6 sc, 6 sg, 3 gd |  |
-/// | `idm_red_platform_from_actuators` | 305, 3 √, 6 sg, 13 gd | 189, 6 √, 3 at, 17 gd |
+/// | `idm_red_platform_from_actuators` | 336, 4 √, 2 sc, 6 sg, 17 gd | 186, 6 √, 3 at, 17 gd |
 /// | `idm_red_actuators` | 267, 3 √, 6 sg, 11 gd |  |
 /// | `idm_red_actuators_from_joints` | 229, 6 sc, 6 sg, 5 gd |  |
-/// | `idm_red_actuators_from_actuators` | 328, 3 √, 6 sg, 15 gd | 189, 6 √, 3 at, 17 gd |
+/// | `idm_red_actuators_from_actuators` | 359, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
 /// | `idm_red_platform_base` | 218, 3 √, 6 sg, 9 gd |  |
 /// | `idm_red_platform_base_from_joints` | 187, 6 sc, 6 sg, 3 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 279, 3 √, 6 sg, 13 gd | 189, 6 √, 3 at, 17 gd |
+/// | `idm_red_platform_base_from_actuators` | 310, 4 √, 2 sc, 6 sg, 17 gd | 186, 6 √, 3 at, 17 gd |
 /// | `idm_red_actuators_base` | 245, 3 √, 6 sg, 11 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 207, 6 sc, 6 sg, 5 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 306, 3 √, 6 sg, 15 gd | 189, 6 √, 3 at, 17 gd |
+/// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
 /// | `project_platform` | 80, 3 √, 9 gd |  |
 /// | `project_actuators` | 88, 3 √, 11 gd |  |
 /// | `inverse_dynamics` | 339, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_from_joints` | 291, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_from_actuators` | 381, 3 √, 6 sg, 15 gd | 189, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_from_actuators` | 412, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
 /// | `inverse_dynamics_base` | 284, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 237, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 326, 3 √, 6 sg, 15 gd | 189, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_base_from_actuators` | 357, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
 /// | `mass_matrix` | 195, 3 √, 9 gd |  |
 /// | `mass_matrix_base` | 174, 3 √, 9 gd |  |
 /// | `bias` | 263, 3 √, 6 sg, 9 gd |  |
@@ -1785,8 +1785,8 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 305 operations (105 additions, 188 multiplications, 12 divisions), 3 square roots, 6 signs, 13 guards, 19 negations, 254 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// 336 operations (120 additions, 203 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 17 guards, 19 negations, 286 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2498,8 +2498,8 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 328 operations (116 additions, 202 multiplications, 10 divisions), 3 square roots, 6 signs, 15 guards, 20 negations, 289 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// 359 operations (131 additions, 217 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 20 negations, 321 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3148,8 +3148,8 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 279 operations (93 additions, 174 multiplications, 12 divisions), 3 square roots, 6 signs, 13 guards, 15 negations, 240 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// 310 operations (108 additions, 189 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 17 guards, 15 negations, 272 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3783,8 +3783,8 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 306 operations (106 additions, 190 multiplications, 10 divisions), 3 square roots, 6 signs, 15 guards, 13 negations, 277 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// 337 operations (121 additions, 205 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 13 negations, 309 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4704,8 +4704,8 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 381 operations (151 additions, 222 multiplications, 8 divisions), 3 square roots, 6 signs, 15 guards, 381 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// 412 operations (166 additions, 237 multiplications, 9 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 413 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5425,8 +5425,8 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 326 operations (128 additions, 190 multiplications, 8 divisions), 3 square roots, 6 signs, 15 guards, 326 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 189 operations (79 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
+    /// 357 operations (143 additions, 205 multiplications, 9 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 358 intermediates.
+    /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -7415,7 +7415,7 @@ impl ThreeLegPoint {
             [-(share_1_3 * inv_norm_3)], [-(share_2_3 * inv_norm_3)], [inv_norm_3],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. The iteration starts from `pose_in_closed_form` where that is near `start`, or where it fails from there.
     ///
     /// # Errors
     /// An input that is not finite, no convergence, or a singular or unreachable configuration on the way.
@@ -7424,40 +7424,40 @@ impl ThreeLegPoint {
         start: &[::core::primitive::f64; Self::POSE],
     ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         ::overact::guard::finite(&[("actuators", actuators), ("start", start)])?;
-        let from = |mut pose: [::core::primitive::f64; Self::POSE]| {
-            ::overact::forward::gauss_newton(
-                    ::overact::forward::Measured {
-                        positions: actuators,
-                        is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-                    },
-                    &mut pose,
-                    ::overact::forward::Workspace {
-                        actuators: &mut [0.0; Self::ACTUATORS],
-                        inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                        normal: &mut [0.0; Self::DOF * Self::DOF],
-                        step: &mut [0.0; Self::DOF],
-                    },
-                    |pose, positions, jacobian| {
-                        let pose = ::overact::block::array(pose)?;
-                        ::overact::block::write(
-                            &Self::actuator_positions(pose)?,
-                            positions,
-                        );
-                        ::overact::block::write(
-                            &Self::inverse_jacobian(pose)?,
-                            jacobian,
-                        );
-                        ::core::result::Result::Ok(())
-                    },
-                    ::overact::forward::displace,
-                )
-                .map(|()| pose)
-        };
-        from(*start)
-            .or_else(|error| match Self::pose_in_closed_form(actuators) {
-                ::core::result::Result::Ok(pose) => from(pose),
-                ::core::result::Result::Err(_) => ::core::result::Result::Err(error),
-            })
+        let closed = Self::pose_in_closed_form(actuators).ok();
+        ::overact::forward::from_closed_form(
+            closed,
+            *start,
+            |mut pose: [::core::primitive::f64; Self::POSE]| {
+                ::overact::forward::gauss_newton(
+                        ::overact::forward::Measured {
+                            positions: actuators,
+                            is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                        },
+                        &mut pose,
+                        ::overact::forward::Workspace {
+                            actuators: &mut [0.0; Self::ACTUATORS],
+                            inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                            normal: &mut [0.0; Self::DOF * Self::DOF],
+                            step: &mut [0.0; Self::DOF],
+                        },
+                        |pose, positions, jacobian| {
+                            let pose = ::overact::block::array(pose)?;
+                            ::overact::block::write(
+                                &Self::actuator_positions(pose)?,
+                                positions,
+                            );
+                            ::overact::block::write(
+                                &Self::inverse_jacobian(pose)?,
+                                jacobian,
+                            );
+                            ::core::result::Result::Ok(())
+                        },
+                        ::overact::forward::displace,
+                    )
+                    .map(|()| pose)
+            },
+        )
     }
 }
 impl ThreeLegPoint {

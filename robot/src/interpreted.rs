@@ -458,11 +458,10 @@ impl Model for InterpretedRobot {
             pose.copy_from_slice(found);
             return Ok(());
         }
-        self.fit_pose(actuators, &mut start).or_else(|error| {
-            start.copy_from_slice(&closed.ok_or(error)?);
-            self.fit_pose(actuators, &mut start)
+        let found = forward::from_closed_form(closed, start, |mut at| {
+            self.fit_pose(actuators, &mut at).map(|()| at)
         })?;
-        pose.copy_from_slice(&start);
+        pose.copy_from_slice(&found);
         Ok(())
     }
 

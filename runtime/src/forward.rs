@@ -13,8 +13,11 @@ use overact_core::limits::DOUBLE;
 /// Largest number of Gauss-Newton steps.
 pub const STEPS: usize = 20;
 
-/// The steps end when the largest one falls below this (m, rad), in numbers of 64 bits.
+/// The steps end when the largest one falls below this (m, rad), or the next one will; in numbers of 64 bits.
 pub const TOLERANCE: f64 = DOUBLE.step;
+
+/// A pose in closed form that is not farther than this from the start (m, rad) is where the steps start.
+const NEAR: f64 = 0.01;
 
 /// The measured actuators, and which of them are angles.
 #[derive(Debug, Clone, Copy)]
@@ -43,7 +46,8 @@ pub struct Workspace<'a, T = f64> {
 /// finite: the caller has seen to that.
 ///
 /// The remaining residual of a redundant robot is not zero when its encoders are noisy, so
-/// convergence is judged by the step.
+/// convergence is judged by the step. Steps shrink at least as fast as a geometric series, so the last two
+/// bound the next one, and none is done only to see that it is small.
 ///
 /// # Errors
 /// [`Error::NoConvergence`], [`Error::SingularPlatform`], or what `evaluate` reports.
@@ -61,7 +65,7 @@ pub fn gauss_newton<T: Float>(
         normal,
         step,
     } = workspace;
-    let mut residual = T::ZERO;
+    let (mut residual, mut before) = (T::ZERO, T::ZERO);
     for _ in 0..STEPS {
         evaluate(pose, actuators, inverse_jacobian)?;
         normal.fill(T::ZERO);
@@ -73,16 +77,43 @@ pub fn gauss_newton<T: Float>(
         if !largest.is_finite() {
             break;
         }
-        if largest < T::of(T::LIMITS.step) {
+        // The next step is largest²/before at most; a tenth of what is tolerated leaves room for those behind it.
+        let tolerated = T::of(T::LIMITS.step);
+        if largest < tolerated || largest * largest < T::of(0.1) * tolerated * before {
             return Ok(());
         }
+        before = largest;
     }
     Err(Error::NoConvergence {
         residual: residual.into(),
     })
 }
 
-/// Adds Jᵀ J to `normal` and Jᵀ Δq to `step`, J being J_p^inv; returns the largest difference.
+/// Fits a pose to redundant actuators where a closed form knows it from some of them. Steps that start from the
+/// closed form have only the noise of the encoders to go, but its assembly mode is that of the home
+/// configuration: it is taken where it is near `start`, as from one sample to the next, and otherwise only where
+/// `fit` fails from `start`.
+///
+/// # Errors
+/// What `fit` reports.
+#[inline]
+pub fn from_closed_form<T: Float, P: AsRef<[T]>>(
+    closed: Option<P>,
+    start: P,
+    mut fit: impl FnMut(P) -> Result<P, Error>,
+) -> Result<P, Error> {
+    let Some(closed) = closed else {
+        return fit(start);
+    };
+    let mut coordinates = closed.as_ref().iter().zip(start.as_ref());
+    let (first, second) = match coordinates.all(|(a, b)| (*a - *b).abs() <= T::of(NEAR)) {
+        true => (closed, start),
+        false => (start, closed),
+    };
+    fit(first).or_else(|_| fit(second))
+}
+
+/// Adds the upper triangle of Jᵀ J to `normal` and Jᵀ Δq to `step`, J being J_p^inv; returns the largest difference.
 #[inline]
 fn accumulate<T: Float>(
     measured: Measured<'_, T>,
@@ -102,9 +133,9 @@ fn accumulate<T: Float>(
         }
         residual = residual.max(difference.abs());
         let sums = step.iter_mut().zip(normal.chunks_exact_mut(dof));
-        for ((step, normal), entry) in sums.zip(row) {
+        for (k, ((step, normal), entry)) in sums.zip(row).enumerate() {
             *step += *entry * difference;
-            for (normal, other) in normal.iter_mut().zip(row) {
+            for (normal, other) in normal.iter_mut().zip(row).skip(k) {
                 *normal += *entry * *other;
             }
         }
@@ -112,7 +143,8 @@ fn accumulate<T: Float>(
     residual
 }
 
-/// Solves S x = y in place for a symmetric positive definite S (row-major, overwritten) by L D Lᵀ.
+/// Solves S x = y in place for a symmetric positive definite S (row-major, overwritten) by L D Lᵀ. Of S only the
+/// upper triangle is read.
 ///
 /// # Errors
 /// [`Error::SingularPlatform`] when a pivot vanishes, [`Error::Length`] for a matrix that is not square.
@@ -138,7 +170,8 @@ pub fn solve_positive_definite<T: Float>(matrix: &mut [T], vector: &mut [T]) -> 
     Ok(())
 }
 
-/// Brings S to upper triangular form, and the right-hand side with it.
+/// Brings S to upper triangular form, and the right-hand side with it. What is left of S stays symmetric, so an
+/// entry below the pivot is the one beside it.
 #[inline]
 fn eliminate<T: Float>(matrix: &mut [T], vector: &mut [T]) -> Result<(), Error> {
     let n = vector.len().max(1);
@@ -158,10 +191,14 @@ fn eliminate<T: Float>(matrix: &mut [T], vector: &mut [T]) -> Result<(), Error> 
                 condition: (largest / pivot.abs()).into(),
             });
         }
-        for (other, value) in below.chunks_exact_mut(n).zip(unknown.iter_mut()) {
-            let mut entries = other.iter_mut().zip(&*row).skip(k);
-            let factor = entries.next().map_or(T::ZERO, |(first, _)| *first / pivot);
-            for (entry, above) in entries {
+        let rows = below.chunks_exact_mut(n).zip(unknown.iter_mut());
+        for (i, (other, value)) in rows.enumerate() {
+            let beside = row.iter().skip(k + 1 + i);
+            let factor = beside
+                .clone()
+                .next()
+                .map_or(T::ZERO, |first| *first / pivot);
+            for (entry, above) in other.iter_mut().skip(k + 1 + i).zip(beside) {
                 *entry -= factor * *above;
             }
             *value -= factor * *known;
@@ -211,7 +248,9 @@ pub fn displace_quaternion<T: Float>(pose: &mut [T], step: &[T]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Error, solve_positive_definite};
+    use super::{
+        Error, Measured, Workspace, from_closed_form, gauss_newton, solve_positive_definite,
+    };
 
     #[test]
     fn a_positive_definite_system_is_solved() {
@@ -223,6 +262,70 @@ mod tests {
         for (found, wanted) in found.iter().zip(solution) {
             assert!((found - wanted).abs() < 1e-14, "{found} {wanted}");
         }
+    }
+
+    #[test]
+    fn of_a_symmetric_matrix_the_upper_triangle_decides() {
+        let mut upper = [
+            [4.0, 2.0, -2.0],
+            [f64::NAN, 10.0, 2.0],
+            [f64::NAN, f64::NAN, 6.0],
+        ];
+        let mut found = [-4.0, -2.0, 14.0];
+        solve_positive_definite(upper.as_flattened_mut(), &mut found).expect("regular");
+        for (found, wanted) in found.iter().zip([1.0, -1.0, 3.0]) {
+            assert!((found - wanted).abs() < 1e-14, "{found} {wanted}");
+        }
+    }
+
+    /// A fit that tells from where it starts.
+    fn tried(closed: Option<[f64; 2]>, start: [f64; 2], fails: bool) -> Vec<[f64; 2]> {
+        let mut tried = Vec::new();
+        let fit = |pose| {
+            tried.push(pose);
+            match fails {
+                true => Err(Error::NoConvergence { residual: 1.0 }),
+                false => Ok(pose),
+            }
+        };
+        assert_eq!(from_closed_form(closed, start, fit).is_err(), fails);
+        tried
+    }
+
+    #[test]
+    fn steps_start_from_the_closed_form_where_it_is_near() {
+        let (start, near, far) = ([1.0, 2.0], [1.005, 1.995], [1.0, 2.5]);
+        assert_eq!(tried(None, start, false), [start]);
+        assert_eq!(tried(Some(near), start, false), [near]);
+        // Another assembly mode, or the first sample of a log.
+        assert_eq!(tried(Some(far), start, false), [start]);
+        assert_eq!(tried(Some(near), start, true), [near, start]);
+        assert_eq!(tried(Some(far), start, true), [start, far]);
+        assert_eq!(tried(Some([f64::NAN, 2.0]), start, false), [start]);
+    }
+
+    #[test]
+    fn a_step_that_will_be_too_small_is_not_done() {
+        // q(x) = x² to 4: Newton's steps are 1e-4, 2.5e-9, and then 1.6e-18.
+        let (mut pose, mut evaluations) = ([1.9999], 0);
+        let measured = Measured {
+            positions: &[4.0],
+            is_revolute: &[false],
+        };
+        let workspace = Workspace {
+            actuators: &mut [0.0],
+            inverse_jacobian: &mut [0.0],
+            normal: &mut [0.0],
+            step: &mut [0.0],
+        };
+        let evaluate = |pose: &[f64], reached: &mut [f64], jacobian: &mut [f64]| {
+            evaluations += 1;
+            (reached[0], jacobian[0]) = (pose[0] * pose[0], 2.0 * pose[0]);
+            Ok(())
+        };
+        gauss_newton(measured, &mut pose, workspace, evaluate, super::displace).expect("a root");
+        assert_eq!(evaluations, 2);
+        assert!((pose[0] - 2.0).abs() < 1e-14, "{}", pose[0]);
     }
 
     #[test]

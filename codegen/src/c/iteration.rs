@@ -29,30 +29,26 @@ const FORWARD_CHECKS: &str = "
     }
 ";
 
-const FORWARD_OF_A_TREE: &str = "\
-    for (int i = 0; i < ROB_POSE; i++) {
+const FORWARD_OF_A_TREE: &str = "    for (int i = 0; i < ROB_POSE; i++) {
         output[i] = actuators[i];
     }
     return ROB_OK;
 }
 ";
 
-const FORWARD_START: &str = "\
-    double pose[ROB_POSE];
+const FORWARD_START: &str = "    double pose[ROB_POSE];
     for (int i = 0; i < ROB_POSE; i++) {
         pose[i] = start[i];
     }
 ";
 
-const FORWARD_START_QUATERNION: &str = "\
-    double pose[ROB_POSE];
+const FORWARD_START_QUATERNION: &str = "    double pose[ROB_POSE];
     if (!(rob_unit_quaternion(start, pose))) {
         return ROB_ZERO_QUATERNION_START;
     }
 ";
 
-const FORWARD_START_ASIDE: &str = "\
-    const double still[ROB_DOF] = { 0.0 };
+const FORWARD_START_ASIDE: &str = "    const double still[ROB_DOF] = { 0.0 };
     double pose[ROB_POSE];
     if (!(rob_unit_quaternion(start, pose))) {
         return ROB_ZERO_QUATERNION_START;
@@ -60,28 +56,36 @@ const FORWARD_START_ASIDE: &str = "\
     rob_displace(pose, still);
 ";
 
-const FORWARD_BY_RULE: &str = "\
-    rob_error error = rob_pose_in_closed_form(actuators, pose);
+const FORWARD_BY_RULE: &str = "    rob_error error = rob_pose_in_closed_form(actuators, pose);
     if (error != ROB_OK) {
         error = rob_gauss_newton(actuators, pose);
     }
 ";
 
-const FORWARD_AGAIN_BY_RULE: &str = "\
+const FORWARD_FROM_RULE: &str = "    double other[ROB_POSE];
+    const int is_closed = (rob_pose_in_closed_form(actuators, other) == ROB_OK) ? 1 : 0;
+    int is_near = is_closed;
+    for (int i = 0; (i < ROB_POSE) && (is_near != 0); i++) {
+        is_near = (fabs(other[i] - pose[i]) <= 0.01) ? 1 : 0;
+    }
+    for (int i = 0; (i < ROB_POSE) && (is_near != 0); i++) {
+        const double closed = other[i];
+        other[i] = pose[i];
+        pose[i] = closed;
+    }
     rob_error error = rob_gauss_newton(actuators, pose);
-    if (error != ROB_OK) {
-        if (rob_pose_in_closed_form(actuators, pose) == ROB_OK) {
-            error = rob_gauss_newton(actuators, pose);
+    if ((error != ROB_OK) && (is_closed != 0)) {
+        for (int i = 0; i < ROB_POSE; i++) {
+            pose[i] = other[i];
         }
+        error = rob_gauss_newton(actuators, pose);
     }
 ";
 
-const FORWARD: &str = "\
-    const rob_error error = rob_gauss_newton(actuators, pose);
+const FORWARD: &str = "    const rob_error error = rob_gauss_newton(actuators, pose);
 ";
 
-const FORWARD_END: &str = "\
-    if (error != ROB_OK) {
+const FORWARD_END: &str = "    if (error != ROB_OK) {
         return error;
     }
     for (int i = 0; i < ROB_POSE; i++) {
@@ -95,8 +99,7 @@ const NEWTON: &str = include_str!("text/newton.c");
 /// What `ROB_WAY` stands for is the scaling of the quaternion on the way.
 const JOINTS: &str = include_str!("text/joints.c");
 /// The quaternion of a pose on the way, scaled to length 1.
-const WAY_OF_A_QUATERNION: &str = "\
-            {
+const WAY_OF_A_QUATERNION: &str = "            {
                 double *const q = &way[ROB_POSE - 4];
                 const double norm = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
                 for (int i = 0; i < 4; i++) {
@@ -112,8 +115,7 @@ const JOINTS_CHECKS: &str = "
     }
 ";
 
-const JOINTS_CHECKS_QUATERNION: &str = "\
-    double unit_pose[ROB_POSE];
+const JOINTS_CHECKS_QUATERNION: &str = "    double unit_pose[ROB_POSE];
     if (!(rob_unit_quaternion(pose, unit_pose))) {
         return ROB_ZERO_QUATERNION_POSE;
     }
@@ -153,8 +155,8 @@ pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
         let way = match closed_form(model) {
             ClosedForm::None => "",
             ClosedForm::Alone => " It is pose_in_closed_form where that has a value.",
-            ClosedForm::Again => {
-                " Where the iteration fails from there, it starts again from pose_in_closed_form."
+            ClosedForm::Start => {
+                " The iteration starts from pose_in_closed_form where that is near `start`, or where it fails from there."
             }
         };
         let lines = [
@@ -182,14 +184,14 @@ enum ClosedForm {
     None,
     /// It is the pose, as there is no actuator too many.
     Alone,
-    /// It is where the iteration starts again.
-    Again,
+    /// It is where the iteration starts, or starts again.
+    Start,
 }
 
 fn closed_form(model: &RobotModel) -> ClosedForm {
     let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
     match model.function(Function::PoseInClosedForm, MotionInput::Actuators) {
-        Some(_) if is_redundant => ClosedForm::Again,
+        Some(_) if is_redundant => ClosedForm::Start,
         Some(_) => ClosedForm::Alone,
         None => ClosedForm::None,
     }
@@ -232,7 +234,7 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
     let found = match closed_form(model) {
         ClosedForm::None => FORWARD,
         ClosedForm::Alone => FORWARD_BY_RULE,
-        ClosedForm::Again => FORWARD_AGAIN_BY_RULE,
+        ClosedForm::Start => FORWARD_FROM_RULE,
     };
     let tables = aside.map_or_else(String::new, |own| coordinates(&own));
     let helpers = text(&[&tables, displace, "\n", GAUSS_NEWTON, "\n"]);

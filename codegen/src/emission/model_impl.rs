@@ -188,12 +188,11 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
     let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
     let (way, body) = match model.function(Function::PoseInClosedForm, MotionInput::Actuators) {
         Some(_) if is_redundant => (
-            " Where the iteration fails from there, it starts again from `pose_in_closed_form`.",
+            " The iteration starts from `pose_in_closed_form` where that is near `start`, or where it fails from there.",
             quote! {
-                let from = |mut pose: [#kind; Self::POSE]| { #iterate.map(|()| pose) };
-                from(*start).or_else(|error| match Self::pose_in_closed_form(actuators) {
-                    ::core::result::Result::Ok(pose) => from(pose),
-                    ::core::result::Result::Err(_) => ::core::result::Result::Err(error),
+                let closed = Self::pose_in_closed_form(actuators).ok();
+                ::overact::forward::from_closed_form(closed, *start, |mut pose: [#kind; Self::POSE]| {
+                    #iterate.map(|()| pose)
                 })
             },
         ),

@@ -50,27 +50,42 @@ impl Fourier {
 
     /// Real and imaginary parts of the spectra of two signals at all frequencies, Σ x_k exp(-i ω k).
     pub(crate) fn pair(&self, first: &[f64], second: &[f64]) -> [Spectrum; 2] {
-        let mut real = vec![0.0; self.size];
-        let mut imaginary = vec![0.0; self.size];
-        real[..first.len()].copy_from_slice(first);
-        imaginary[..second.len()].copy_from_slice(second);
-        self.transform(&mut real, &mut imaginary);
+        let (mut real, mut imaginary) = (self.started(first), self.started(second));
+        self.finish(&mut real, &mut imaginary, 2);
         // The signals are the real and the imaginary part: even and odd parts of the spectrum.
-        let empty = || Spectrum {
-            real: Vec::with_capacity(self.frequencies()),
-            imaginary: Vec::with_capacity(self.frequencies()),
+        let parts = |values: &[f64], of: fn(f64, f64) -> f64| {
+            let half = self.size / 2;
+            let mut parts = Vec::with_capacity(half + 1);
+            parts.push(of(values[0], values[0]));
+            let mirrored = values[half..].iter().rev();
+            let pairs = values[1..=half].iter().zip(mirrored);
+            parts.extend(pairs.map(|(own, mirrored)| of(*own, *mirrored)));
+            parts
         };
-        let mut spectra = [empty(), empty()];
-        for k in 0..self.frequencies() {
-            let mirrored = (self.size - k) % self.size;
-            let (a, b) = (real[k], imaginary[k]);
-            let (c, d) = (real[mirrored], imaginary[mirrored]);
-            spectra[0].real.push(0.5 * (a + c));
-            spectra[0].imaginary.push(0.5 * (b - d));
-            spectra[1].real.push(0.5 * (b + d));
-            spectra[1].imaginary.push(0.5 * (c - a));
+        let even: fn(f64, f64) -> f64 = |own, mirrored| 0.5 * (own + mirrored);
+        [
+            Spectrum {
+                real: parts(&real, even),
+                imaginary: parts(&imaginary, |own, mirrored| 0.5 * (own - mirrored)),
+            },
+            Spectrum {
+                real: parts(&imaginary, even),
+                imaginary: parts(&real, |own, mirrored| 0.5 * (mirrored - own)),
+            },
+        ]
+    }
+
+    /// A part of a padded signal in the order of the transform, its first step done: the other value of each pair
+    /// is one of the zeros behind the signal.
+    fn started(&self, signal: &[f64]) -> Vec<f64> {
+        debug_assert!(2 * signal.len() <= self.size);
+        let mut values = Vec::with_capacity(self.size);
+        let shift = usize::BITS - self.size.trailing_zeros();
+        for place in (0..self.size).step_by(2) {
+            let value = signal.get(place.reverse_bits() >> shift);
+            values.extend([value.copied().unwrap_or(0.0); 2]);
         }
-        spectra
+        values
     }
 
     /// The spectrum of one signal.
@@ -104,6 +119,13 @@ impl Fourier {
         real.iter().map(|sum| sum / self.size as f64).collect()
     }
 
+    /// cos and sin of π k/half for k below half.
+    #[inline(always)]
+    fn turns(&self, half: usize) -> [&[f64]; 2] {
+        // The angles of the coarser steps stand before these, half - 1 in all.
+        [&self.cosines, &self.sines].map(|parts| &parts[half - 1..2 * half - 1])
+    }
+
     /// The transform in place, radix two.
     fn transform(&self, real: &mut [f64], imaginary: &mut [f64]) {
         let bits = self.size.trailing_zeros();
@@ -114,10 +136,16 @@ impl Fourier {
                 imaginary.swap(k, mirrored);
             }
         }
+        self.finish(real, imaginary, 1);
+    }
+
+    /// The steps from pairs of transforms of `half` values on.
+    fn finish(&self, real: &mut [f64], imaginary: &mut [f64], half: usize) {
         let work = Butterflies {
             fourier: self,
             real,
             imaginary,
+            half,
         };
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = pulp::x86::V3::try_new() {
@@ -133,6 +161,8 @@ struct Butterflies<'a> {
     fourier: &'a Fourier,
     real: &'a mut [f64],
     imaginary: &'a mut [f64],
+    /// Values of the transforms that are there already.
+    half: usize,
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -148,20 +178,34 @@ impl NullaryFnOnce for Butterflies<'_> {
 impl Butterflies<'_> {
     #[inline(always)]
     fn run(self) {
-        let mut half = 1;
-        while half < self.fourier.size {
-            // The angles of the coarser steps stand before these, half - 1 in all.
-            let cosines = &self.fourier.cosines[half - 1..2 * half - 1];
-            let sines = &self.fourier.sines[half - 1..2 * half - 1];
-            let (turns, parts) = ([cosines, sines], [&mut *self.real, &mut *self.imaginary]);
-            // Short loops are unrolled where their length is known.
+        let Self {
+            fourier,
+            real,
+            imaginary,
+            mut half,
+        } = self;
+        let steps = (fourier.size / half).trailing_zeros();
+        if steps % 2 == 1 {
+            let parts = [&mut *real, &mut *imaginary];
             match half {
-                1 => step(turns, parts, 1),
-                2 => step(turns, parts, 2),
-                4 => step(turns, parts, 4),
-                _ => step(turns, parts, half),
+                1 => step(fourier.turns(1), parts, 1),
+                2 => step(fourier.turns(2), parts, 2),
+                _ => step(fourier.turns(half), parts, half),
             }
             half *= 2;
+        }
+        // Two steps at a time go through memory once.
+        while half < fourier.size {
+            let turns = [fourier.turns(half), fourier.turns(2 * half)];
+            let parts = [&mut *real, &mut *imaginary];
+            // Short loops are unrolled where their length is known.
+            match half {
+                1 => two_steps(turns, parts, 1),
+                2 => two_steps(turns, parts, 2),
+                4 => two_steps(turns, parts, 4),
+                _ => two_steps(turns, parts, half),
+            }
+            half *= 4;
         }
     }
 }
@@ -183,6 +227,44 @@ fn step([cosines, sines]: [&[f64]; 2], [real, imaginary]: [&mut [f64]; 2], half:
             y[k] += b;
         }
     }
+}
+
+/// Makes transforms of `4 half` values of four of `half`, as two steps would.
+#[inline(always)]
+fn two_steps([inner, outer]: [[&[f64]; 2]; 2], [real, imaginary]: [&mut [f64]; 2], half: usize) {
+    let [inner_cosines, inner_sines] = inner.map(|turns| &turns[..half]);
+    let [[cosines, more_cosines], [sines, more_sines]] = outer.map(|turns| {
+        let (first, second) = turns.split_at(half);
+        [first, &second[..half]]
+    });
+    let parts = real.chunks_exact_mut(4 * half);
+    for (real, imaginary) in parts.zip(imaginary.chunks_exact_mut(4 * half)) {
+        let [x, u, p, q] = quarters(real, half);
+        let [y, v, r, s] = quarters(imaginary, half);
+        for k in 0..half {
+            let (c, d) = (inner_cosines[k], inner_sines[k]);
+            let turned = |c: f64, d: f64, re: f64, im: f64| (c * re + d * im, c * im - d * re);
+            let (a, b) = turned(c, d, u[k], v[k]);
+            let (first, second) = ((x[k] + a, y[k] + b), (x[k] - a, y[k] - b));
+            let (a, b) = turned(c, d, q[k], s[k]);
+            let (third, fourth) = ((p[k] + a, r[k] + b), (p[k] - a, r[k] - b));
+            let (a, b) = turned(cosines[k], sines[k], third.0, third.1);
+            (x[k], y[k]) = (first.0 + a, first.1 + b);
+            (p[k], r[k]) = (first.0 - a, first.1 - b);
+            let (a, b) = turned(more_cosines[k], more_sines[k], fourth.0, fourth.1);
+            (u[k], v[k]) = (second.0 + a, second.1 + b);
+            (q[k], s[k]) = (second.0 - a, second.1 - b);
+        }
+    }
+}
+
+/// Four parts of so many values.
+#[inline(always)]
+fn quarters(values: &mut [f64], quarter: usize) -> [&mut [f64]; 4] {
+    let (front, back) = values.split_at_mut(2 * quarter);
+    let (first, second) = front.split_at_mut(quarter);
+    let (third, fourth) = back.split_at_mut(quarter);
+    [first, second, third, &mut fourth[..quarter]]
 }
 
 /// The spectrum of a real signal from frequency 0 to half the sampling frequency.

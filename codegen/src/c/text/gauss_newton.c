@@ -1,4 +1,5 @@
-/* Solves S x = y in place for a symmetric positive definite S, which is overwritten; 0 where a pivot vanishes. */
+/* Solves S x = y in place for a symmetric positive definite S, of which the upper triangle is read and overwritten;
+   0 where a pivot vanishes. */
 static int rob_solve(double matrix[ROB_DOF][ROB_DOF], double vector[ROB_DOF])
 {
     double largest = 0.0;
@@ -10,8 +11,8 @@ static int rob_solve(double matrix[ROB_DOF][ROB_DOF], double vector[ROB_DOF])
         const double pivot = matrix[k][k];
         if (pivot > (LIMIT_PIVOT * largest)) {
             for (int row = k + 1; row < ROB_DOF; row++) {
-                const double factor = matrix[row][k] / pivot;
-                for (int column = k + 1; column < ROB_DOF; column++) {
+                const double factor = matrix[k][row] / pivot;
+                for (int column = row; column < ROB_DOF; column++) {
                     matrix[row][column] -= factor * matrix[k][column];
                 }
                 vector[row] -= factor * vector[k];
@@ -35,6 +36,7 @@ static int rob_solve(double matrix[ROB_DOF][ROB_DOF], double vector[ROB_DOF])
 /* The pose that fits the actuators best in the sense of least squares, found from the one in `pose`. */
 static rob_error rob_gauss_newton(const double *actuators, double *pose)
 {
+    double before = 0.0;
     for (int count = 0; count < 20; count++) {
         double reached[ROB_ACTUATORS];
         double jacobian[ROB_ACTUATORS * ROB_DOF];
@@ -62,7 +64,7 @@ static rob_error rob_gauss_newton(const double *actuators, double *pose)
             }
             for (int row = 0; row < ROB_DOF; row++) {
                 step[row] += entries[row] * difference;
-                for (int column = 0; column < ROB_DOF; column++) {
+                for (int column = row; column < ROB_DOF; column++) {
                     normal[row][column] += entries[row] * entries[column];
                 }
             }
@@ -77,9 +79,11 @@ static rob_error rob_gauss_newton(const double *actuators, double *pose)
         if (!isfinite(largest)) {
             return ROB_NO_CONVERGENCE;
         }
-        if (largest < LIMIT_STEP) {
+        /* The next step is largest * largest / before at most. */
+        if ((largest < LIMIT_STEP) || ((largest * largest) < (0.1 * LIMIT_STEP * before))) {
             return ROB_OK;
         }
+        before = largest;
     }
     return ROB_NO_CONVERGENCE;
 }
