@@ -160,9 +160,10 @@ def in_python(robot, names):
     own = overact.Robot(ROBOTS / f"{robot.stem}.toml")
 
     def values(name):
-        inputs = [value[0] if len(value) == 1 else value for value in robot.inputs(name).values()]
+        function, known = own.function(name), robot.inputs(name)
+        inputs = [known[one][0] if len(known[one]) == 1 else known[one] for one in function.inputs]
         try:
-            return np.ravel(own.function(name)(*inputs))
+            return np.ravel(function(*inputs))
         except overact.EvaluationError:
             return None
 
