@@ -1,7 +1,7 @@
-//! The tutorial, and the page of answers that are not to be trusted: blocks make the robot, commands print what
+//! The tutorials, and the page of answers that are not to be trusted: blocks make the robot, commands print what
 //! is shown.
 //!
-//! Blocks of TOML are appended to `rrr.toml` in their order. The commands of a console block run in a
+//! Blocks of TOML are appended to `rrr.toml` in their order; a block of XML is `ankle.xml`. The commands of a console block run in a
 //! shell in the same folder; a line `…` stands for any lines, and numbers may differ in their last
 //! digits from one machine to another.
 #![cfg(unix)]
@@ -95,6 +95,7 @@ fn follow(bench: &Bench, text: &str) -> usize {
                 robot += &(block.lines.join("\n") + "\n");
                 bench.write("rrr.toml", &robot);
             }
+            "xml" => bench.write("ankle.xml", &(block.lines.join("\n") + "\n")),
             "console" => {
                 for part in block.lines.join("\n").split("$ ").skip(1) {
                     let (command, shown) = part.split_once('\n').unwrap_or((part, ""));
@@ -139,6 +140,16 @@ fn the_tutorial_does_what_it_says() {
     // Beyond what is shown: the whole robot generates.
     bench.good(&["generate", "--effort", "none", "rrr.toml", "-o", "all.rs"]);
     assert!(bench.read("all.rs").contains("pub struct Rrr"));
+}
+
+#[test]
+fn the_ankle_is_imported_identified_and_exported_as_shown() {
+    // It is identified four times.
+    if !overact_tier::is_full() {
+        return;
+    }
+    let text = fs::read_to_string(docs().join("tutorial-ankle.md")).expect("the page");
+    assert_eq!(follow(&Bench::new(), &text), 15);
 }
 
 #[test]
