@@ -99,7 +99,7 @@ pub(crate) fn explanation(
     });
     let whole: Vec<(Whole, f64)> = whole.collect();
     let explains = |(fault, after): &(Whole, f64)| {
-        *after < fault.explained(EXPLAINED) * before && before - after > WORTHWHILE
+        *after < fault.explained(model, EXPLAINED) * before && before - after > WORTHWHILE
     };
     let best = whole.into_iter().filter(explains);
     let best = best.min_by(|a, b| a.1.total_cmp(&b.1));

@@ -7,11 +7,15 @@ use super::{
     check::{About, Check, CheckKind, Grade},
     positions,
 };
-use crate::{data::Log, error::Error};
+use crate::{data::Log, error::Error, kinematics::conditioning::couples};
 
 /// The part of the error that gravity of the other sign leaves, at most: it has no size that could be fitted to
 /// something else.
 const EXPLAINED_BY_GRAVITY: f64 = 0.75;
+
+/// The part of the error that exchanged actuators leave, at most, where loops couple them: the wrong motion passes
+/// singular poses, where the generalised forces are so large that little of them is left in any case.
+const EXPLAINED_BEHIND_LOOPS: f64 = 0.1;
 
 /// What may have happened to positions in all runs, or to the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,10 +41,11 @@ impl Whole {
     }
 
     /// The part of the error that it may leave, `of_one` where it is a fault of columns.
-    pub(super) fn explained(self, of_one: f64) -> f64 {
+    pub(super) fn explained(self, model: &dyn Model, of_one: f64) -> f64 {
         match self {
-            // A robot with a symmetry is another one when actuators are exchanged, but nearly the same: anything else
-            // that is wrong may then be a little smaller.
+            Self::Exchanged(..) if couples(model) => EXPLAINED_BEHIND_LOOPS,
+            // A robot with a symmetry is nearly the same when actuators are exchanged: anything else that is wrong
+            // may then be a little smaller.
             Self::Positions(_) | Self::Exchanged(..) => of_one,
             Self::Gravity => EXPLAINED_BY_GRAVITY,
         }

@@ -249,3 +249,38 @@ fn used(
     let tables = order.iter().map(|table| tables[*table].clone()).collect();
     Ok((tables, numbers))
 }
+
+#[cfg(all(test, not(target_family = "wasm")))]
+mod tests {
+    use super::Files;
+    use crate::data::{Gain, Log, Mapping, Time, medium::Medium};
+    use std::fs;
+
+    #[test]
+    fn without_a_temporary_file_the_text_is_read_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("log.csv");
+        let lines: String = (0..100).map(|k| format!("{k},{}\n", 2 * k)).collect();
+        fs::write(&path, format!("q,tau\n{lines}")).expect("written");
+        let mapping = Mapping {
+            time: Time::Frequency(10.0),
+            positions: vec![String::from("q")],
+            torques: vec![String::from("tau")],
+            velocities: Vec::new(),
+            position_scale: vec![1.0],
+            position_offset: Vec::new(),
+            torque_gain: vec![Gain::Value(1.0)],
+            resample: None,
+            transmission: Vec::new(),
+        };
+        let file = (String::from("log.csv"), Medium::Disk(path.clone()));
+        let files = Files::new(String::from("run"), &[file], &mapping).expect("files");
+        let log = Log::in_files(files, 10.0, 100, false);
+        let (positions, torques) = log.load().expect("numbers");
+        assert_eq!((positions[99], torques[50]), (99.0, 100.0));
+        // Cut while it is gone through.
+        fs::write(&path, &lines[..100]).expect("written");
+        let error = log.load().expect_err("shorter").to_string();
+        assert!(error.contains("log.csv"), "{error}");
+    }
+}
