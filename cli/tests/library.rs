@@ -369,6 +369,10 @@ fn all_read_their_own_parameters() {
         let found = list(&consistent["parameters"]);
         let value = |wanted: &&str| -> f64 {
             let own = found.iter().find(|one| one["name"] == **wanted);
+            // A payload that no run carries is none.
+            if own.is_none() && wanted.ends_with("_payload") {
+                return 0.0;
+            }
             number(&own.unwrap_or_else(|| panic!("{name}: {wanted}"))["value"])
         };
         let values: Vec<f64> = names(&inspected["parameters"]).iter().map(value).collect();

@@ -123,13 +123,16 @@ fn model(identification: &Identification, estimate: &Estimate, extent: Extent) -
             projection(estimate)
         ),
     );
+    let count = estimate.parameters.len();
+    let own = match estimate.stage {
+        Stage::Base => format!("All {count} base parameters"),
+        stage => format!("{count} {}", stage_name(stage)),
+    };
     paragraph(
         &mut text,
         "  ",
         &format!(
-            "{} {} leave {:.4} % of the torques unexplained.{}{}",
-            estimate.parameters.len(),
-            stage_name(estimate.stage),
+            "{own} leave {:.4} % of the torques unexplained.{}{}",
             estimate.relative_error_percent,
             held_out(identification, estimate),
             sureness(estimate)
