@@ -80,8 +80,8 @@ struct Seen {
     worst: (f64, String),
     /// How many outputs were compared.
     values: usize,
-    /// How many differ by more than the tolerance, where a rounding of the inputs does so, too, and the largest
-    /// ratio of both.
+    /// How many differ by more than the tolerance, where a rounding of the inputs does so, too, the largest ratio of
+    /// both, and the function that has it.
     sensitive: (usize, f64, String),
     /// Texts of the errors that both have.
     errors: Vec<String>,

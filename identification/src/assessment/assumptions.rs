@@ -2,14 +2,14 @@
 
 use overact::Model;
 
-use super::check::{Check, CheckKind};
+use super::{
+    check::{Check, CheckKind},
+    checks::HARMFUL,
+};
 use crate::{
     regression::{columns::ColumnSet, projection::ModelKind},
     significant,
 };
-
-/// A fault that may be hidden is told where it moves a parameter by more than so many deviations.
-const HARMFUL: f64 = 3.0;
 
 /// What no data of these runs can show to be wrong: faults whose effect on the data is that of other
 /// parameters.

@@ -83,7 +83,7 @@ pub(crate) fn explanation(
     };
     if let Some((fault, after)) = best.filter(explains) {
         let told = told(model, runs, fault, &so(after));
-        return Ok(Some(measured(told, before, after)));
+        return Ok(Some(measured(told, (before, after), EXPLAINED)));
     }
     // What happened to positions happened in all runs.
     let whole = Whole::all(model).into_par_iter().filter_map(|fault| {
@@ -103,15 +103,21 @@ pub(crate) fn explanation(
     };
     let best = whole.into_iter().filter(explains);
     let best = best.min_by(|a, b| a.1.total_cmp(&b.1));
-    Ok(best.map(|(fault, after)| measured(fault.check(model, &so(after)), before, after)))
+    Ok(best.map(|(fault, after)| {
+        let part = fault.explained(model, EXPLAINED);
+        measured(fault.check(model, &so(after)), (before, after), part)
+    }))
 }
 
-/// A check with the part of the inputs that is left unexplained without the fault.
-fn measured(check: Check, before: f64, after: f64) -> Check {
-    let origin = "half of what is left unexplained with the fault";
+/// A check with the part of the inputs that is left unexplained without the fault, of which it may leave a part.
+fn measured(check: Check, (before, after): (f64, f64), part: f64) -> Check {
+    let origin = format!(
+        "{:.0} % of what is left unexplained with the fault",
+        100.0 * part
+    );
     check
         .measured(100.0 * after, "%")
-        .against(100.0 * EXPLAINED * before, origin)
+        .against(100.0 * part * before, origin)
 }
 
 /// What is told of a fault; `so` says what speaks for it.

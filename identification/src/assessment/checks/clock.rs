@@ -31,7 +31,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         let check = Check::new(CheckKind::Clock, About::Model, "")
             .measured(accused.size().abs() / accused.deviation, "standard deviations")
             .against(accused.quantile(level), origin(1))
-            .detecting(vec![one.detectable((context, scores), (String::new(), ""), level)])
+            .detecting(vec![one.detectable((context, scores), (String::new(), ""), accused.visible(level))])
             .shown_by(parabola(
                 accused,
                 "Residual for other sampling frequencies",

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     assessment::{
-        check::{About, Check, CheckKind, Detectable},
+        check::{About, Check, CheckKind},
         suspects::{Group, Scores, Suspect},
     },
     error::Error,
@@ -130,10 +130,11 @@ impl Told {
                     origin(self.tests)
                 ),
             )
-            .detecting(vec![Detectable {
-                size: self.harmless + accused.visible(self.level),
-                ..one.detectable(of, (String::new(), "s"), self.level)
-            }])
+            .detecting(vec![one.detectable(
+                of,
+                (String::new(), "s"),
+                self.harmless + accused.visible(self.level),
+            )])
             .shown_by(parabola(
                 accused,
                 "Residual for torques that are shifted in time",

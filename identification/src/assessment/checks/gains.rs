@@ -46,7 +46,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .iter()
         .zip(&found)
         .map(|(actuator, one)| {
-            one.detectable((context, scores), (name(*actuator).to_owned(), ""), level)
+            let own = (name(*actuator).to_owned(), "");
+            one.detectable((context, scores), own, one.accused.visible(level))
         })
         .collect();
     let Some(worst) = guilty(&found, level) else {

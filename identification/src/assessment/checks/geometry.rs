@@ -158,7 +158,7 @@ fn detectable(
         let (name, unit) = (name(context, suspect), unit(context, suspect));
         (
             suspect,
-            one.detectable((context, scores), (name, unit), level),
+            one.detectable((context, scores), (name, unit), one.accused.visible(level)),
         )
     };
     sizes.map(one).collect()

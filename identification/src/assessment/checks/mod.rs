@@ -22,6 +22,8 @@ mod torque_faults;
 
 use overact::Model;
 
+pub(super) use suspected::HARMFUL;
+
 use super::{check::Check, suspects::Scores};
 use crate::{
     called::with_joints,

@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// A fault that moves no parameter by so many of its deviations does no harm.
-pub(super) const HARMFUL: f64 = 3.0;
+pub(in crate::assessment) const HARMFUL: f64 = 3.0;
 
 /// Where a fault does harm, parameters are spoiled that it moves by more than so many.
 const SPOILING: f64 = 1.0;
@@ -29,14 +29,13 @@ pub(super) struct Tested {
 }
 
 impl Tested {
-    /// How well the data tell its size.
+    /// How well the data tell its size, `size` being what they would have shown.
     pub(super) fn detectable(
         &self,
         (context, scores): (&Context<'_>, &Scores),
         (name, unit): (String, &'static str),
-        level: f64,
+        size: f64,
     ) -> Detectable {
-        let size = self.accused.visible(level);
         let all = self.moves(context, scores);
         let most = all.iter().find(|(by, _)| by.is_finite());
         let base = context.estimates_of(Stage::Base).next();
