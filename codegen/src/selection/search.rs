@@ -89,10 +89,15 @@ impl Search {
     }
 
     /// How far the search of a function goes: the identification models, which run at every sample of
-    /// every log, are searched as far as asked; of the others only the nodes one by one.
+    /// every log, are searched as far as asked, those that run in a controller a step less far; of the others
+    /// only the nodes one by one.
     const fn limits_of(&self, function: Function) -> SearchLimits {
         match function {
             Function::IdmRedPlatform(_) => self.limits,
+            Function::InverseDynamics(_)
+            | Function::MassMatrix(_)
+            | Function::Bias(_)
+            | Function::ForwardDynamics(_) => self.limits.of_control(),
             _ => self.limits.of_lesser_functions(),
         }
     }
