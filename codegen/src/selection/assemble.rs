@@ -65,7 +65,7 @@ impl Assembler<'_> {
     }
 
     /// The forms of a function with their operations before a search: those of the robot's formulation, and of
-    /// the best of them in the formulation that is the cheapest for this function.
+    /// the best of them in the formulation that is the cheapest for this function, where the search is thorough.
     fn forms(&self, function: Function, from: MotionInput) -> Result<Vec<Form>, Underivable> {
         let count = |selection: Selection| -> Result<Form, Underivable> {
             Ok(Form {
@@ -82,6 +82,9 @@ impl Assembler<'_> {
             return Ok(forms);
         };
         start.is_robots_best = true;
+        if !self.search.is_thorough() {
+            return Ok(forms);
+        }
         let (least, mut best) = (start.operations, start.clone());
         for change in formulation::choices(self.mechanism).iter().flatten() {
             let Some(formulation) = change.of(&best.selection.formulation) else {

@@ -57,6 +57,12 @@ impl Search {
         }
     }
 
+    /// Whether fewer operations are worth the time to try other forms of every function.
+    #[must_use]
+    pub(super) const fn is_thorough(&self) -> bool {
+        self.limits.is_thorough()
+    }
+
     /// The program of a derived function.
     pub(super) fn lower<'a>(
         &self,
