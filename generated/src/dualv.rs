@@ -43,18 +43,18 @@
 /// | `idm_red_payload_actuators` | 149, 3 √, 1 sc, 12 gd |  |
 /// | `project_platform` | 101, 4 √, 1 sc, 12 gd |  |
 /// | `project_actuators` | 136, 4 √, 1 sc, 15 gd |  |
-/// | `inverse_dynamics` | 585, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `inverse_dynamics_from_joints` | 523, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_from_actuators` | 750, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
-/// | `inverse_dynamics_base` | 522, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `inverse_dynamics_base_from_joints` | 448, 9 sc, 12 sg, 7 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 687, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
-/// | `mass_matrix` | 325, 4 √, 1 sc, 12 gd |  |
+/// | `inverse_dynamics` | 581, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics_from_joints` | 521, 9 sc, 12 sg, 7 gd |  |
+/// | `inverse_dynamics_from_actuators` | 743, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `inverse_dynamics_base` | 490, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics_base_from_joints` | 444, 9 sc, 12 sg, 7 gd |  |
+/// | `inverse_dynamics_base_from_actuators` | 658, 7 √, 5 sc, 1 at, 12 sg, 29 gd | 271, 8 √, 2 sc, 4 at, 23 gd |
+/// | `mass_matrix` | 323, 4 √, 1 sc, 12 gd |  |
 /// | `mass_matrix_base` | 297, 4 √, 1 sc, 12 gd |  |
-/// | `bias` | 469, 4 √, 1 sc, 12 sg, 12 gd |  |
-/// | `bias_base` | 406, 4 √, 1 sc, 12 sg, 12 gd |  |
-/// | `forward_dynamics` | 724, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `forward_dynamics_base` | 641, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `bias` | 465, 4 √, 1 sc, 12 sg, 12 gd |  |
+/// | `bias_base` | 378, 4 √, 1 sc, 12 sg, 12 gd |  |
+/// | `forward_dynamics` | 715, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `forward_dynamics_base` | 609, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 16 gd |  |
 /// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
 /// | `null_space` | 135, 5 √, 1 sc, 16 gd |  |
@@ -96,7 +96,7 @@
 /// | `a_x_platform` | Rᵀ a | acceleration of the platform's origin in its own axes |
 /// | `a2_x_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
 /// | `v2_by_1_y_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
-/// | `force1_y_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
+/// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
 /// | `moment2_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_1_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
@@ -1596,10 +1596,6 @@ impl DualV {
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        let t1 = g1_vx_leg1 * actuator_velocities[0]
-            - minus_g1_vx_leg2 * actuator_velocities[1]
-            + g1_vx_leg3 * actuator_velocities[2]
-            - minus_g1_vx_leg4 * actuator_velocities[3];
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
         ::overact::guard::platform(
@@ -1608,6 +1604,10 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
@@ -1633,7 +1633,7 @@ impl DualV {
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -1650,7 +1650,7 @@ impl DualV {
         let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1 - l_3_2 * t2;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
@@ -1661,7 +1661,7 @@ impl DualV {
         )?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
+        ::core::result::Result::Ok([inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1712,6 +1712,57 @@ impl DualV {
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        // --- leg2
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
+        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
+        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
+        let k1_leg2 = 1.0 / det_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
+        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        // --- leg4
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
+        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
+        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
+        ::overact::guard::reach(h_squared_leg4, "leg4")?;
+        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
+        let det_leg4 = rho_squared_leg4 * h_leg4;
+        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
+        let k1_leg4 = 1.0 / det_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(
+            s_1_1,
+            25.429161076750646,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        // --- leg1
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
@@ -1737,18 +1788,6 @@ impl DualV {
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             + minus_bias_rate_dot_1_leg1;
         // --- leg2
-        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
-        let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
-        let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
-        let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let k1_leg2 = 1.0 / det_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
@@ -1767,21 +1806,6 @@ impl DualV {
         let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
             - bias_rate_dot_1_leg2;
         // --- leg3
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-        let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
-        let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        let k1_leg3 = 1.0 / det_leg3;
-        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
@@ -1803,18 +1827,6 @@ impl DualV {
         let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
             + minus_bias_rate_dot_1_leg3;
         // --- leg4
-        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
-        let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
-        let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
-        let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
-        let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let k1_leg4 = 1.0 / det_leg4;
-        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
@@ -1836,14 +1848,6 @@ impl DualV {
             - minus_g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3
             - minus_g1_vx_leg4 * qdd1_minus_bias_rate_dot_1_leg4;
-        let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(
-            s_1_1,
-            25.429161076750646,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 * inv_pivot_1;
@@ -1859,7 +1863,7 @@ impl DualV {
         let t2 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
-            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - t1 * l_2_1;
+            - minus_g1_vy_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_2_1 * t1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -1876,7 +1880,7 @@ impl DualV {
         let t3 = g1_wz_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             - minus_g1_wz_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             + g1_wz_leg3 * qdd1_minus_bias_rate_dot_1_leg3
-            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - t1 * l_3_1
+            - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t1
             - l_3_2 * t2;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
@@ -1888,7 +1892,7 @@ impl DualV {
         )?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
+        ::core::result::Result::Ok([inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4, t5, t4])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2740,10 +2744,6 @@ impl DualV {
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let t1 = g1_vx_leg1 * actuator_velocities[0]
-            - minus_g1_vx_leg2 * actuator_velocities[1]
-            + g1_vx_leg3 * actuator_velocities[2]
-            - minus_g1_vx_leg4 * actuator_velocities[3];
         let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
@@ -2755,6 +2755,10 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let l_3_1 = s_1_3 / s_1_1;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
         let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
             + minus_g1_vy_leg4 * minus_g1_wz_leg4;
@@ -2774,11 +2778,11 @@ impl DualV {
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t1;
         let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1 - l_3_2 * t2;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
@@ -4149,11 +4153,11 @@ impl DualV {
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t1;
         let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1 - l_3_2 * t2;
         let wz = inv_pivot_3 * t3;
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * wz;
@@ -4162,7 +4166,7 @@ impl DualV {
         let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let vy = inv_pivot_2 * t2 - l_3_2 * wz;
-        let vx = t1 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let vx = inv_pivot_1 * t1 - l_2_1 * vy - l_3_1 * wz;
         let v_end_x_leg1 = vx - v_arm_x_leg3;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -5289,10 +5293,6 @@ impl DualV {
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let t1 = g1_vx_leg1 * actuator_velocities[0]
-            - minus_g1_vx_leg2 * actuator_velocities[1]
-            + g1_vx_leg3 * actuator_velocities[2]
-            - minus_g1_vx_leg4 * actuator_velocities[3];
         let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
@@ -5304,6 +5304,10 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let l_3_1 = s_1_3 / s_1_1;
+        let t1 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
         let s_2_3 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
             + minus_g1_vy_leg4 * minus_g1_wz_leg4;
@@ -5323,11 +5327,11 @@ impl DualV {
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t1;
         let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1 - l_3_2 * t2;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
@@ -6671,11 +6675,11 @@ impl DualV {
         let t5 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t4 * l_2_1;
+            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t4;
         let t6 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t4 * l_3_1 - l_3_2 * t5;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t4 - l_3_2 * t5;
         let wz = inv_pivot_3 * t6;
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * wz;
@@ -6684,7 +6688,7 @@ impl DualV {
         let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
         let vy = inv_pivot_2 * t5 - l_3_2 * wz;
-        let vx = t4 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let vx = inv_pivot_1 * t4 - l_2_1 * vy - l_3_1 * wz;
         let v_end_x_leg1 = vx - v_arm_x_leg3;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -7316,11 +7320,11 @@ impl DualV {
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t1;
         let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1 - l_3_2 * t2;
         let wz = inv_pivot_3 * t3;
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * wz;
@@ -7329,7 +7333,7 @@ impl DualV {
         let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
         let vy = inv_pivot_2 * t2 - l_3_2 * wz;
-        let vx = t1 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let vx = inv_pivot_1 * t1 - l_2_1 * vy - l_3_1 * wz;
         let v_end_x_leg1 = vx - v_arm_x_leg3;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -7822,7 +7826,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 585 operations (248 additions, 326 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 587 intermediates.
+    /// 581 operations (248 additions, 319 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 583 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8011,23 +8015,24 @@ impl DualV {
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
         let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg3;
+            + l_ab_squared_rate_2_squared_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_ab_squared_rate_1_squared_leg3 = L_AB_SQUARED * rate_1_squared_leg3;
         let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
-        let t2_leg3 = 0.5 * t1_leg3;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
         let rate_dot_1_leg3 = k1_leg3
-            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
+            * (minus_a_on_f1_leg3 + l_ab_squared_rate_1_squared_leg3 * c2_leg3);
         let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg3;
+            + l_ab_squared_rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+            * (a_on_f2_leg3 + l_ab_squared_rate_2_squared_leg3 * c2_leg3);
         let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
             - parameters[36] * rate_2_squared_leg3;
-        let c2_leg3 = 6.377551020408164 * t1_leg3;
         let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
             + parameters[37] * rate_2_squared_leg3;
         let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + parameters[32] * rate_1_leg3
@@ -8049,7 +8054,7 @@ impl DualV {
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -8072,18 +8077,21 @@ impl DualV {
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
         let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let l_ab_squared_rate_1_squared_leg4 = L_AB_SQUARED * rate_1_squared_leg4;
         let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg4;
+            + l_ab_squared_rate_1_squared_leg4;
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED * rate_2_squared_leg4;
         let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
-        let t2_leg4 = 0.5 * t1_leg4;
-        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let rate_dot_2_leg4 = k1_leg4
+            * (a_on_f2_leg4 + l_ab_squared_rate_2_squared_leg4 * c2_leg4);
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_2_squared_leg4;
+            + l_ab_squared_rate_2_squared_leg4;
         let minus_rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t2_leg4);
+            * (minus_a_on_f1_leg4 + l_ab_squared_rate_1_squared_leg4 * c2_leg4);
         let minus_a2_y_leg4 = INV_L_AB * (det_leg4 * rate_1_squared_leg4)
             + 1.7857142857142858 * (t1_leg4 * minus_rate_dot_1_leg4);
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
@@ -8099,7 +8107,6 @@ impl DualV {
         let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
         let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
             + parameters[52] * rate_dot_2_leg4;
-        let c2_leg4 = 6.377551020408164 * t1_leg4;
         let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
             - parameters[52] * rate_2_squared_leg4;
         let tau_1_leg4 = parameters[49]
@@ -8118,7 +8125,7 @@ impl DualV {
         let force_x_platform = acceleration[0] * mass_platform
             + inv_r_p_a_arm_x_leg1 * first_y_platform
             - inv_r_p_a_arm_y_leg3 * first_x_platform;
-        let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
+        let t1_platform = t2_leg3 + g2_vx_leg4 * force_on_u2_leg4
             - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
@@ -8127,10 +8134,18 @@ impl DualV {
             25.429161076750646,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let l_2_1 = s_1_2 * inv_pivot_1;
+        let l_2_1 = s_1_2 / s_1_1;
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = acceleration[1] * mass_platform
+            - (inv_r_p_a_arm_x_leg1 * first_x_platform
+                + inv_r_p_a_arm_y_leg3 * first_y_platform);
+        let t1 = t3_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
+            - t1_platform * l_2_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
@@ -8139,16 +8154,6 @@ impl DualV {
             25.592368899353342,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = acceleration[1] * mass_platform
-            - (inv_r_p_a_arm_x_leg1 * first_x_platform
-                + inv_r_p_a_arm_y_leg3 * first_y_platform);
-        let t1 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
-            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
-            - t1_platform * l_2_1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -8159,13 +8164,13 @@ impl DualV {
         let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let l_3_1 = s_1_3 * inv_pivot_1;
+        let l_3_1 = s_1_3 / s_1_1;
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let l_3_2 = schur_2_3 / pivot_2;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -8176,7 +8181,7 @@ impl DualV {
             * (c_phi * first_x_platform - s_phi * first_y_platform)
             - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
             + acceleration[2] * inertia_zz_platform;
-        let t2 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
+        let t2 = t4_leg3 + g2_wz_leg4 * force_on_u2_leg4
             - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
             - t1_platform * l_3_1 - l_3_2 * t1;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
@@ -8188,8 +8193,8 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let t3 = t2 / pivot_3;
-        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
-        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
+        let t4 = t1 / pivot_2 - l_3_2 * t3;
+        let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
             g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
@@ -8208,7 +8213,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 523 operations (218 additions, 298 multiplications, 7 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 537 intermediates.
+    /// 521 operations (218 additions, 293 multiplications, 10 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 535 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -8463,19 +8468,9 @@ impl DualV {
             25.429161076041257,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368900079006,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
+        let l_2_1 = s_1_2 / s_1_1;
         let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g1_vy_leg2 * force_on_u1_leg2 - minus_g2_vy_leg2 * force_on_u2_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
@@ -8485,6 +8480,14 @@ impl DualV {
         let t1 = t2_leg3 + g1_vy_leg4 * force_on_u1_leg4
             - minus_g2_vy_leg4 * force_on_u2_leg4 + force_y_platform
             - t1_platform * l_2_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368900079006,
+            ::overact::ActuatorGroup::All,
+        )?;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
         let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
@@ -8495,9 +8498,9 @@ impl DualV {
         let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
-        let l_3_1 = s_1_3 * inv_pivot_1;
+        let l_3_1 = s_1_3 / s_1_1;
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let l_3_2 = schur_2_3 / pivot_2;
         let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
         let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
@@ -8525,8 +8528,8 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let t3 = t2 / pivot_3;
-        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
-        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
+        let t4 = t1 / pivot_2 - l_3_2 * t3;
+        let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
             g1_vx_leg2 * t5 + g1_vy_leg2 * t4 - minus_g1_wz_leg2 * t3,
@@ -8545,7 +8548,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 750 operations (324 additions, 412 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 2 negations, 759 intermediates.
+    /// 743 operations (325 additions, 401 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 2 negations, 752 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -8582,39 +8585,44 @@ impl DualV {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
-        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let half_d_x_leg4 = 0.5 * d_x_leg4;
+        let half_d_x_leg4_minus_p_x_leg3 = half_d_x_leg4 - p_x_leg3;
+        let d_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + half_d_x_leg4_minus_p_x_leg3;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
+        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         // --- leg2
-        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let t1_leg2 = 0.3950502153918333 + half_d_x_leg4_minus_p_x_leg3;
+        let d_x_leg2 = t1_leg2 + t1_leg2;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l1_x_leg2 = t1_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -8628,13 +8636,12 @@ impl DualV {
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         // --- leg4
-        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
         ::overact::guard::reach(h_squared_leg4, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
@@ -8649,18 +8656,16 @@ impl DualV {
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         // --- leg1
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         // --- leg2
-        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         // --- leg3
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
@@ -8691,8 +8696,7 @@ impl DualV {
             25.592368899353342,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let l_3_2 = schur_2_3 / pivot_2;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
         ::overact::guard::platform(
             pivot_3,
@@ -8737,11 +8741,11 @@ impl DualV {
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t1;
         let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1 - l_3_2 * t2;
         let wz = inv_pivot_3 * t3;
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * wz;
@@ -8749,8 +8753,8 @@ impl DualV {
         let v_arm_y_leg3 = p_x_leg3 * wz;
         let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
-        let vy = inv_pivot_2 * t2 - l_3_2 * wz;
-        let vx = t1 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let vy = t2 / pivot_2 - l_3_2 * wz;
+        let vx = inv_pivot_1 * t1 - l_2_1 * vy - l_3_1 * wz;
         let v_end_x_leg1 = vx - v_arm_x_leg3;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -8762,10 +8766,11 @@ impl DualV {
             - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_ab_squared_rate_1_squared_leg1 = L_AB_SQUARED * rate_1_squared_leg1;
         let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
-        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t3_leg1);
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
+        let t2_leg1 = l_ab_squared_rate_1_squared_leg1 * c2_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             + minus_bias_rate_dot_1_leg1;
         // --- leg2
@@ -8779,9 +8784,10 @@ impl DualV {
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
-        let t2_leg2 = 0.5 * t1_leg2;
-        let t3_leg2 = rate_1_squared_leg2 * t2_leg2;
+        let l_ab_squared_rate_1_squared_leg2 = L_AB_SQUARED * rate_1_squared_leg2;
+        let t2_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
+        let c2_leg2 = 6.377551020408164 * t2_leg2;
+        let t3_leg2 = l_ab_squared_rate_1_squared_leg2 * c2_leg2;
         let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t3_leg2);
         let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
             - bias_rate_dot_1_leg2;
@@ -8798,10 +8804,11 @@ impl DualV {
             - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_ab_squared_rate_1_squared_leg3 = L_AB_SQUARED * rate_1_squared_leg3;
         let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
-        let t2_leg3 = 0.5 * t1_leg3;
-        let t3_leg3 = rate_1_squared_leg3 * t2_leg3;
-        let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t3_leg3);
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let t2_leg3 = l_ab_squared_rate_1_squared_leg3 * c2_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t2_leg3);
         let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
             + minus_bias_rate_dot_1_leg3;
         // --- leg4
@@ -8815,10 +8822,11 @@ impl DualV {
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
         let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let l_ab_squared_rate_1_squared_leg4 = L_AB_SQUARED * rate_1_squared_leg4;
         let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
-        let t2_leg4 = 0.5 * t1_leg4;
-        let t3_leg4 = rate_1_squared_leg4 * t2_leg4;
-        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t3_leg4);
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let t2_leg4 = l_ab_squared_rate_1_squared_leg4 * c2_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
         let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
             - bias_rate_dot_1_leg4;
         let t4 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
@@ -8835,7 +8843,7 @@ impl DualV {
             - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
             - l_3_2 * t5;
         let dwz = inv_pivot_3 * t6;
-        let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
+        let dvy = t5 / pivot_2 - l_3_2 * dwz;
         let dvx = inv_pivot_1 * t4 - l_2_1 * dvy - l_3_1 * dwz;
         // --- leg1
         let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
@@ -8844,15 +8852,14 @@ impl DualV {
         let a_end_y_leg1 = dvy - a_arm_y_leg3;
         let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
             + l_ab_squared_rate_2_squared_leg1;
-        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t3_leg1);
+        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
         let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg1;
+            + l_ab_squared_rate_1_squared_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            * (a_on_f2_leg1 + l_ab_squared_rate_2_squared_leg1 * c2_leg1);
         let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
             - rate_2_squared_leg1 * parameters[6];
-        let c2_leg1 = 6.377551020408164 * t1_leg1;
         let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
             + rate_2_squared_leg1 * parameters[7];
         let tau_1_leg1 = parameters[1] * rate_dot_1_leg1 + rate_1_leg1 * parameters[2]
@@ -8876,13 +8883,14 @@ impl DualV {
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
         // --- leg2
         let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
-            + L_AB_SQUARED * rate_1_squared_leg2;
-        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+            + l_ab_squared_rate_1_squared_leg2;
+        let rate_dot_2_leg2 = k1_leg2
+            * (a_on_f2_leg2 + l_ab_squared_rate_2_squared_leg2 * c2_leg2);
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + l_ab_squared_rate_2_squared_leg2;
         let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t3_leg2);
         let minus_a2_y_leg2 = INV_L_AB * (det_leg2 * rate_1_squared_leg2)
-            + 1.7857142857142858 * (t1_leg2 * minus_rate_dot_1_leg2);
+            + 1.7857142857142858 * (t2_leg2 * minus_rate_dot_1_leg2);
         let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
         let moment2_z_leg2 = parameters[20] * rate_dot_2_leg2
             - (parameters[21] * minus_a2_y_leg2 + parameters[22] * a2_x_leg2);
@@ -8896,7 +8904,6 @@ impl DualV {
         let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
         let minus_force2_x_leg2 = rate_2_squared_leg2 * parameters[21]
             + parameters[22] * rate_dot_2_leg2;
-        let c2_leg2 = 6.377551020408164 * t1_leg2;
         let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
             - rate_2_squared_leg2 * parameters[22];
         let tau_1_leg2 = parameters[19]
@@ -8912,15 +8919,14 @@ impl DualV {
         let a_end_y_leg3 = dvy + a_arm_y_leg3;
         let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
             + l_ab_squared_rate_2_squared_leg3;
-        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t3_leg3);
+        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
         let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg3;
+            + l_ab_squared_rate_1_squared_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+            * (a_on_f2_leg3 + l_ab_squared_rate_2_squared_leg3 * c2_leg3);
         let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
             - rate_2_squared_leg3 * parameters[36];
-        let c2_leg3 = 6.377551020408164 * t1_leg3;
         let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
             + rate_2_squared_leg3 * parameters[37];
         let tau_1_leg3 = parameters[31] * rate_dot_1_leg3 + rate_1_leg3 * parameters[32]
@@ -8942,16 +8948,17 @@ impl DualV {
         let tau_3_leg3 = qd_3_leg3 * parameters[42]
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
         let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
-            + L_AB_SQUARED * rate_1_squared_leg4;
-        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+            + l_ab_squared_rate_1_squared_leg4;
+        let rate_dot_2_leg4 = k1_leg4
+            * (a_on_f2_leg4 + l_ab_squared_rate_2_squared_leg4 * c2_leg4);
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
             + l_ab_squared_rate_2_squared_leg4;
-        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t3_leg4);
+        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
         let minus_a2_y_leg4 = INV_L_AB * (det_leg4 * rate_1_squared_leg4)
             + 1.7857142857142858 * (t1_leg4 * minus_rate_dot_1_leg4);
         let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
@@ -8967,7 +8974,6 @@ impl DualV {
         let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
         let minus_force2_x_leg4 = rate_2_squared_leg4 * parameters[51]
             + parameters[52] * rate_dot_2_leg4;
-        let c2_leg4 = 6.377551020408164 * t1_leg4;
         let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
             - rate_2_squared_leg4 * parameters[52];
         let tau_1_leg4 = parameters[49]
@@ -8986,21 +8992,21 @@ impl DualV {
         let force_x_platform = dvx * mass_platform
             + inv_r_p_a_arm_x_leg1 * first_y_platform
             - inv_r_p_a_arm_y_leg3 * first_x_platform;
-        let t1_platform = t4_leg3 + g2_vx_leg4 * force_on_u2_leg4
+        let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
             - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
-        let t5_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let force_y_platform = dvy * mass_platform
             - (inv_r_p_a_arm_x_leg1 * first_x_platform
                 + inv_r_p_a_arm_y_leg3 * first_y_platform);
-        let t7 = t5_leg3 + g2_vy_leg4 * force_on_u2_leg4
+        let t7 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
             - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
             - l_2_1 * t1_platform;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t6_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -9011,11 +9017,11 @@ impl DualV {
             * (c_phi * first_x_platform - s_phi * first_y_platform)
             - dvx * (s_phi * first_x_platform + c_phi * first_y_platform)
             + dwz * inertia_zz_platform;
-        let t8 = t6_leg3 + g2_wz_leg4 * force_on_u2_leg4
+        let t8 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
             - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
             - l_3_1 * t1_platform - l_3_2 * t7;
         let t9 = inv_pivot_3 * t8;
-        let t10 = inv_pivot_2 * t7 - l_3_2 * t9;
+        let t10 = t7 / pivot_2 - l_3_2 * t9;
         let t11 = inv_pivot_1 * t1_platform - l_2_1 * t10 - l_3_1 * t9;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t11 + g1_vy_leg1 * t10 - minus_g1_wz_leg1 * t9,
@@ -9034,7 +9040,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 522 operations (221 additions, 290 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 524 intermediates.
+    /// 490 operations (218 additions, 258 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 492 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -9052,12 +9058,8 @@ impl DualV {
         )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
-        /// 1 / l_ab²
-        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
-        /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -9067,17 +9069,23 @@ impl DualV {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
-        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let half_d_x_leg3 = 0.5 * d_x_leg3;
+        let x_minus_half_d_x_leg3 = pose[0] - half_d_x_leg3;
+        let d_x_leg1 = x_minus_half_d_x_leg3 + x_minus_half_d_x_leg3;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
+        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l1_x_leg1 = x_minus_half_d_x_leg3 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -9086,8 +9094,7 @@ impl DualV {
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
@@ -9104,19 +9111,12 @@ impl DualV {
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg1 = k1_leg1
-            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k1_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let force2_x_leg1 = base_parameters[24] * minus_rate_dot_2_leg1;
-        let c2_leg1 = 6.377551020408164 * t1_leg1;
-        let minus_force2_y_leg1 = base_parameters[24] * rate_2_squared_leg1;
-        let force1_y_leg1 = s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1;
+        let my_2_leg1_inv_l_ab = base_parameters[24] * INV_L_AB;
         let tau_1_leg1 = base_parameters[8] * rate_1_leg1
             + ::overact::math::signed(base_parameters[12], rate_1_leg1)
             + base_parameters[16];
@@ -9125,28 +9125,30 @@ impl DualV {
             - (base_parameters[28] * minus_qd_2_leg1
                 + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
         let force_on_u1_leg1 = base_parameters[4] * rate_dot_1_leg1
-            + L_AB * force1_y_leg1 + tau_1_leg1 - tau_2_leg1;
-        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            + a_on_f2_leg1 * my_2_leg1_inv_l_ab + tau_1_leg1 - tau_2_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
         let minus_moment2_z_leg1 = base_parameters[20] * minus_rate_dot_2_leg1
-            + base_parameters[24] * a2_x_leg1;
+            + minus_a_on_f1_leg1 * my_2_leg1_inv_l_ab;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         let tau_3_leg1 = base_parameters[40] * qd_3_leg1
             + ::overact::math::signed(base_parameters[44], qd_3_leg1)
             + base_parameters[48];
         let force_on_u2_leg1 = tau_2_leg1 - minus_moment2_z_leg1 - tau_3_leg1;
         // --- leg2
-        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
+        let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
@@ -9159,14 +9161,13 @@ impl DualV {
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
-        let t2_leg2 = 0.5 * t1_leg2;
-        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_2_squared_leg2;
-        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let inv_l_ab_my_2_leg2 = INV_L_AB * base_parameters[25];
         let moment2_z_leg2 = base_parameters[21] * rate_dot_2_leg2
-            - base_parameters[25] * a2_x_leg2;
+            - minus_a_on_f1_leg2 * inv_l_ab_my_2_leg2;
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         let tau_2_leg2 = base_parameters[29] * qd_2_leg2
             + ::overact::math::signed(base_parameters[33], qd_2_leg2)
@@ -9175,37 +9176,27 @@ impl DualV {
         let tau_3_leg2 = base_parameters[41] * qd_3_leg2
             + ::overact::math::signed(base_parameters[45], qd_3_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
-        let minus_force2_x_leg2 = base_parameters[25] * rate_dot_2_leg2;
-        let c2_leg2 = 6.377551020408164 * t1_leg2;
-        let minus_force2_y_leg2 = base_parameters[25] * rate_2_squared_leg2;
-        let force1_y_leg2 = minus_s2_leg2 * minus_force2_x_leg2
-            - c2_leg2 * minus_force2_y_leg2;
         let minus_rate_dot_1_leg2 = k1_leg2
-            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t2_leg2);
+            * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t1_leg2);
         let tau_1_leg2 = base_parameters[17]
             - (base_parameters[9] * minus_rate_1_leg2
                 + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
-        let force_on_u1_leg2 = L_AB * force1_y_leg2
+        let force_on_u1_leg2 = a_on_f2_leg2 * inv_l_ab_my_2_leg2
             - base_parameters[5] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -9221,19 +9212,12 @@ impl DualV {
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
-        let t2_leg3 = 0.5 * t1_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let rate_dot_1_leg3 = k1_leg3
-            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
-        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
+            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t1_leg3);
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg3;
-        let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let force2_x_leg3 = base_parameters[26] * minus_rate_dot_2_leg3;
-        let c2_leg3 = 6.377551020408164 * t1_leg3;
-        let minus_force2_y_leg3 = base_parameters[26] * rate_2_squared_leg3;
-        let force1_y_leg3 = s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3;
+        let inv_l_ab_my_2_leg3 = INV_L_AB * base_parameters[26];
         let tau_1_leg3 = base_parameters[10] * rate_1_leg3
             + ::overact::math::signed(base_parameters[14], rate_1_leg3)
             + base_parameters[18];
@@ -9242,15 +9226,16 @@ impl DualV {
             - (base_parameters[30] * minus_qd_2_leg3
                 + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
         let force_on_u1_leg3 = base_parameters[6] * rate_dot_1_leg3
-            + L_AB * force1_y_leg3 + tau_1_leg3 - tau_2_leg3;
-        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            + a_on_f2_leg3 * inv_l_ab_my_2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
         let minus_moment2_z_leg3 = base_parameters[22] * minus_rate_dot_2_leg3
-            + base_parameters[26] * a2_x_leg3;
+            + minus_a_on_f1_leg3 * inv_l_ab_my_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = base_parameters[42] * qd_3_leg3
             + ::overact::math::signed(base_parameters[46], qd_3_leg3);
         let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3 - tau_3_leg3;
-        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -9278,14 +9263,13 @@ impl DualV {
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
-        let t2_leg4 = 0.5 * t1_leg4;
-        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
             + L_AB_SQUARED * rate_2_squared_leg4;
-        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let inv_l_ab_my_2_leg4 = INV_L_AB * base_parameters[27];
         let moment2_z_leg4 = base_parameters[23] * rate_dot_2_leg4
-            - base_parameters[27] * a2_x_leg4;
+            - minus_a_on_f1_leg4 * inv_l_ab_my_2_leg4;
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let tau_2_leg4 = base_parameters[31] * qd_2_leg4
             + ::overact::math::signed(base_parameters[35], qd_2_leg4)
@@ -9294,18 +9278,12 @@ impl DualV {
         let tau_3_leg4 = base_parameters[43] * qd_3_leg4
             + ::overact::math::signed(base_parameters[47], qd_3_leg4);
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
-        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
-        let minus_force2_x_leg4 = base_parameters[27] * rate_dot_2_leg4;
-        let c2_leg4 = 6.377551020408164 * t1_leg4;
-        let minus_force2_y_leg4 = base_parameters[27] * rate_2_squared_leg4;
-        let force1_y_leg4 = minus_s2_leg4 * minus_force2_x_leg4
-            - c2_leg4 * minus_force2_y_leg4;
         let minus_rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t2_leg4);
+            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
         let tau_1_leg4 = base_parameters[19]
             - (base_parameters[11] * minus_rate_1_leg4
                 + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
-        let force_on_u1_leg4 = L_AB * force1_y_leg4
+        let force_on_u1_leg4 = a_on_f2_leg4 * inv_l_ab_my_2_leg4
             - base_parameters[7] * minus_rate_dot_1_leg4 + tau_1_leg4 - tau_2_leg4;
         let mass_platform = base_parameters[3] + base_parameters[52];
         let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
@@ -9315,7 +9293,7 @@ impl DualV {
         let force_x_platform = acceleration[0] * mass_platform
             + inv_r_p_a_arm_x_leg1 * first_y_platform
             - inv_r_p_a_arm_y_leg3 * first_x_platform;
-        let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
+        let t1_platform = t2_leg3 + g2_vx_leg4 * force_on_u2_leg4
             - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
@@ -9324,10 +9302,18 @@ impl DualV {
             25.429161076750646,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let l_2_1 = s_1_2 * inv_pivot_1;
+        let l_2_1 = s_1_2 / s_1_1;
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = acceleration[1] * mass_platform
+            - (inv_r_p_a_arm_x_leg1 * first_x_platform
+                + inv_r_p_a_arm_y_leg3 * first_y_platform);
+        let t1 = t3_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
+            - t1_platform * l_2_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
@@ -9336,16 +9322,6 @@ impl DualV {
             25.592368899353342,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = acceleration[1] * mass_platform
-            - (inv_r_p_a_arm_x_leg1 * first_x_platform
-                + inv_r_p_a_arm_y_leg3 * first_y_platform);
-        let t1 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
-            - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
-            - t1_platform * l_2_1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -9356,13 +9332,13 @@ impl DualV {
         let s_1_3 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let l_3_1 = s_1_3 * inv_pivot_1;
+        let l_3_1 = s_1_3 / s_1_1;
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let l_3_2 = schur_2_3 / pivot_2;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -9373,7 +9349,7 @@ impl DualV {
             * (c_phi * first_x_platform - s_phi * first_y_platform)
             - acceleration[0] * (s_phi * first_x_platform + c_phi * first_y_platform)
             + acceleration[2] * inertia_zz_platform;
-        let t2 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
+        let t2 = t4_leg3 + g2_wz_leg4 * force_on_u2_leg4
             - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
             - t1_platform * l_3_1 - l_3_2 * t1;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
@@ -9385,8 +9361,8 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let t3 = t2 / pivot_3;
-        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
-        let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
+        let t4 = t1 / pivot_2 - l_3_2 * t3;
+        let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
             g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
@@ -9405,7 +9381,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 448 operations (187 additions, 254 multiplications, 7 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 462 intermediates.
+    /// 444 operations (187 additions, 249 multiplications, 8 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 458 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -9461,16 +9437,17 @@ impl DualV {
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let l_ab_rate_2_squared_leg1 = L_AB * rate_2_squared_leg1;
         let minus_a_on_f1_leg1 = c12_leg1 * a_end_x_leg1 + s12_leg1 * a_end_y_leg1
-            + L_AB * rate_2_squared_leg1;
+            + l_ab_rate_2_squared_leg1;
         let g1_vy_leg1 = s12_leg1 * k1_leg1;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let v2_by_1_y_leg1 = L_AB * c2_leg1;
+        let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
         let rate_dot_1_leg1 = k1_leg1
-            * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
+            * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
         let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
-            + L_AB * rate_1_squared_leg1;
+            + l_ab_rate_1_squared_leg1;
         let tau_1_leg1 = base_parameters[8] * rate_1_leg1
             + ::overact::math::signed(base_parameters[12], rate_1_leg1)
             + base_parameters[16];
@@ -9481,7 +9458,7 @@ impl DualV {
         let force_on_u1_leg1 = base_parameters[4] * rate_dot_1_leg1
             + base_parameters[24] * a_on_f2_leg1 + tau_1_leg1 - tau_2_leg1;
         let minus_rate_dot_2_leg1 = k1_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
+            * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
         let minus_moment2_z_leg1 = base_parameters[20] * minus_rate_dot_2_leg1
             + base_parameters[24] * minus_a_on_f1_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
@@ -9540,16 +9517,17 @@ impl DualV {
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let l_ab_rate_2_squared_leg3 = L_AB * rate_2_squared_leg3;
         let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3 + s12_leg3 * a_end_y_leg3
-            + L_AB * rate_2_squared_leg3;
+            + l_ab_rate_2_squared_leg3;
         let g1_vy_leg3 = s12_leg3 * k1_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let v2_by_1_y_leg3 = L_AB * c2_leg3;
+        let l_ab_rate_1_squared_leg3 = L_AB * rate_1_squared_leg3;
         let rate_dot_1_leg3 = k1_leg3
-            * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            * (minus_a_on_f1_leg3 + c2_leg3 * l_ab_rate_1_squared_leg3);
         let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
-            + L_AB * rate_1_squared_leg3;
+            + l_ab_rate_1_squared_leg3;
         let tau_1_leg3 = base_parameters[10] * rate_1_leg3
             + ::overact::math::signed(base_parameters[14], rate_1_leg3)
             + base_parameters[18];
@@ -9560,7 +9538,7 @@ impl DualV {
         let force_on_u1_leg3 = base_parameters[6] * rate_dot_1_leg3
             + base_parameters[26] * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
         let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            * (a_on_f2_leg3 + l_ab_rate_2_squared_leg3 * c2_leg3);
         let minus_moment2_z_leg3 = base_parameters[22] * minus_rate_dot_2_leg3
             + base_parameters[26] * minus_a_on_f1_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
@@ -9580,16 +9558,17 @@ impl DualV {
         let minus_rate_2_leg4 = minus_g2_vx_leg4 * v_end_x_leg3
             + minus_g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let l_ab_rate_2_squared_leg4 = L_AB * rate_2_squared_leg4;
         let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3 + s12_leg4 * a_end_y_leg3
-            + L_AB * rate_2_squared_leg4;
+            + l_ab_rate_2_squared_leg4;
         let g1_vy_leg4 = s12_leg4 * k1_leg4;
         let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
         let rate_1_squared_leg4 = rate_1_leg4 * rate_1_leg4;
-        let v2_by_1_y_leg4 = L_AB * c2_leg4;
+        let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
         let rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
+            * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
         let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
-            + L_AB * rate_1_squared_leg4;
+            + l_ab_rate_1_squared_leg4;
         let tau_1_leg4 = base_parameters[11] * rate_1_leg4
             + ::overact::math::signed(base_parameters[15], rate_1_leg4)
             + base_parameters[19];
@@ -9600,7 +9579,7 @@ impl DualV {
         let force_on_u1_leg4 = base_parameters[7] * rate_dot_1_leg4
             + base_parameters[27] * a_on_f2_leg4 + tau_1_leg4 - tau_2_leg4;
         let minus_rate_dot_2_leg4 = k1_leg4
-            * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
+            * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
         let minus_moment2_z_leg4 = base_parameters[23] * minus_rate_dot_2_leg4
             + base_parameters[27] * minus_a_on_f1_leg4;
         let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
@@ -9628,15 +9607,6 @@ impl DualV {
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368900079006,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
         let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g1_vy_leg2 * force_on_u1_leg2 - minus_g2_vy_leg2 * force_on_u2_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
@@ -9646,6 +9616,14 @@ impl DualV {
         let t1 = t2_leg3 + g1_vy_leg4 * force_on_u1_leg4
             - minus_g2_vy_leg4 * force_on_u2_leg4 + force_y_platform
             - t1_platform * l_2_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368900079006,
+            ::overact::ActuatorGroup::All,
+        )?;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
         let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
@@ -9658,7 +9636,7 @@ impl DualV {
             + g1_vx_leg4 * g1_wz_leg4;
         let l_3_1 = s_1_3 * inv_pivot_1;
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let l_3_2 = schur_2_3 / pivot_2;
         let g2_wz_leg1 = minus_g2_vy_leg1 * p_x_leg3 + minus_g2_vx_leg1 * p_y_leg1;
         let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2 + p_y_leg1 * minus_g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
@@ -9686,7 +9664,7 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let t3 = t2 / pivot_3;
-        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
+        let t4 = t1 / pivot_2 - l_3_2 * t3;
         let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
@@ -9706,7 +9684,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 687 operations (297 additions, 376 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 2 negations, 696 intermediates.
+    /// 658 operations (293 additions, 351 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 29 guards, 2 negations, 667 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 271 operations (121 additions, 132 multiplications, 18 divisions), 8 square roots, 2 trigonometric pairs, 4 arc tangents, 23 guards, 8 negations, 162 intermediates.
     ///
     /// # Errors
@@ -9728,12 +9706,8 @@ impl DualV {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
-        /// 1 / l_ab²
-        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
-        /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -9746,7 +9720,10 @@ impl DualV {
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
+        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -9775,7 +9752,6 @@ impl DualV {
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -9810,18 +9786,16 @@ impl DualV {
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         // --- leg1
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         // --- leg2
-        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         // --- leg3
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
@@ -9898,11 +9872,11 @@ impl DualV {
         let t2 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t1 * l_2_1;
+            - minus_g1_vy_leg4 * actuator_velocities[3] - l_2_1 * t1;
         let t3 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t1 * l_3_1 - l_3_2 * t2;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1 - l_3_2 * t2;
         let wz = inv_pivot_3 * t3;
         // --- leg1
         let v_arm_x_leg3 = p_y_leg1 * wz;
@@ -9911,7 +9885,7 @@ impl DualV {
         let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let vy = inv_pivot_2 * t2 - l_3_2 * wz;
-        let vx = t1 * inv_pivot_1 - l_2_1 * vy - l_3_1 * wz;
+        let vx = inv_pivot_1 * t1 - l_2_1 * vy - l_3_1 * wz;
         let v_end_x_leg1 = vx - v_arm_x_leg3;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -9923,10 +9897,9 @@ impl DualV {
             - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
-        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t3_leg1);
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             + minus_bias_rate_dot_1_leg1;
         // --- leg2
@@ -9940,10 +9913,9 @@ impl DualV {
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
-        let t2_leg2 = 0.5 * t1_leg2;
-        let t3_leg2 = rate_1_squared_leg2 * t2_leg2;
-        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t3_leg2);
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
+        let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
         let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
             - bias_rate_dot_1_leg2;
         // --- leg3
@@ -9959,10 +9931,9 @@ impl DualV {
             - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
-        let t2_leg3 = 0.5 * t1_leg3;
-        let t3_leg3 = rate_1_squared_leg3 * t2_leg3;
-        let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t3_leg3);
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t2_leg3);
         let qdd1_minus_bias_rate_dot_1_leg3 = actuator_accelerations[2]
             + minus_bias_rate_dot_1_leg3;
         // --- leg4
@@ -9976,10 +9947,9 @@ impl DualV {
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
         let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
-        let t2_leg4 = 0.5 * t1_leg4;
-        let t3_leg4 = rate_1_squared_leg4 * t2_leg4;
-        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t3_leg4);
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
+        let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
         let qdd1_minus_bias_rate_dot_1_leg4 = actuator_accelerations[3]
             - bias_rate_dot_1_leg4;
         let t4 = g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
@@ -10005,16 +9975,10 @@ impl DualV {
         let a_end_y_leg1 = dvy - a_arm_y_leg3;
         let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1 + l2_y_leg1 * a_end_y_leg1
             + l_ab_squared_rate_2_squared_leg1;
-        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t3_leg1);
-        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
+        let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
         let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k1_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let force2_x_leg1 = base_parameters[24] * minus_rate_dot_2_leg1;
-        let c2_leg1 = 6.377551020408164 * t1_leg1;
-        let minus_force2_y_leg1 = rate_2_squared_leg1 * base_parameters[24];
-        let force1_y_leg1 = s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1;
+        let my_2_leg1_inv_l_ab = base_parameters[24] * INV_L_AB;
         let tau_1_leg1 = rate_1_leg1 * base_parameters[8]
             + ::overact::math::signed(base_parameters[12], rate_1_leg1)
             + base_parameters[16];
@@ -10023,10 +9987,11 @@ impl DualV {
             - (minus_qd_2_leg1 * base_parameters[28]
                 + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
         let force_on_u1_leg1 = base_parameters[4] * rate_dot_1_leg1
-            + L_AB * force1_y_leg1 + tau_1_leg1 - tau_2_leg1;
-        let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
+            + a_on_f2_leg1 * my_2_leg1_inv_l_ab + tau_1_leg1 - tau_2_leg1;
+        let minus_rate_dot_2_leg1 = k1_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
         let minus_moment2_z_leg1 = base_parameters[20] * minus_rate_dot_2_leg1
-            + base_parameters[24] * a2_x_leg1;
+            + minus_a_on_f1_leg1 * my_2_leg1_inv_l_ab;
         let qd_3_leg1 = minus_rate_2_leg1 + wz;
         let tau_3_leg1 = qd_3_leg1 * base_parameters[40]
             + ::overact::math::signed(base_parameters[44], qd_3_leg1)
@@ -10035,12 +10000,12 @@ impl DualV {
         // --- leg2
         let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
             + L_AB_SQUARED * rate_1_squared_leg2;
-        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let rate_dot_2_leg2 = k1_leg2 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
         let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1 + l2_y_leg2 * a_end_y_leg1
             + l_ab_squared_rate_2_squared_leg2;
-        let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
+        let inv_l_ab_my_2_leg2 = INV_L_AB * base_parameters[25];
         let moment2_z_leg2 = base_parameters[21] * rate_dot_2_leg2
-            - base_parameters[25] * a2_x_leg2;
+            - minus_a_on_f1_leg2 * inv_l_ab_my_2_leg2;
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         let tau_2_leg2 = qd_2_leg2 * base_parameters[29]
             + ::overact::math::signed(base_parameters[33], qd_2_leg2)
@@ -10049,33 +10014,21 @@ impl DualV {
         let tau_3_leg2 = qd_3_leg2 * base_parameters[41]
             + ::overact::math::signed(base_parameters[45], qd_3_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
-        let minus_force2_x_leg2 = base_parameters[25] * rate_dot_2_leg2;
-        let c2_leg2 = 6.377551020408164 * t1_leg2;
-        let minus_force2_y_leg2 = rate_2_squared_leg2 * base_parameters[25];
-        let force1_y_leg2 = minus_s2_leg2 * minus_force2_x_leg2
-            - c2_leg2 * minus_force2_y_leg2;
-        let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t3_leg2);
+        let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
         let tau_1_leg2 = base_parameters[17]
             - (minus_rate_1_leg2 * base_parameters[9]
                 + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
-        let force_on_u1_leg2 = L_AB * force1_y_leg2
+        let force_on_u1_leg2 = a_on_f2_leg2 * inv_l_ab_my_2_leg2
             - base_parameters[5] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let a_end_x_leg3 = dvx - a_arm_x_leg1;
         let a_end_y_leg3 = dvy + a_arm_y_leg3;
         let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3 + l2_y_leg3 * a_end_y_leg3
             + l_ab_squared_rate_2_squared_leg3;
-        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t3_leg3);
-        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
+        let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
         let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg3;
-        let minus_rate_dot_2_leg3 = k1_leg3
-            * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let force2_x_leg3 = base_parameters[26] * minus_rate_dot_2_leg3;
-        let c2_leg3 = 6.377551020408164 * t1_leg3;
-        let minus_force2_y_leg3 = rate_2_squared_leg3 * base_parameters[26];
-        let force1_y_leg3 = s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3;
+        let inv_l_ab_my_2_leg3 = INV_L_AB * base_parameters[26];
         let tau_1_leg3 = rate_1_leg3 * base_parameters[10]
             + ::overact::math::signed(base_parameters[14], rate_1_leg3)
             + base_parameters[18];
@@ -10084,26 +10037,27 @@ impl DualV {
             - (minus_qd_2_leg3 * base_parameters[30]
                 + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
         let force_on_u1_leg3 = base_parameters[6] * rate_dot_1_leg3
-            + L_AB * force1_y_leg3 + tau_1_leg3 - tau_2_leg3;
-        let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
+            + a_on_f2_leg3 * inv_l_ab_my_2_leg3 + tau_1_leg3 - tau_2_leg3;
+        let minus_rate_dot_2_leg3 = k1_leg3
+            * (a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
         let minus_moment2_z_leg3 = base_parameters[22] * minus_rate_dot_2_leg3
-            + base_parameters[26] * a2_x_leg3;
+            + minus_a_on_f1_leg3 * inv_l_ab_my_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + wz;
         let tau_3_leg3 = qd_3_leg3 * base_parameters[42]
             + ::overact::math::signed(base_parameters[46], qd_3_leg3);
         let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3 - tau_3_leg3;
-        let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
         let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg4;
-        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
             + l_ab_squared_rate_2_squared_leg4;
-        let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
+        let inv_l_ab_my_2_leg4 = INV_L_AB * base_parameters[27];
         let moment2_z_leg4 = base_parameters[23] * rate_dot_2_leg4
-            - base_parameters[27] * a2_x_leg4;
+            - minus_a_on_f1_leg4 * inv_l_ab_my_2_leg4;
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let tau_2_leg4 = qd_2_leg4 * base_parameters[31]
             + ::overact::math::signed(base_parameters[35], qd_2_leg4)
@@ -10112,17 +10066,11 @@ impl DualV {
         let tau_3_leg4 = qd_3_leg4 * base_parameters[43]
             + ::overact::math::signed(base_parameters[47], qd_3_leg4);
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
-        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
-        let minus_force2_x_leg4 = base_parameters[27] * rate_dot_2_leg4;
-        let c2_leg4 = 6.377551020408164 * t1_leg4;
-        let minus_force2_y_leg4 = rate_2_squared_leg4 * base_parameters[27];
-        let force1_y_leg4 = minus_s2_leg4 * minus_force2_x_leg4
-            - c2_leg4 * minus_force2_y_leg4;
-        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t3_leg4);
+        let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
         let tau_1_leg4 = base_parameters[19]
             - (minus_rate_1_leg4 * base_parameters[11]
                 + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
-        let force_on_u1_leg4 = L_AB * force1_y_leg4
+        let force_on_u1_leg4 = a_on_f2_leg4 * inv_l_ab_my_2_leg4
             - base_parameters[7] * minus_rate_dot_1_leg4 + tau_1_leg4 - tau_2_leg4;
         let mass_platform = base_parameters[3] + base_parameters[52];
         let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
@@ -10132,21 +10080,21 @@ impl DualV {
         let force_x_platform = dvx * mass_platform
             + inv_r_p_a_arm_x_leg1 * first_y_platform
             - inv_r_p_a_arm_y_leg3 * first_x_platform;
-        let t1_platform = t4_leg3 + g2_vx_leg4 * force_on_u2_leg4
+        let t1_platform = t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
             - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform;
-        let t5_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let force_y_platform = dvy * mass_platform
             - (inv_r_p_a_arm_x_leg1 * first_x_platform
                 + inv_r_p_a_arm_y_leg3 * first_y_platform);
-        let t7 = t5_leg3 + g2_vy_leg4 * force_on_u2_leg4
+        let t7 = t4_leg3 + g2_vy_leg4 * force_on_u2_leg4
             - minus_g1_vy_leg4 * force_on_u1_leg4 + force_y_platform
             - l_2_1 * t1_platform;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t6_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -10157,7 +10105,7 @@ impl DualV {
             * (c_phi * first_x_platform - s_phi * first_y_platform)
             - dvx * (s_phi * first_x_platform + c_phi * first_y_platform)
             + dwz * inertia_zz_platform;
-        let t8 = t6_leg3 + g2_wz_leg4 * force_on_u2_leg4
+        let t8 = t5_leg3 + g2_wz_leg4 * force_on_u2_leg4
             - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4 + moment_z_platform
             - l_3_1 * t1_platform - l_3_2 * t7;
         let t9 = inv_pivot_3 * t8;
@@ -10178,7 +10126,7 @@ impl DualV {
     ///
     /// Output: 3 x 3.
     ///
-    /// 325 operations (135 additions, 182 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 325 intermediates.
+    /// 323 operations (136 additions, 176 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 323 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10200,8 +10148,11 @@ impl DualV {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
-        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
-        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
+        let half_d_x_leg4 = 0.5 * d_x_leg4;
+        let half_d_x_leg4_minus_p_x_leg3 = half_d_x_leg4 - p_x_leg3;
+        let d_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + half_d_x_leg4_minus_p_x_leg3;
         let p_y_leg1 = R_P * c_phi;
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
@@ -10210,7 +10161,7 @@ impl DualV {
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
+        let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
@@ -10223,20 +10174,22 @@ impl DualV {
         let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
         let force1_y_by_2_leg1 = c2_leg1 * parameters[6] - s2_leg1 * parameters[7];
         let masses_leg1_1_2 = L_AB * force1_y_by_2_leg1;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let half_d_x_leg3 = 0.5 * d_x_leg3;
         // --- leg2
-        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
+        let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
+        let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
+        let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let k1_leg2 = 1.0 / det_leg2;
-        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let g2_vx_leg2 = l1_x_leg2 / det_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
         let c2_leg2 = 6.377551020408164 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
         let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
         let force1_y_by_2_leg2 = c2_leg2 * parameters[21]
@@ -10253,8 +10206,6 @@ impl DualV {
             - minus_g1_vx_leg2
                 * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * masses_leg2_1_1);
         // --- leg3
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
@@ -10262,7 +10213,7 @@ impl DualV {
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
@@ -10281,13 +10232,12 @@ impl DualV {
             - minus_g2_vx_leg3
                 * (g1_vx_leg3 * masses_leg3_1_2 - minus_g2_vx_leg3 * parameters[35]);
         // --- leg4
-        let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg4, 0.15606475932928948, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
         ::overact::guard::reach(h_squared_leg4, "leg4")?;
         let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
-        let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
+        let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
@@ -10317,9 +10267,9 @@ impl DualV {
         let t2_leg1 = g1_vy_leg1 * masses_leg1_1_2 - minus_g2_vy_leg1 * parameters[5];
         // --- leg2
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
-        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+        let g2_vy_leg2 = l1_y_leg2 / det_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 / det_leg2;
         let t2_leg2 = g2_vy_leg2 * parameters[20] - minus_g1_vy_leg2 * masses_leg2_1_2;
         let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2 - minus_g1_vy_leg2 * masses_leg2_1_1;
         // --- leg3
@@ -10635,7 +10585,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 469 operations (197 additions, 264 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 472 intermediates.
+    /// 465 operations (197 additions, 260 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 468 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10693,26 +10643,27 @@ impl DualV {
         let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_ab_squared_rate_1_squared_leg1 = L_AB_SQUARED * rate_1_squared_leg1;
         let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
-            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
+            - l1_y_leg1 * bias_a_end_y_leg3 + l_ab_squared_rate_1_squared_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
+        let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
         let minus_bias_rate_dot_2_leg1 = k1_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            * (bias_a_on_f2_leg1 + c2_leg1 * l_ab_squared_rate_2_squared_leg1);
         let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
             - parameters[6] * rate_2_squared_leg1;
-        let c2_leg1 = 6.377551020408164 * t1_leg1;
         let minus_force2_y_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1
             + parameters[7] * rate_2_squared_leg1;
         let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
-            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
         let minus_bias_rate_dot_1_leg1 = k1_leg1
-            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+            * (bias_a_on_f1_leg1 - l_ab_squared_rate_1_squared_leg1 * c2_leg1);
         let tau_1_leg1 = parameters[2] * rate_1_leg1
             - parameters[1] * minus_bias_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
@@ -10754,19 +10705,21 @@ impl DualV {
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let l_ab_squared_rate_1_squared_leg2 = L_AB_SQUARED * rate_1_squared_leg2;
         let bias_a_on_f2_leg2 = l1_x_leg2 * bias_a_end_x_leg1
-            - l1_y_leg2 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg2;
+            - l1_y_leg2 * bias_a_end_y_leg3 + l_ab_squared_rate_1_squared_leg2;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED * rate_2_squared_leg2;
         let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
-        let t2_leg2 = 0.5 * t1_leg2;
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
         let bias_rate_dot_2_leg2 = k1_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+            * (bias_a_on_f2_leg2 + l_ab_squared_rate_2_squared_leg2 * c2_leg2);
         let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
-            - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
+            - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
         let bias_rate_dot_1_leg2 = k1_leg2
-            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
+            * (bias_a_on_f1_leg2 - l_ab_squared_rate_1_squared_leg2 * c2_leg2);
         let bias_a2_y_leg2 = 1.7857142857142858 * (t1_leg2 * bias_rate_dot_1_leg2)
             - INV_L_AB * (det_leg2 * rate_1_squared_leg2);
         let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
@@ -10782,7 +10735,6 @@ impl DualV {
         let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
         let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
             + parameters[22] * bias_rate_dot_2_leg2;
-        let c2_leg2 = 6.377551020408164 * t1_leg2;
         let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
             - parameters[22] * rate_2_squared_leg2;
         let tau_1_leg2 = parameters[16] * bias_rate_dot_1_leg2
@@ -10796,7 +10748,8 @@ impl DualV {
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let y_minus_half_d_y_leg1 = pose[1] - half_d_y_leg1;
+        let d_y_leg3 = y_minus_half_d_y_leg1 + y_minus_half_d_y_leg1;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -10810,34 +10763,34 @@ impl DualV {
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
+        let l1_y_leg3 = y_minus_half_d_y_leg1 - d_x_leg3 * h_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_ab_squared_rate_1_squared_leg3 = L_AB_SQUARED * rate_1_squared_leg3;
         let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
-            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
+            - l1_x_leg3 * bias_a_end_x_leg1 + l_ab_squared_rate_1_squared_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
-        let t2_leg3 = 0.5 * t1_leg3;
+        let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
         let minus_bias_rate_dot_2_leg3 = k1_leg3
-            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+            * (bias_a_on_f2_leg3 + c2_leg3 * l_ab_squared_rate_2_squared_leg3);
         let force2_x_leg3 = parameters[37] * minus_bias_rate_dot_2_leg3
             - parameters[36] * rate_2_squared_leg3;
-        let c2_leg3 = 6.377551020408164 * t1_leg3;
         let minus_force2_y_leg3 = parameters[36] * minus_bias_rate_dot_2_leg3
             + parameters[37] * rate_2_squared_leg3;
         let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
-            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
+            - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
         let minus_bias_rate_dot_1_leg3 = k1_leg3
-            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
+            * (bias_a_on_f1_leg3 - l_ab_squared_rate_1_squared_leg3 * c2_leg3);
         let tau_1_leg3 = parameters[32] * rate_1_leg3
             - parameters[31] * minus_bias_rate_dot_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
@@ -10860,7 +10813,7 @@ impl DualV {
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -10875,7 +10828,7 @@ impl DualV {
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-        let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
+        let l1_y_leg4 = y_minus_half_d_y_leg1 + d_x_leg4 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -10928,7 +10881,7 @@ impl DualV {
         let first_x_platform = parameters[61] + parameters[65];
         let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
             - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
@@ -10939,7 +10892,7 @@ impl DualV {
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -10947,11 +10900,11 @@ impl DualV {
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         ::core::result::Result::Ok([
-            t3_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            t2_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
                 + force_x_platform,
-            t4_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+            t3_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
                 - minus_force_y_platform,
-            t5_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+            t4_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
                 + tau_3_leg4,
         ])
     }
@@ -10964,7 +10917,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 406 operations (170 additions, 228 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 409 intermediates.
+    /// 378 operations (166 additions, 204 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 381 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -10978,12 +10931,8 @@ impl DualV {
         )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
-        /// 1 / l_ab²
-        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
-        /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -11009,7 +10958,6 @@ impl DualV {
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -11024,23 +10972,17 @@ impl DualV {
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
             - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
+        let my_2_leg1_inv_l_ab = base_parameters[24] * INV_L_AB;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let minus_bias_rate_dot_2_leg1 = k1_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let force2_x_leg1 = base_parameters[24] * minus_bias_rate_dot_2_leg1;
-        let c2_leg1 = 6.377551020408164 * t1_leg1;
-        let minus_force2_y_leg1 = base_parameters[24] * rate_2_squared_leg1;
-        let force1_y_leg1 = s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1;
         let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
             - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let minus_bias_rate_dot_1_leg1 = k1_leg1
-            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
         let tau_1_leg1 = base_parameters[8] * rate_1_leg1
             + ::overact::math::signed(base_parameters[12], rate_1_leg1)
             + base_parameters[16];
@@ -11048,10 +10990,11 @@ impl DualV {
         let tau_2_leg1 = base_parameters[36]
             - (base_parameters[28] * minus_qd_2_leg1
                 + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
-        let force_on_u1_leg1 = L_AB * force1_y_leg1
+        let force_on_u1_leg1 = bias_a_on_f2_leg1 * my_2_leg1_inv_l_ab
             - base_parameters[4] * minus_bias_rate_dot_1_leg1 + tau_1_leg1 - tau_2_leg1;
-        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
-        let moment2_z_leg1 = base_parameters[24] * minus_bias_a2_x_leg1
+        let minus_bias_rate_dot_2_leg1 = k1_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let moment2_z_leg1 = bias_a_on_f1_leg1 * my_2_leg1_inv_l_ab
             - base_parameters[20] * minus_bias_rate_dot_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         let tau_3_leg1 = base_parameters[40] * qd_3_leg1
@@ -11083,15 +11026,14 @@ impl DualV {
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
-        let t2_leg2 = 0.5 * t1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
         let bias_rate_dot_2_leg2 = k1_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
         let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
             - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
-        let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
+        let inv_l_ab_my_2_leg2 = INV_L_AB * base_parameters[25];
         let moment2_z_leg2 = base_parameters[21] * bias_rate_dot_2_leg2
-            + base_parameters[25] * minus_bias_a2_x_leg2;
+            + bias_a_on_f1_leg2 * inv_l_ab_my_2_leg2;
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         let tau_2_leg2 = base_parameters[29] * qd_2_leg2
             + ::overact::math::signed(base_parameters[33], qd_2_leg2)
@@ -11101,18 +11043,12 @@ impl DualV {
             + ::overact::math::signed(base_parameters[45], qd_3_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
         let bias_rate_dot_1_leg2 = k1_leg2
-            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
-        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
-        let minus_force2_x_leg2 = base_parameters[25] * bias_rate_dot_2_leg2;
-        let c2_leg2 = 6.377551020408164 * t1_leg2;
-        let minus_force2_y_leg2 = base_parameters[25] * rate_2_squared_leg2;
-        let force1_y_leg2 = minus_s2_leg2 * minus_force2_x_leg2
-            - c2_leg2 * minus_force2_y_leg2;
+            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t1_leg2);
         let tau_1_leg2 = base_parameters[17]
             - (base_parameters[9] * minus_rate_1_leg2
                 + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
         let force_on_u1_leg2 = base_parameters[5] * bias_rate_dot_1_leg2
-            + L_AB * force1_y_leg2 + tau_1_leg2 - tau_2_leg2;
+            + bias_a_on_f2_leg2 * inv_l_ab_my_2_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
@@ -11129,7 +11065,6 @@ impl DualV {
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
@@ -11140,23 +11075,17 @@ impl DualV {
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
             - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
+        let inv_l_ab_my_2_leg3 = INV_L_AB * base_parameters[26];
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
-        let t2_leg3 = 0.5 * t1_leg3;
-        let minus_bias_rate_dot_2_leg3 = k1_leg3
-            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let force2_x_leg3 = base_parameters[26] * minus_bias_rate_dot_2_leg3;
-        let c2_leg3 = 6.377551020408164 * t1_leg3;
-        let minus_force2_y_leg3 = base_parameters[26] * rate_2_squared_leg3;
-        let force1_y_leg3 = s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3;
         let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
             - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let minus_bias_rate_dot_1_leg3 = k1_leg3
-            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
+            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t1_leg3);
         let tau_1_leg3 = base_parameters[10] * rate_1_leg3
             + ::overact::math::signed(base_parameters[14], rate_1_leg3)
             + base_parameters[18];
@@ -11164,16 +11093,17 @@ impl DualV {
         let tau_2_leg3 = base_parameters[38]
             - (base_parameters[30] * minus_qd_2_leg3
                 + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
-        let force_on_u1_leg3 = L_AB * force1_y_leg3
+        let force_on_u1_leg3 = bias_a_on_f2_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[6] * minus_bias_rate_dot_1_leg3 + tau_1_leg3 - tau_2_leg3;
-        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
-        let moment2_z_leg3 = base_parameters[26] * minus_bias_a2_x_leg3
+        let minus_bias_rate_dot_2_leg3 = k1_leg3
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+        let moment2_z_leg3 = bias_a_on_f1_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[22] * minus_bias_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = base_parameters[42] * qd_3_leg3
             + ::overact::math::signed(base_parameters[46], qd_3_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -11201,15 +11131,14 @@ impl DualV {
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
-        let t2_leg4 = 0.5 * t1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
         let bias_rate_dot_2_leg4 = k1_leg4
-            * (bias_a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+            * (bias_a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
         let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
             - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
-        let minus_bias_a2_x_leg4 = INV_L_AB * bias_a_on_f1_leg4;
+        let inv_l_ab_my_2_leg4 = INV_L_AB * base_parameters[27];
         let moment2_z_leg4 = base_parameters[23] * bias_rate_dot_2_leg4
-            + base_parameters[27] * minus_bias_a2_x_leg4;
+            + bias_a_on_f1_leg4 * inv_l_ab_my_2_leg4;
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let tau_2_leg4 = base_parameters[31] * qd_2_leg4
             + ::overact::math::signed(base_parameters[35], qd_2_leg4)
@@ -11219,25 +11148,19 @@ impl DualV {
             + ::overact::math::signed(base_parameters[47], qd_3_leg4);
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
         let bias_rate_dot_1_leg4 = k1_leg4
-            * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t2_leg4);
-        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
-        let minus_force2_x_leg4 = base_parameters[27] * bias_rate_dot_2_leg4;
-        let c2_leg4 = 6.377551020408164 * t1_leg4;
-        let minus_force2_y_leg4 = base_parameters[27] * rate_2_squared_leg4;
-        let force1_y_leg4 = minus_s2_leg4 * minus_force2_x_leg4
-            - c2_leg4 * minus_force2_y_leg4;
+            * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t1_leg4);
         let tau_1_leg4 = base_parameters[19]
             - (base_parameters[11] * minus_rate_1_leg4
                 + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
         let force_on_u1_leg4 = base_parameters[7] * bias_rate_dot_1_leg4
-            + L_AB * force1_y_leg4 + tau_1_leg4 - tau_2_leg4;
+            + bias_a_on_f2_leg4 * inv_l_ab_my_2_leg4 + tau_1_leg4 - tau_2_leg4;
         let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
         let first_y_platform = base_parameters[2] + base_parameters[51];
         let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
         let first_x_platform = base_parameters[1] + base_parameters[50];
         let force_x_platform = inv_r_p_bias_a_end_x_leg1 * first_y_platform
             - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
-        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
@@ -11248,7 +11171,7 @@ impl DualV {
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
+        let t4_leg3 = g2_wz_leg1 * force_on_u2_leg1 - minus_g1_wz_leg1 * force_on_u1_leg1
             + tau_3_leg1 + g1_wz_leg2 * force_on_u1_leg2
             - minus_g2_wz_leg2 * force_on_u2_leg2 + tau_3_leg2
             + g1_wz_leg3 * force_on_u1_leg3 - minus_g2_wz_leg3 * force_on_u2_leg3
@@ -11256,11 +11179,11 @@ impl DualV {
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
         ::core::result::Result::Ok([
-            t3_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
+            t2_leg3 + g2_vx_leg4 * force_on_u2_leg4 - minus_g1_vx_leg4 * force_on_u1_leg4
                 + force_x_platform,
-            t4_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
+            t3_leg3 + g2_vy_leg4 * force_on_u2_leg4 - minus_g1_vy_leg4 * force_on_u1_leg4
                 - minus_force_y_platform,
-            t5_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
+            t4_leg3 + g2_wz_leg4 * force_on_u2_leg4 - minus_g1_wz_leg4 * force_on_u1_leg4
                 + tau_3_leg4,
         ])
     }
@@ -11274,7 +11197,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 724 operations (302 additions, 411 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 727 intermediates.
+    /// 715 operations (302 additions, 386 multiplications, 27 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 718 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11309,7 +11232,10 @@ impl DualV {
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
+        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -11333,12 +11259,10 @@ impl DualV {
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
-        let k1_leg2 = 1.0 / det_leg2;
-        let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
+        let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -11349,8 +11273,7 @@ impl DualV {
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        let k1_leg3 = 1.0 / det_leg3;
-        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let g1_vx_leg3 = l2_x_leg3 / det_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
@@ -11362,14 +11285,12 @@ impl DualV {
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let k1_leg4 = 1.0 / det_leg4;
-        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 / det_leg4;
         // --- leg1
         let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
         let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
@@ -11378,27 +11299,28 @@ impl DualV {
         let v_end_y_leg1 = twist[1] - v_arm_y_leg3;
         let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let l_ab_squared_rate_1_squared_leg1 = L_AB_SQUARED * rate_1_squared_leg1;
         let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
-            - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
+            - l1_y_leg1 * bias_a_end_y_leg3 + l_ab_squared_rate_1_squared_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
+        let c2_leg1 = 6.377551020408164 * t1_leg1;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
+        let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED * rate_2_squared_leg1;
         let minus_bias_rate_dot_2_leg1 = k1_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            * (bias_a_on_f2_leg1 + c2_leg1 * l_ab_squared_rate_2_squared_leg1);
         let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
             - parameters[6] * rate_2_squared_leg1;
-        let c2_leg1 = 6.377551020408164 * t1_leg1;
         let minus_force2_y_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1
             + parameters[7] * rate_2_squared_leg1;
         let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
-            - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+            - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
         let minus_bias_rate_dot_1_leg1 = k1_leg1
-            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
-        let t3_leg1 = parameters[0] + L_AB_SQUARED * parameters[8];
+            * (bias_a_on_f1_leg1 - l_ab_squared_rate_1_squared_leg1 * c2_leg1);
+        let t2_leg1 = parameters[0] + L_AB_SQUARED * parameters[8];
         let tau_1_leg1 = parameters[2] * rate_1_leg1
             - parameters[1] * minus_bias_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
@@ -11408,7 +11330,7 @@ impl DualV {
                 + ::overact::math::signed(parameters[10], minus_qd_2_leg1));
         let force_on_u1_leg1 = L_AB
             * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            - minus_bias_rate_dot_1_leg1 * t3_leg1 + tau_1_leg1 - tau_2_leg1;
+            - minus_bias_rate_dot_1_leg1 * t2_leg1 + tau_1_leg1 - tau_2_leg1;
         let bias_a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
             - 1.7857142857142858 * (t1_leg1 * minus_bias_rate_dot_1_leg1);
         let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
@@ -11420,26 +11342,28 @@ impl DualV {
             + ::overact::math::signed(parameters[13], qd_3_leg1) + parameters[14];
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
         // --- leg2
-        let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let g2_vx_leg2 = l1_x_leg2 / det_leg2;
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
-        let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
+        let minus_g1_vy_leg2 = l2_y_leg2 / det_leg2;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let l_ab_squared_rate_1_squared_leg2 = L_AB_SQUARED * rate_1_squared_leg2;
         let bias_a_on_f2_leg2 = l1_x_leg2 * bias_a_end_x_leg1
-            - l1_y_leg2 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg2;
-        let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
+            - l1_y_leg2 * bias_a_end_y_leg3 + l_ab_squared_rate_1_squared_leg2;
+        let g2_vy_leg2 = l1_y_leg2 / det_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED * rate_2_squared_leg2;
         let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
-        let t2_leg2 = 0.5 * t1_leg2;
-        let bias_rate_dot_2_leg2 = k1_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+        let c2_leg2 = 6.377551020408164 * t1_leg2;
+        let bias_rate_dot_2_leg2 = (bias_a_on_f2_leg2
+            + l_ab_squared_rate_2_squared_leg2 * c2_leg2) / det_leg2;
         let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
-            - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
-        let bias_rate_dot_1_leg2 = k1_leg2
-            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
+            - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
+        let bias_rate_dot_1_leg2 = (bias_a_on_f1_leg2
+            - l_ab_squared_rate_1_squared_leg2 * c2_leg2) / det_leg2;
         let bias_a2_y_leg2 = 1.7857142857142858 * (t1_leg2 * bias_rate_dot_1_leg2)
             - INV_L_AB * (det_leg2 * rate_1_squared_leg2);
         let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
@@ -11452,51 +11376,50 @@ impl DualV {
         let tau_3_leg2 = parameters[27] * qd_3_leg2
             + ::overact::math::signed(parameters[28], qd_3_leg2) + parameters[29];
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
-        let t3_leg2 = parameters[15] + L_AB_SQUARED * parameters[23];
+        let t2_leg2 = parameters[15] + L_AB_SQUARED * parameters[23];
         let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
         let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
             + parameters[22] * bias_rate_dot_2_leg2;
-        let c2_leg2 = 6.377551020408164 * t1_leg2;
         let force2_y_leg2 = parameters[21] * bias_rate_dot_2_leg2
             - parameters[22] * rate_2_squared_leg2;
         let tau_1_leg2 = parameters[16] * bias_rate_dot_1_leg2
             - parameters[17] * minus_rate_1_leg2
             - ::overact::math::signed(parameters[18], minus_rate_1_leg2)
             + parameters[19];
-        let force_on_u1_leg2 = bias_rate_dot_1_leg2 * t3_leg2
+        let force_on_u1_leg2 = bias_rate_dot_1_leg2 * t2_leg2
             + L_AB * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
             + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
+        let g1_vy_leg3 = l2_y_leg3 / det_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let l_ab_squared_rate_1_squared_leg3 = L_AB_SQUARED * rate_1_squared_leg3;
         let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
-            - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
-        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
-        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
+            - l1_x_leg3 * bias_a_end_x_leg1 + l_ab_squared_rate_1_squared_leg3;
+        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
+        let c2_leg3 = 6.377551020408164 * t1_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 / det_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
-        let t2_leg3 = 0.5 * t1_leg3;
-        let minus_bias_rate_dot_2_leg3 = k1_leg3
-            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
+        let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED * rate_2_squared_leg3;
+        let minus_bias_rate_dot_2_leg3 = (bias_a_on_f2_leg3
+            + c2_leg3 * l_ab_squared_rate_2_squared_leg3) / det_leg3;
         let force2_x_leg3 = parameters[37] * minus_bias_rate_dot_2_leg3
             - parameters[36] * rate_2_squared_leg3;
-        let c2_leg3 = 6.377551020408164 * t1_leg3;
         let minus_force2_y_leg3 = parameters[36] * minus_bias_rate_dot_2_leg3
             + parameters[37] * rate_2_squared_leg3;
         let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
-            - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
-        let minus_bias_rate_dot_1_leg3 = k1_leg3
-            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
-        let t3_leg3 = parameters[30] + L_AB_SQUARED * parameters[38];
+            - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
+        let minus_bias_rate_dot_1_leg3 = (bias_a_on_f1_leg3
+            - l_ab_squared_rate_1_squared_leg3 * c2_leg3) / det_leg3;
+        let t2_leg3 = parameters[30] + L_AB_SQUARED * parameters[38];
         let tau_1_leg3 = parameters[32] * rate_1_leg3
             - parameters[31] * minus_bias_rate_dot_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34];
@@ -11506,7 +11429,7 @@ impl DualV {
                 + ::overact::math::signed(parameters[40], minus_qd_2_leg3));
         let force_on_u1_leg3 = L_AB
             * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-            - minus_bias_rate_dot_1_leg3 * t3_leg3 + tau_1_leg3 - tau_2_leg3;
+            - minus_bias_rate_dot_1_leg3 * t2_leg3 + tau_1_leg3 - tau_2_leg3;
         let bias_a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
             - 1.7857142857142858 * (t1_leg3 * minus_bias_rate_dot_1_leg3);
         let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
@@ -11517,30 +11440,32 @@ impl DualV {
         let tau_3_leg3 = parameters[42] * qd_3_leg3
             + ::overact::math::signed(parameters[43], qd_3_leg3) + parameters[44];
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
-        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let g2_vx_leg4 = l1_x_leg4 / det_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 / det_leg4;
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
         let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let l_ab_squared_rate_1_squared_leg4 = L_AB_SQUARED * rate_1_squared_leg4;
         let bias_a_on_f2_leg4 = l1_y_leg4 * bias_a_end_y_leg3
-            - l1_x_leg4 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg4;
-        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+            - l1_x_leg4 * bias_a_end_x_leg1 + l_ab_squared_rate_1_squared_leg4;
+        let g2_vy_leg4 = l1_y_leg4 / det_leg4;
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
+        let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED * rate_2_squared_leg4;
         let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
-        let t2_leg4 = 0.5 * t1_leg4;
-        let bias_rate_dot_2_leg4 = k1_leg4
-            * (bias_a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+        let c2_leg4 = 6.377551020408164 * t1_leg4;
+        let bias_rate_dot_2_leg4 = (bias_a_on_f2_leg4
+            + l_ab_squared_rate_2_squared_leg4 * c2_leg4) / det_leg4;
         let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
-            - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
-        let bias_rate_dot_1_leg4 = k1_leg4
-            * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t2_leg4);
+            - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
+        let bias_rate_dot_1_leg4 = (bias_a_on_f1_leg4
+            - l_ab_squared_rate_1_squared_leg4 * c2_leg4) / det_leg4;
         let bias_a2_y_leg4 = 1.7857142857142858 * (t1_leg4 * bias_rate_dot_1_leg4)
             - INV_L_AB * (det_leg4 * rate_1_squared_leg4);
         let minus_bias_a2_x_leg4 = INV_L_AB * bias_a_on_f1_leg4;
@@ -11553,18 +11478,17 @@ impl DualV {
         let tau_3_leg4 = parameters[57] * qd_3_leg4
             + ::overact::math::signed(parameters[58], qd_3_leg4) + parameters[59];
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
-        let t3_leg4 = parameters[45] + L_AB_SQUARED * parameters[53];
+        let t2_leg4 = parameters[45] + L_AB_SQUARED * parameters[53];
         let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
         let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
             + parameters[52] * bias_rate_dot_2_leg4;
-        let c2_leg4 = 6.377551020408164 * t1_leg4;
         let force2_y_leg4 = parameters[51] * bias_rate_dot_2_leg4
             - parameters[52] * rate_2_squared_leg4;
         let tau_1_leg4 = parameters[46] * bias_rate_dot_1_leg4
             - parameters[47] * minus_rate_1_leg4
             - ::overact::math::signed(parameters[48], minus_rate_1_leg4)
             + parameters[49];
-        let force_on_u1_leg4 = bias_rate_dot_1_leg4 * t3_leg4
+        let force_on_u1_leg4 = bias_rate_dot_1_leg4 * t2_leg4
             + L_AB * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
             + tau_1_leg4 - tau_2_leg4;
         let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
@@ -11575,17 +11499,17 @@ impl DualV {
             - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
         let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
             + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3]
-            - (t4_leg3 + g2_vx_leg4 * force_on_u2_leg4
+            - (t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
                 - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform);
-        let masses_leg1_1_1 = t3_leg1 + parameters[1];
+        let masses_leg1_1_1 = t2_leg1 + parameters[1];
         let minus_masses_leg1_1_2 = 0.02854230377166157
             * (125.12755102040816 * (det_leg1 * parameters[7])
                 - 62.56377551020408 * (t1_leg1 * parameters[6]));
         let masses_leg2_1_2 = 0.02854230377166157
             * (125.12755102040816 * (det_leg2 * parameters[22])
                 + 62.56377551020408 * (t1_leg2 * parameters[21]));
-        let masses_leg2_1_1 = t3_leg2 + parameters[16];
-        let t4_leg2 = g1_vx_leg1
+        let masses_leg2_1_1 = t2_leg2 + parameters[16];
+        let t3_leg2 = g1_vx_leg1
             * (g1_vx_leg1 * masses_leg1_1_1 + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
             + minus_g2_vx_leg1
                 * (g1_vx_leg1 * minus_masses_leg1_1_2 + minus_g2_vx_leg1 * parameters[5])
@@ -11593,11 +11517,11 @@ impl DualV {
                 * (g2_vx_leg2 * parameters[20] - minus_g1_vx_leg2 * masses_leg2_1_2)
             - minus_g1_vx_leg2
                 * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * masses_leg2_1_1);
-        let masses_leg3_1_1 = t3_leg3 + parameters[31];
+        let masses_leg3_1_1 = t2_leg3 + parameters[31];
         let minus_masses_leg3_1_2 = 0.02854230377166157
             * (125.12755102040816 * (det_leg3 * parameters[37])
                 - 62.56377551020408 * (t1_leg3 * parameters[36]));
-        let t5_leg3 = t4_leg2
+        let t4_leg3 = t3_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * masses_leg3_1_1
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
@@ -11607,108 +11531,106 @@ impl DualV {
         let masses_leg4_1_2 = 0.02854230377166157
             * (125.12755102040816 * (det_leg4 * parameters[52])
                 + 62.56377551020408 * (t1_leg4 * parameters[51]));
-        let masses_leg4_1_1 = t3_leg4 + parameters[46];
-        let t4_leg4 = t5_leg3
+        let masses_leg4_1_1 = t2_leg4 + parameters[46];
+        let t3_leg4 = t4_leg3
             + g2_vx_leg4
                 * (g2_vx_leg4 * parameters[50] - minus_g1_vx_leg4 * masses_leg4_1_2)
             - minus_g1_vx_leg4
                 * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * masses_leg4_1_1);
         let mass_platform = parameters[63] + parameters[67];
-        let mass_1_1 = t4_leg4 + mass_platform;
+        let mass_1_1 = t3_leg4 + mass_platform;
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
-        let t4_leg1 = g1_vy_leg1 * masses_leg1_1_1
+        let t3_leg1 = g1_vy_leg1 * masses_leg1_1_1
             + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
-        let t5_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
+        let t4_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
             + minus_g2_vy_leg1 * parameters[5];
-        let t5_leg2 = g2_vy_leg2 * parameters[20] - minus_g1_vy_leg2 * masses_leg2_1_2;
-        let t6_leg2 = g2_vy_leg2 * masses_leg2_1_2 - minus_g1_vy_leg2 * masses_leg2_1_1;
-        let t6_leg3 = g1_vy_leg3 * masses_leg3_1_1
+        let t4_leg2 = g2_vy_leg2 * parameters[20] - minus_g1_vy_leg2 * masses_leg2_1_2;
+        let t5_leg2 = g2_vy_leg2 * masses_leg2_1_2 - minus_g1_vy_leg2 * masses_leg2_1_1;
+        let t5_leg3 = g1_vy_leg3 * masses_leg3_1_1
             + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t7_leg3 = g1_vy_leg3 * minus_masses_leg3_1_2
+        let t6_leg3 = g1_vy_leg3 * minus_masses_leg3_1_2
             + minus_g2_vy_leg3 * parameters[35];
-        let t8_leg3 = g1_vx_leg1 * t4_leg1 + minus_g2_vx_leg1 * t5_leg1
-            + g2_vx_leg2 * t5_leg2 - minus_g1_vx_leg2 * t6_leg2 + g1_vx_leg3 * t6_leg3
-            + minus_g2_vx_leg3 * t7_leg3;
-        let t5_leg4 = g2_vy_leg4 * parameters[50] - minus_g1_vy_leg4 * masses_leg4_1_2;
-        let t6_leg4 = g2_vy_leg4 * masses_leg4_1_2 - minus_g1_vy_leg4 * masses_leg4_1_1;
-        let mass_1_2 = t8_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4;
+        let t7_leg3 = g1_vx_leg1 * t3_leg1 + minus_g2_vx_leg1 * t4_leg1
+            + g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2 + g1_vx_leg3 * t5_leg3
+            + minus_g2_vx_leg3 * t6_leg3;
+        let t4_leg4 = g2_vy_leg4 * parameters[50] - minus_g1_vy_leg4 * masses_leg4_1_2;
+        let t5_leg4 = g2_vy_leg4 * masses_leg4_1_2 - minus_g1_vy_leg4 * masses_leg4_1_1;
+        let mass_1_2 = t7_leg3 + g2_vx_leg4 * t4_leg4 - minus_g1_vx_leg4 * t5_leg4;
         let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t9_leg3 = g1_vy_leg1 * t4_leg1 + minus_g2_vy_leg1 * t5_leg1
-            + g2_vy_leg2 * t5_leg2 - minus_g1_vy_leg2 * t6_leg2 + g1_vy_leg3 * t6_leg3
-            + minus_g2_vy_leg3 * t7_leg3;
-        let mass_2_2 = t9_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
-            + mass_platform;
-        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
-        ::overact::guard::mass(pivot_2)?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t10_leg3 = g1_vy_leg1 * force_on_u1_leg1
-            - minus_g2_vy_leg1 * force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
-            - minus_g1_vy_leg2 * force_on_u1_leg2 + g1_vy_leg3 * force_on_u1_leg3
-            - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let t8_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
             + inv_r_p_bias_a_end_y_leg3 * first_y_platform;
         let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
             + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
-            - (t10_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - (t8_leg3 + g2_vy_leg4 * force_on_u2_leg4
                 - minus_g1_vy_leg4 * force_on_u1_leg4 - minus_force_y_platform);
         let t3 = t2 - t1 * l_2_1;
+        let t9_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t4_leg1
+            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t5_leg2 + g1_vy_leg3 * t5_leg3
+            + minus_g2_vy_leg3 * t6_leg3;
+        let mass_2_2 = t9_leg3 + g2_vy_leg4 * t4_leg4 - minus_g1_vy_leg4 * t5_leg4
+            + mass_platform;
+        let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
+        ::overact::guard::mass(pivot_2)?;
         // --- leg2
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let t7_leg2 = g1_wz_leg2 * masses_leg2_1_2 - minus_g2_wz_leg2 * parameters[20];
-        let t8_leg2 = g1_wz_leg2 * masses_leg2_1_1 - minus_g2_wz_leg2 * masses_leg2_1_2;
+        let t6_leg2 = g1_wz_leg2 * masses_leg2_1_2 - minus_g2_wz_leg2 * parameters[20];
+        let t7_leg2 = g1_wz_leg2 * masses_leg2_1_1 - minus_g2_wz_leg2 * masses_leg2_1_2;
         // --- leg1
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let t6_leg1 = minus_g1_wz_leg1 * masses_leg1_1_1
+        let t5_leg1 = minus_g1_wz_leg1 * masses_leg1_1_1
             + g2_wz_leg1 * minus_masses_leg1_1_2;
-        let t7_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
+        let t6_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
             + g2_wz_leg1 * parameters[5];
         // --- leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t11_leg3 = g1_wz_leg3 * masses_leg3_1_1
+        let t10_leg3 = g1_wz_leg3 * masses_leg3_1_1
             + minus_g2_wz_leg3 * minus_masses_leg3_1_2;
-        let t12_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
+        let t11_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
             + minus_g2_wz_leg3 * parameters[35];
-        let t13_leg3 = g2_vy_leg2 * t7_leg2 - minus_g1_vy_leg2 * t8_leg2
-            - (g1_vy_leg1 * t6_leg1 + minus_g2_vy_leg1 * t7_leg1) + g1_vy_leg3 * t11_leg3
-            + minus_g2_vy_leg3 * t12_leg3;
+        let t12_leg3 = g2_vy_leg2 * t6_leg2 - minus_g1_vy_leg2 * t7_leg2
+            - (g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t6_leg1) + g1_vy_leg3 * t10_leg3
+            + minus_g2_vy_leg3 * t11_leg3;
         // --- leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let t7_leg4 = g2_wz_leg4 * parameters[50] - minus_g1_wz_leg4 * masses_leg4_1_2;
-        let t8_leg4 = g2_wz_leg4 * masses_leg4_1_2 - minus_g1_wz_leg4 * masses_leg4_1_1;
-        let mass_2_3 = t13_leg3 + g2_vy_leg4 * t7_leg4 - minus_g1_vy_leg4 * t8_leg4
+        let t6_leg4 = g2_wz_leg4 * parameters[50] - minus_g1_wz_leg4 * masses_leg4_1_2;
+        let t7_leg4 = g2_wz_leg4 * masses_leg4_1_2 - minus_g1_wz_leg4 * masses_leg4_1_1;
+        let mass_2_3 = t12_leg3 + g2_vy_leg4 * t6_leg4 - minus_g1_vy_leg4 * t7_leg4
             + c_phi * first_x_platform - s_phi * first_y_platform;
-        let t14_leg3 = g2_vx_leg2 * t7_leg2 - minus_g1_vx_leg2 * t8_leg2
-            - (g1_vx_leg1 * t6_leg1 + minus_g2_vx_leg1 * t7_leg1) + g1_vx_leg3 * t11_leg3
-            + minus_g2_vx_leg3 * t12_leg3;
-        let mass_1_3 = t14_leg3 + g2_vx_leg4 * t7_leg4 - minus_g1_vx_leg4 * t8_leg4
+        let t13_leg3 = g2_vx_leg2 * t6_leg2 - minus_g1_vx_leg2 * t7_leg2
+            - (g1_vx_leg1 * t5_leg1 + minus_g2_vx_leg1 * t6_leg1) + g1_vx_leg3 * t10_leg3
+            + minus_g2_vx_leg3 * t11_leg3;
+        let mass_1_3 = t13_leg3 + g2_vx_leg4 * t6_leg4 - minus_g1_vx_leg4 * t7_leg4
             - (s_phi * first_x_platform + c_phi * first_y_platform);
         let l_3_1 = mass_1_3 * inv_pivot_1;
         let schur_2_3 = mass_2_3 - mass_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
-        let t15_leg3 = g2_wz_leg1 * force_on_u2_leg1
+        let l_3_2 = schur_2_3 / pivot_2;
+        let t14_leg3 = g2_wz_leg1 * force_on_u2_leg1
             - minus_g1_wz_leg1 * force_on_u1_leg1 + tau_3_leg1
             + g1_wz_leg2 * force_on_u1_leg2 - minus_g2_wz_leg2 * force_on_u2_leg2
             + tau_3_leg2 + g1_wz_leg3 * force_on_u1_leg3
             - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
         let t4 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
             + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3]
-            - (t15_leg3 + g2_wz_leg4 * force_on_u2_leg4
+            - (t14_leg3 + g2_wz_leg4 * force_on_u2_leg4
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4);
-        let t16_leg3 = minus_g1_wz_leg1 * t6_leg1 + g2_wz_leg1 * t7_leg1
-            + g1_wz_leg2 * t8_leg2 - minus_g2_wz_leg2 * t7_leg2 + g1_wz_leg3 * t11_leg3
-            + minus_g2_wz_leg3 * t12_leg3;
+        let t15_leg3 = minus_g1_wz_leg1 * t5_leg1 + g2_wz_leg1 * t6_leg1
+            + g1_wz_leg2 * t7_leg2 - minus_g2_wz_leg2 * t6_leg2 + g1_wz_leg3 * t10_leg3
+            + minus_g2_wz_leg3 * t11_leg3;
         let inertia_zz_platform = parameters[60] + parameters[64];
-        let mass_3_3 = t16_leg3 + g2_wz_leg4 * t7_leg4 - minus_g1_wz_leg4 * t8_leg4
+        let mass_3_3 = t15_leg3 + g2_wz_leg4 * t6_leg4 - minus_g1_wz_leg4 * t7_leg4
             + inertia_zz_platform;
         let pivot_3 = mass_3_3 - mass_1_3 * l_3_1 - schur_2_3 * l_3_2;
         ::overact::guard::mass(pivot_3)?;
         let t5 = (t4 - t1 * l_3_1 - l_3_2 * t3) / pivot_3;
-        let t6 = inv_pivot_2 * t3 - l_3_2 * t5;
+        let t6 = t3 / pivot_2 - l_3_2 * t5;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t6 - l_3_1 * t5, t6, t5])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -11721,7 +11643,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 641 operations (267 additions, 363 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 644 intermediates.
+    /// 609 operations (263 additions, 335 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 612 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11739,12 +11661,8 @@ impl DualV {
         )?;
         /// 1 / l_ab
         const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
-        /// 1 / l_ab²
-        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
         /// 1 / r_p
         const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
-        /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
         /// l_ab²
         const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
         /// r_p
@@ -11813,7 +11731,6 @@ impl DualV {
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         // --- leg1
-        let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -11828,23 +11745,17 @@ impl DualV {
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let bias_a_on_f2_leg1 = l1_x_leg1 * bias_a_end_x_leg1
             - l1_y_leg1 * bias_a_end_y_leg3 + L_AB_SQUARED * rate_1_squared_leg1;
+        let my_2_leg1_inv_l_ab = base_parameters[24] * INV_L_AB;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_AB_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let minus_bias_rate_dot_2_leg1 = k1_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let force2_x_leg1 = base_parameters[24] * minus_bias_rate_dot_2_leg1;
-        let c2_leg1 = 6.377551020408164 * t1_leg1;
-        let minus_force2_y_leg1 = base_parameters[24] * rate_2_squared_leg1;
-        let force1_y_leg1 = s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1;
         let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
             - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let minus_bias_rate_dot_1_leg1 = k1_leg1
-            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
         let tau_1_leg1 = base_parameters[8] * rate_1_leg1
             + ::overact::math::signed(base_parameters[12], rate_1_leg1)
             + base_parameters[16];
@@ -11852,10 +11763,11 @@ impl DualV {
         let tau_2_leg1 = base_parameters[36]
             - (base_parameters[28] * minus_qd_2_leg1
                 + ::overact::math::signed(base_parameters[32], minus_qd_2_leg1));
-        let force_on_u1_leg1 = L_AB * force1_y_leg1
+        let force_on_u1_leg1 = bias_a_on_f2_leg1 * my_2_leg1_inv_l_ab
             - base_parameters[4] * minus_bias_rate_dot_1_leg1 + tau_1_leg1 - tau_2_leg1;
-        let minus_bias_a2_x_leg1 = INV_L_AB * bias_a_on_f1_leg1;
-        let moment2_z_leg1 = base_parameters[24] * minus_bias_a2_x_leg1
+        let minus_bias_rate_dot_2_leg1 = k1_leg1
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let moment2_z_leg1 = bias_a_on_f1_leg1 * my_2_leg1_inv_l_ab
             - base_parameters[20] * minus_bias_rate_dot_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         let tau_3_leg1 = base_parameters[40] * qd_3_leg1
@@ -11875,15 +11787,14 @@ impl DualV {
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-        let t1_leg2 = rho_squared_leg2 - TWICE_L_AB_SQUARED;
-        let t2_leg2 = 0.5 * t1_leg2;
+        let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
         let bias_rate_dot_2_leg2 = k1_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
         let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
             - l2_x_leg2 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg2;
-        let minus_bias_a2_x_leg2 = INV_L_AB * bias_a_on_f1_leg2;
+        let inv_l_ab_my_2_leg2 = INV_L_AB * base_parameters[25];
         let moment2_z_leg2 = base_parameters[21] * bias_rate_dot_2_leg2
-            + base_parameters[25] * minus_bias_a2_x_leg2;
+            + bias_a_on_f1_leg2 * inv_l_ab_my_2_leg2;
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         let tau_2_leg2 = base_parameters[29] * qd_2_leg2
             + ::overact::math::signed(base_parameters[33], qd_2_leg2)
@@ -11893,20 +11804,13 @@ impl DualV {
             + ::overact::math::signed(base_parameters[45], qd_3_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
         let bias_rate_dot_1_leg2 = k1_leg2
-            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t2_leg2);
-        let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
-        let minus_force2_x_leg2 = base_parameters[25] * bias_rate_dot_2_leg2;
-        let c2_leg2 = 6.377551020408164 * t1_leg2;
-        let minus_force2_y_leg2 = base_parameters[25] * rate_2_squared_leg2;
-        let force1_y_leg2 = minus_s2_leg2 * minus_force2_x_leg2
-            - c2_leg2 * minus_force2_y_leg2;
+            * (bias_a_on_f1_leg2 - rate_1_squared_leg2 * t1_leg2);
         let tau_1_leg2 = base_parameters[17]
             - (base_parameters[9] * minus_rate_1_leg2
                 + ::overact::math::signed(base_parameters[13], minus_rate_1_leg2));
         let force_on_u1_leg2 = base_parameters[5] * bias_rate_dot_1_leg2
-            + L_AB * force1_y_leg2 + tau_1_leg2 - tau_2_leg2;
+            + bias_a_on_f2_leg2 * inv_l_ab_my_2_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
-        let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
         let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
@@ -11917,23 +11821,17 @@ impl DualV {
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
             - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
+        let inv_l_ab_my_2_leg3 = INV_L_AB * base_parameters[26];
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
-        let t2_leg3 = 0.5 * t1_leg3;
-        let minus_bias_rate_dot_2_leg3 = k1_leg3
-            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-        let force2_x_leg3 = base_parameters[26] * minus_bias_rate_dot_2_leg3;
-        let c2_leg3 = 6.377551020408164 * t1_leg3;
-        let minus_force2_y_leg3 = base_parameters[26] * rate_2_squared_leg3;
-        let force1_y_leg3 = s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3;
         let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
             - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
+        let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
         let minus_bias_rate_dot_1_leg3 = k1_leg3
-            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t2_leg3);
+            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t1_leg3);
         let tau_1_leg3 = base_parameters[10] * rate_1_leg3
             + ::overact::math::signed(base_parameters[14], rate_1_leg3)
             + base_parameters[18];
@@ -11941,16 +11839,17 @@ impl DualV {
         let tau_2_leg3 = base_parameters[38]
             - (base_parameters[30] * minus_qd_2_leg3
                 + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
-        let force_on_u1_leg3 = L_AB * force1_y_leg3
+        let force_on_u1_leg3 = bias_a_on_f2_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[6] * minus_bias_rate_dot_1_leg3 + tau_1_leg3 - tau_2_leg3;
-        let minus_bias_a2_x_leg3 = INV_L_AB * bias_a_on_f1_leg3;
-        let moment2_z_leg3 = base_parameters[26] * minus_bias_a2_x_leg3
+        let minus_bias_rate_dot_2_leg3 = k1_leg3
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
+        let moment2_z_leg3 = bias_a_on_f1_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[22] * minus_bias_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         let tau_3_leg3 = base_parameters[42] * qd_3_leg3
             + ::overact::math::signed(base_parameters[46], qd_3_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
-        let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
+        let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1 - minus_g2_vx_leg1 * force_on_u2_leg1
             + g2_vx_leg2 * force_on_u2_leg2 - minus_g1_vx_leg2 * force_on_u1_leg2
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         // --- leg4
@@ -11966,15 +11865,14 @@ impl DualV {
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-        let t1_leg4 = rho_squared_leg4 - TWICE_L_AB_SQUARED;
-        let t2_leg4 = 0.5 * t1_leg4;
+        let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
         let bias_rate_dot_2_leg4 = k1_leg4
-            * (bias_a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+            * (bias_a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
         let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
             - l2_y_leg4 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg4;
-        let minus_bias_a2_x_leg4 = INV_L_AB * bias_a_on_f1_leg4;
+        let inv_l_ab_my_2_leg4 = INV_L_AB * base_parameters[27];
         let moment2_z_leg4 = base_parameters[23] * bias_rate_dot_2_leg4
-            + base_parameters[27] * minus_bias_a2_x_leg4;
+            + bias_a_on_f1_leg4 * inv_l_ab_my_2_leg4;
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let tau_2_leg4 = base_parameters[31] * qd_2_leg4
             + ::overact::math::signed(base_parameters[35], qd_2_leg4)
@@ -11984,18 +11882,12 @@ impl DualV {
             + ::overact::math::signed(base_parameters[47], qd_3_leg4);
         let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
         let bias_rate_dot_1_leg4 = k1_leg4
-            * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t2_leg4);
-        let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
-        let minus_force2_x_leg4 = base_parameters[27] * bias_rate_dot_2_leg4;
-        let c2_leg4 = 6.377551020408164 * t1_leg4;
-        let minus_force2_y_leg4 = base_parameters[27] * rate_2_squared_leg4;
-        let force1_y_leg4 = minus_s2_leg4 * minus_force2_x_leg4
-            - c2_leg4 * minus_force2_y_leg4;
+            * (bias_a_on_f1_leg4 - rate_1_squared_leg4 * t1_leg4);
         let tau_1_leg4 = base_parameters[19]
             - (base_parameters[11] * minus_rate_1_leg4
                 + ::overact::math::signed(base_parameters[15], minus_rate_1_leg4));
         let force_on_u1_leg4 = base_parameters[7] * bias_rate_dot_1_leg4
-            + L_AB * force1_y_leg4 + tau_1_leg4 - tau_2_leg4;
+            + bias_a_on_f2_leg4 * inv_l_ab_my_2_leg4 + tau_1_leg4 - tau_2_leg4;
         let inv_r_p_bias_a_end_x_leg1 = INV_R_P * bias_a_end_x_leg1;
         let first_y_platform = base_parameters[2] + base_parameters[51];
         let inv_r_p_bias_a_end_y_leg3 = INV_R_P * bias_a_end_y_leg3;
@@ -12004,11 +11896,11 @@ impl DualV {
             - inv_r_p_bias_a_end_y_leg3 * first_x_platform;
         let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
             + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3]
-            - (t3_leg3 + g2_vx_leg4 * force_on_u2_leg4
+            - (t2_leg3 + g2_vx_leg4 * force_on_u2_leg4
                 - minus_g1_vx_leg4 * force_on_u1_leg4 + force_x_platform);
-        let minus_masses_leg1_1_2 = INV_L_AB * (det_leg1 * base_parameters[24]);
-        let masses_leg2_1_2 = INV_L_AB * (det_leg2 * base_parameters[25]);
-        let t3_leg2 = g1_vx_leg1
+        let minus_masses_leg1_1_2 = det_leg1 * my_2_leg1_inv_l_ab;
+        let masses_leg2_1_2 = det_leg2 * inv_l_ab_my_2_leg2;
+        let t2_leg2 = g1_vx_leg1
             * (g1_vx_leg1 * base_parameters[4]
                 + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
             + minus_g2_vx_leg1
@@ -12018,118 +11910,118 @@ impl DualV {
                 * (g2_vx_leg2 * base_parameters[21] - minus_g1_vx_leg2 * masses_leg2_1_2)
             - minus_g1_vx_leg2
                 * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * base_parameters[5]);
-        let minus_masses_leg3_1_2 = INV_L_AB * (det_leg3 * base_parameters[26]);
-        let t4_leg3 = t3_leg2
+        let minus_masses_leg3_1_2 = det_leg3 * inv_l_ab_my_2_leg3;
+        let t3_leg3 = t2_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[6]
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
-                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                * (l2_x_leg3 * inv_l_ab_my_2_leg3
                     + minus_g2_vx_leg3 * base_parameters[22]);
-        let masses_leg4_1_2 = INV_L_AB * (det_leg4 * base_parameters[27]);
-        let t3_leg4 = t4_leg3
+        let masses_leg4_1_2 = det_leg4 * inv_l_ab_my_2_leg4;
+        let t2_leg4 = t3_leg3
             + g2_vx_leg4
                 * (g2_vx_leg4 * base_parameters[23] - minus_g1_vx_leg4 * masses_leg4_1_2)
             - minus_g1_vx_leg4
                 * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * base_parameters[7]);
         let mass_platform = base_parameters[3] + base_parameters[52];
-        let mass_1_1 = t3_leg4 + mass_platform;
+        let mass_1_1 = t2_leg4 + mass_platform;
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
-        let t3_leg1 = g1_vy_leg1 * base_parameters[4]
+        let t2_leg1 = g1_vy_leg1 * base_parameters[4]
             + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
-        let t4_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
+        let t3_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
             + minus_g2_vy_leg1 * base_parameters[20];
-        let t4_leg2 = g2_vy_leg2 * base_parameters[21]
+        let t3_leg2 = g2_vy_leg2 * base_parameters[21]
             - minus_g1_vy_leg2 * masses_leg2_1_2;
-        let t5_leg2 = g2_vy_leg2 * masses_leg2_1_2
+        let t4_leg2 = g2_vy_leg2 * masses_leg2_1_2
             - minus_g1_vy_leg2 * base_parameters[5];
-        let t5_leg3 = g1_vy_leg3 * base_parameters[6]
+        let t4_leg3 = g1_vy_leg3 * base_parameters[6]
             + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t6_leg3 = g1_vy_leg3 * minus_masses_leg3_1_2
+        let t5_leg3 = g1_vy_leg3 * minus_masses_leg3_1_2
             + minus_g2_vy_leg3 * base_parameters[22];
-        let t7_leg3 = g1_vx_leg1 * t3_leg1 + minus_g2_vx_leg1 * t4_leg1
-            + g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2 + g1_vx_leg3 * t5_leg3
-            + minus_g2_vx_leg3 * t6_leg3;
-        let t4_leg4 = g2_vy_leg4 * base_parameters[23]
+        let t6_leg3 = g1_vx_leg1 * t2_leg1 + minus_g2_vx_leg1 * t3_leg1
+            + g2_vx_leg2 * t3_leg2 - minus_g1_vx_leg2 * t4_leg2 + g1_vx_leg3 * t4_leg3
+            + minus_g2_vx_leg3 * t5_leg3;
+        let t3_leg4 = g2_vy_leg4 * base_parameters[23]
             - minus_g1_vy_leg4 * masses_leg4_1_2;
-        let t5_leg4 = g2_vy_leg4 * masses_leg4_1_2
+        let t4_leg4 = g2_vy_leg4 * masses_leg4_1_2
             - minus_g1_vy_leg4 * base_parameters[7];
-        let mass_1_2 = t7_leg3 + g2_vx_leg4 * t4_leg4 - minus_g1_vx_leg4 * t5_leg4;
+        let mass_1_2 = t6_leg3 + g2_vx_leg4 * t3_leg4 - minus_g1_vx_leg4 * t4_leg4;
         let l_2_1 = mass_1_2 * inv_pivot_1;
-        let t8_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t4_leg1
-            + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t5_leg2 + g1_vy_leg3 * t5_leg3
-            + minus_g2_vy_leg3 * t6_leg3;
-        let mass_2_2 = t8_leg3 + g2_vy_leg4 * t4_leg4 - minus_g1_vy_leg4 * t5_leg4
+        let t7_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t3_leg1
+            + g2_vy_leg2 * t3_leg2 - minus_g1_vy_leg2 * t4_leg2 + g1_vy_leg3 * t4_leg3
+            + minus_g2_vy_leg3 * t5_leg3;
+        let mass_2_2 = t7_leg3 + g2_vy_leg4 * t3_leg4 - minus_g1_vy_leg4 * t4_leg4
             + mass_platform;
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let inv_pivot_2 = 1.0 / pivot_2;
-        let t9_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t8_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
         let minus_force_y_platform = inv_r_p_bias_a_end_x_leg1 * first_x_platform
             + inv_r_p_bias_a_end_y_leg3 * first_y_platform;
         let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
             + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
-            - (t9_leg3 + g2_vy_leg4 * force_on_u2_leg4
+            - (t8_leg3 + g2_vy_leg4 * force_on_u2_leg4
                 - minus_g1_vy_leg4 * force_on_u1_leg4 - minus_force_y_platform);
         let t3 = t2 - t1 * l_2_1;
         // --- leg2
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let t6_leg2 = g1_wz_leg2 * masses_leg2_1_2
+        let t5_leg2 = g1_wz_leg2 * masses_leg2_1_2
             - minus_g2_wz_leg2 * base_parameters[21];
-        let t7_leg2 = g1_wz_leg2 * base_parameters[5]
+        let t6_leg2 = g1_wz_leg2 * base_parameters[5]
             - minus_g2_wz_leg2 * masses_leg2_1_2;
         // --- leg1
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let t5_leg1 = minus_g1_wz_leg1 * base_parameters[4]
+        let t4_leg1 = minus_g1_wz_leg1 * base_parameters[4]
             + g2_wz_leg1 * minus_masses_leg1_1_2;
-        let t6_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
+        let t5_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
             + g2_wz_leg1 * base_parameters[20];
         // --- leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t10_leg3 = g1_wz_leg3 * base_parameters[6]
+        let t9_leg3 = g1_wz_leg3 * base_parameters[6]
             + minus_g2_wz_leg3 * minus_masses_leg3_1_2;
-        let t11_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
+        let t10_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
             + minus_g2_wz_leg3 * base_parameters[22];
-        let t12_leg3 = g2_vy_leg2 * t6_leg2 - minus_g1_vy_leg2 * t7_leg2
-            - (g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t6_leg1) + g1_vy_leg3 * t10_leg3
-            + minus_g2_vy_leg3 * t11_leg3;
+        let t11_leg3 = g2_vy_leg2 * t5_leg2 - minus_g1_vy_leg2 * t6_leg2
+            - (g1_vy_leg1 * t4_leg1 + minus_g2_vy_leg1 * t5_leg1) + g1_vy_leg3 * t9_leg3
+            + minus_g2_vy_leg3 * t10_leg3;
         // --- leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let t6_leg4 = g2_wz_leg4 * base_parameters[23]
+        let t5_leg4 = g2_wz_leg4 * base_parameters[23]
             - minus_g1_wz_leg4 * masses_leg4_1_2;
-        let t7_leg4 = g2_wz_leg4 * masses_leg4_1_2
+        let t6_leg4 = g2_wz_leg4 * masses_leg4_1_2
             - minus_g1_wz_leg4 * base_parameters[7];
-        let mass_2_3 = t12_leg3 + g2_vy_leg4 * t6_leg4 - minus_g1_vy_leg4 * t7_leg4
+        let mass_2_3 = t11_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
             + c_phi * first_x_platform - s_phi * first_y_platform;
-        let t13_leg3 = g2_vx_leg2 * t6_leg2 - minus_g1_vx_leg2 * t7_leg2
-            - (g1_vx_leg1 * t5_leg1 + minus_g2_vx_leg1 * t6_leg1) + g1_vx_leg3 * t10_leg3
-            + minus_g2_vx_leg3 * t11_leg3;
-        let mass_1_3 = t13_leg3 + g2_vx_leg4 * t6_leg4 - minus_g1_vx_leg4 * t7_leg4
+        let t12_leg3 = g2_vx_leg2 * t5_leg2 - minus_g1_vx_leg2 * t6_leg2
+            - (g1_vx_leg1 * t4_leg1 + minus_g2_vx_leg1 * t5_leg1) + g1_vx_leg3 * t9_leg3
+            + minus_g2_vx_leg3 * t10_leg3;
+        let mass_1_3 = t12_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
             - (s_phi * first_x_platform + c_phi * first_y_platform);
         let l_3_1 = mass_1_3 * inv_pivot_1;
         let schur_2_3 = mass_2_3 - mass_1_2 * l_3_1;
         let l_3_2 = schur_2_3 * inv_pivot_2;
-        let t14_leg3 = g2_wz_leg1 * force_on_u2_leg1
+        let t13_leg3 = g2_wz_leg1 * force_on_u2_leg1
             - minus_g1_wz_leg1 * force_on_u1_leg1 + tau_3_leg1
             + g1_wz_leg2 * force_on_u1_leg2 - minus_g2_wz_leg2 * force_on_u2_leg2
             + tau_3_leg2 + g1_wz_leg3 * force_on_u1_leg3
             - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
         let t4 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
             + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3]
-            - (t14_leg3 + g2_wz_leg4 * force_on_u2_leg4
+            - (t13_leg3 + g2_wz_leg4 * force_on_u2_leg4
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4);
-        let t15_leg3 = minus_g1_wz_leg1 * t5_leg1 + g2_wz_leg1 * t6_leg1
-            + g1_wz_leg2 * t7_leg2 - minus_g2_wz_leg2 * t6_leg2 + g1_wz_leg3 * t10_leg3
-            + minus_g2_wz_leg3 * t11_leg3;
+        let t14_leg3 = minus_g1_wz_leg1 * t4_leg1 + g2_wz_leg1 * t5_leg1
+            + g1_wz_leg2 * t6_leg2 - minus_g2_wz_leg2 * t5_leg2 + g1_wz_leg3 * t9_leg3
+            + minus_g2_wz_leg3 * t10_leg3;
         let inertia_zz_platform = base_parameters[0] + base_parameters[49];
-        let mass_3_3 = t15_leg3 + g2_wz_leg4 * t6_leg4 - minus_g1_wz_leg4 * t7_leg4
+        let mass_3_3 = t14_leg3 + g2_wz_leg4 * t5_leg4 - minus_g1_wz_leg4 * t6_leg4
             + inertia_zz_platform;
         let pivot_3 = mass_3_3 - mass_1_3 * l_3_1 - schur_2_3 * l_3_2;
         ::overact::guard::mass(pivot_3)?;
@@ -12614,8 +12506,6 @@ impl DualV {
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
-            + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
         ::overact::guard::platform(
@@ -12624,6 +12514,8 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
+        let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+            + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
@@ -12647,7 +12539,7 @@ impl DualV {
         )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - t1 * l_2_1;
+            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - l_2_1 * t1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -12662,7 +12554,7 @@ impl DualV {
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
         let l_3_2 = schur_2_3 * inv_pivot_2;
         let t3 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
-            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - t1 * l_3_1
+            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - l_3_1 * t1
             - l_3_2 * t2;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
@@ -12674,7 +12566,7 @@ impl DualV {
         )?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
-        let t6 = t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4;
+        let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
             g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),

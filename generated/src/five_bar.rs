@@ -16,41 +16,41 @@
 /// | `actuator_positions` | 45, 2 √, 2 at, 4 gd |  |
 /// | `inverse_jacobian` | 43, 2 √, 6 gd |  |
 /// | `inverse_jacobian_from_joints` | 8, 4 sc, 2 gd |  |
-/// | `jacobian` | 69, 2 √, 8 gd |  |
+/// | `jacobian` | 51, 2 √, 8 gd |  |
 /// | `legs_jacobian_from_joints` | 14, 4 sc |  |
 /// | `legs_platform_jacobian_from_joints` | 0 |  |
 /// | `closure_platform_jacobian_from_joints` | 6, 2 sc |  |
 /// | `closure_actuator_jacobian_from_joints` | 2, 2 sc |  |
 /// | `joint_velocities` | 61, 2 √, 6 gd |  |
 /// | `joint_accelerations` | 101, 2 √, 6 gd |  |
-/// | `twist_from_actuators` | 68, 2 √, 8 gd |  |
-/// | `acceleration_from_actuators` | 102, 2 √, 8 gd |  |
+/// | `twist_from_actuators` | 55, 2 √, 8 gd |  |
+/// | `acceleration_from_actuators` | 89, 2 √, 8 gd |  |
 /// | `idm_red_platform` | 194, 2 √, 4 sg, 6 gd |  |
 /// | `idm_red_platform_from_joints` | 161, 4 sc, 4 sg, 2 gd |  |
-/// | `idm_red_platform_from_actuators` | 235, 3 √, 2 sc, 4 sg, 12 gd |  |
+/// | `idm_red_platform_from_actuators` | 224, 3 √, 2 sc, 4 sg, 12 gd |  |
 /// | `idm_red_actuators` | 182, 2 √, 4 sg, 8 gd |  |
 /// | `idm_red_actuators_from_joints` | 155, 4 sc, 4 sg, 4 gd |  |
-/// | `idm_red_actuators_from_actuators` | 230, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `idm_red_actuators_from_actuators` | 208, 3 √, 2 sc, 4 sg, 14 gd |  |
 /// | `idm_red_platform_base` | 166, 2 √, 4 sg, 6 gd |  |
 /// | `idm_red_platform_base_from_joints` | 129, 4 sc, 4 sg, 2 gd |  |
-/// | `idm_red_platform_base_from_actuators` | 208, 3 √, 2 sc, 4 sg, 12 gd |  |
+/// | `idm_red_platform_base_from_actuators` | 195, 3 √, 2 sc, 4 sg, 12 gd |  |
 /// | `idm_red_actuators_base` | 164, 2 √, 4 sg, 8 gd |  |
 /// | `idm_red_actuators_base_from_joints` | 137, 4 sc, 4 sg, 4 gd |  |
-/// | `idm_red_actuators_base_from_actuators` | 212, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `idm_red_actuators_base_from_actuators` | 190, 3 √, 2 sc, 4 sg, 14 gd |  |
 /// | `project_platform` | 49, 2 √, 6 gd |  |
 /// | `project_actuators` | 0 |  |
-/// | `inverse_dynamics` | 243, 2 √, 4 sg, 8 gd |  |
-/// | `inverse_dynamics_from_joints` | 212, 4 sc, 4 sg, 4 gd |  |
-/// | `inverse_dynamics_from_actuators` | 278, 3 √, 2 sc, 4 sg, 14 gd |  |
-/// | `inverse_dynamics_base` | 213, 2 √, 4 sg, 8 gd |  |
-/// | `inverse_dynamics_base_from_joints` | 182, 4 sc, 4 sg, 4 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 248, 3 √, 2 sc, 4 sg, 14 gd |  |
-/// | `mass_matrix` | 114, 2 √, 6 gd |  |
-/// | `mass_matrix_base` | 100, 2 √, 6 gd |  |
-/// | `bias` | 199, 2 √, 4 sg, 6 gd |  |
-/// | `bias_base` | 169, 2 √, 4 sg, 6 gd |  |
-/// | `forward_dynamics` | 274, 2 √, 4 sg, 8 gd |  |
-/// | `forward_dynamics_base` | 236, 2 √, 4 sg, 8 gd |  |
+/// | `inverse_dynamics` | 222, 2 √, 4 sg, 8 gd |  |
+/// | `inverse_dynamics_from_joints` | 188, 4 sc, 4 sg, 4 gd |  |
+/// | `inverse_dynamics_from_actuators` | 248, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `inverse_dynamics_base` | 186, 2 √, 4 sg, 8 gd |  |
+/// | `inverse_dynamics_base_from_joints` | 147, 4 sc, 4 sg, 4 gd |  |
+/// | `inverse_dynamics_base_from_actuators` | 211, 3 √, 2 sc, 4 sg, 14 gd |  |
+/// | `mass_matrix` | 111, 2 √, 6 gd |  |
+/// | `mass_matrix_base` | 98, 2 √, 6 gd |  |
+/// | `bias` | 198, 2 √, 4 sg, 6 gd |  |
+/// | `bias_base` | 160, 2 √, 4 sg, 6 gd |  |
+/// | `forward_dynamics` | 272, 2 √, 4 sg, 8 gd |  |
+/// | `forward_dynamics_base` | 227, 2 √, 4 sg, 8 gd |  |
 /// | `project_torques` | 0 |  |
 ///
 /// # Names
@@ -58,7 +58,7 @@
 /// | name | symbol | meaning |
 /// |---|---|---|
 /// | `vx` | v | platform's velocity that fits the actuators' best, eq. (21) |
-/// | `dvx` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
+/// | `dvy` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
 /// | `c12_left` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
 /// | `s2_left` | sin q | sine of a joint angle, named as its cosine is |
 /// | `d_x_left` | D | from the leg's first joint to its end, in the leg's plane, m |
@@ -81,13 +81,12 @@
 /// | `a_on_f1_left` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
 /// | `bias_a_on_f1_left` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
 /// | `a1_x_left` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
-/// | `v2_by_1_y_left` | ∂V_j/∂u_i | partial velocity of the origin of body j |
+/// | `v2_by_1_x_left` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `force2_x_left` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
 /// | `moment2_z_left` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_left` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_left` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `bias_a1_x_left` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
-/// | `s_1_1` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
 /// | `inv_pivot_1` | 1/d_k | its reciprocal |
 /// | `l_2_1` | L | entry of L |
@@ -506,7 +505,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 69 operations (24 additions, 39 multiplications, 6 divisions), 2 square roots, 8 guards, 1 negation, 67 intermediates.
+    /// 51 operations (17 additions, 29 multiplications, 5 divisions), 2 square roots, 8 guards, 2 negations, 49 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -520,9 +519,21 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// 2 l_2
         const TWICE_L_2: ::core::primitive::f64 = 0.5;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let y_squared = pose[1] * pose[1];
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let det_right = rho_squared_right * h_right;
+        let k_right = 1.0 / det_right;
+        let g1_vy_right = l2_y_right * k_right;
         // --- left
         let d_x_left = pose[0] + HALF;
-        let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
@@ -534,54 +545,32 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t1 = inv_pivot_2 * (minus_g1_vx_left * l_2_1 - minus_g1_vy_left);
-        let t2 = inv_pivot_2 * (g1_vy_right - g1_vx_right * l_2_1);
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = 1.0 / t1;
         ::core::result::Result::Ok([
-            [
-                -(minus_g1_vx_left * inv_pivot_1 + l_2_1 * t1),
-                g1_vx_right * inv_pivot_1 - l_2_1 * t2,
-            ],
-            [t1, t2],
+            [-(g1_vy_right * t2), -(minus_g1_vy_left * t2)],
+            [g1_vx_right * t2, minus_g1_vx_left * t2],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -886,7 +875,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 68 operations (24 additions, 38 multiplications, 6 divisions), 2 square roots, 8 guards, 68 intermediates.
+    /// 55 operations (19 additions, 31 multiplications, 5 divisions), 2 square roots, 8 guards, 1 negation, 55 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -903,21 +892,9 @@ impl FiveBar {
         const L_1_SQUARED: ::core::primitive::f64 = 0.04;
         /// 2 l_2
         const TWICE_L_2: ::core::primitive::f64 = 0.5;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
         // --- left
         let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
@@ -929,38 +906,49 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
-        let t1 = g1_vx_right * actuator_velocities[1]
-            - minus_g1_vx_left * actuator_velocities[0];
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vy_right = l2_y_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        let t2 = (g1_vy_right * actuator_velocities[1]
-            - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = 1.0 / t1;
+        ::core::result::Result::Ok([
+            -(t2
+                * (g1_vy_right * actuator_velocities[0]
+                    + minus_g1_vy_left * actuator_velocities[1])),
+            t2
+                * (g1_vx_right * actuator_velocities[0]
+                    + minus_g1_vx_left * actuator_velocities[1]),
+        ])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -971,7 +959,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 102 operations (34 additions, 62 multiplications, 6 divisions), 2 square roots, 8 guards, 102 intermediates.
+    /// 89 operations (29 additions, 55 multiplications, 5 divisions), 2 square roots, 8 guards, 1 negation, 89 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -994,37 +982,9 @@ impl FiveBar {
         const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
         /// 2 l_2
         const TWICE_L_2: ::core::primitive::f64 = 0.5;
-        // --- right
-        let d_x_right = pose[0] - HALF;
-        let y_squared = pose[1] * pose[1];
-        let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right
-                + rate_1_squared_right * (TWICE_L_2 * (rho_squared_right - 0.1025)));
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
         // --- left
         let d_x_left = pose[0] + HALF;
+        let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
@@ -1036,19 +996,47 @@ impl FiveBar {
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, "right")?;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
-        let g2_vx_left = l1_x_left * k_left;
+        // --- right
+        let d_x_right = pose[0] - HALF;
+        let rho_squared_right = d_x_right * d_x_right + y_squared;
+        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        let inv_rho_squared_right = 1.0 / rho_squared_right;
+        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
+        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        ::overact::guard::reach(h_squared_right, "right")?;
+        let h_right = ::overact::math::sqrt(h_squared_right);
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vy_right = l2_y_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = 1.0 / t1;
+        // --- left
+        let g2_vx_left = l1_x_left * k_left;
         let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
@@ -1057,27 +1045,28 @@ impl FiveBar {
                 + rate_1_squared_left * (TWICE_L_2 * (rho_squared_left - 0.1025)));
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
-        let t1 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right
+                + rate_1_squared_right * (TWICE_L_2 * (rho_squared_right - 0.1025)));
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        ::core::result::Result::Ok([
+            -(t2
+                * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right)),
+            t2
+                * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                    + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right),
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1491,7 +1480,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 235 operations (73 additions, 144 multiplications, 18 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 12 guards, 18 negations, 195 intermediates.
+    /// 224 operations (66 additions, 148 multiplications, 10 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 12 guards, 24 negations, 185 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -1548,8 +1537,6 @@ impl FiveBar {
         let minus_zz_1_left_on_vy = minus_g1_vy_left * actuator_accelerations[0];
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
-        let minus_fv_1_left_on_vx = minus_g1_vx_left * actuator_velocities[0];
-        let minus_fv_1_left_on_vy = minus_g1_vy_left * actuator_velocities[0];
         let g2_vx_left = l1_x_left * k_left;
         // --- right
         let d_x_right = pose[0] - HALF;
@@ -1559,58 +1546,46 @@ impl FiveBar {
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let g1_vx_right = l2_x_right / det_right;
-        let minus_g2_vx_right = l1_x_right / det_right;
-        let fv_1_right_on_vx = g1_vx_right * actuator_velocities[1];
-        let t1 = fv_1_right_on_vx - minus_fv_1_left_on_vx;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right / det_right;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 / s_1_1;
-        let fv_1_right_on_vy = g1_vy_right * actuator_velocities[1];
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let k_right = 1.0 / det_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        let vy = (fv_1_right_on_vy - minus_fv_1_left_on_vy - t1 * l_2_1) / pivot_2;
-        let vx = t1 / s_1_1 - l_2_1 * vy;
-        let minus_g2_vy_right = l1_y_right / det_right;
-        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = (bias_a_on_f1_right
-            + rate_1_squared_right * t2_right) / det_right;
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        // --- left
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = 1.0 / t1;
         let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let vy = t2
+            * (g1_vx_right * actuator_velocities[0]
+                + minus_g1_vx_left * actuator_velocities[1]);
+        let minus_vx = t2
+            * (g1_vy_right * actuator_velocities[0]
+                + minus_g1_vy_left * actuator_velocities[1]);
+        // --- left
+        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
@@ -1619,118 +1594,129 @@ impl FiveBar {
             * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
-        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
-        let dvy = (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2) / pivot_2;
-        let dvx = t2 / s_1_1 - l_2_1 * dvy;
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+        let rate_2_squared_right = rate_2_right * rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        let minus_dvx = t2
+            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+        let dvy = t2
+            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
+        // --- left
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
-            + minus_bias_a_on_f2_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
-        let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
-        let zz_2_left_on_vy = g2_vy_left * rate_dot_2_left;
-        let inv_l_2_dvx = INV_L_2 * dvx;
+        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+            - minus_bias_a_on_f2_left;
+        let minus_rate_dot_2_left = k_left
+            * (a_on_f2_left - rate_2_squared_left * t2_left);
+        let minus_zz_2_left_on_vx = g2_vx_left * minus_rate_dot_2_left;
+        let minus_zz_2_left_on_vy = g2_vy_left * minus_rate_dot_2_left;
         let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
             + L_1 * actuator_accelerations[0];
         let t3_left = L_1 * bias_a1_y_plus_l_1_qdd1_left;
         let minus_m_2_left_on_vx = minus_g1_vx_left * t3_left;
+        let minus_inv_l_2_dvx = INV_L_2 * minus_dvx;
         let m_platform_on_vy = dvy + 9.81;
         let inv_l_2_m_platform_on_vy = INV_L_2 * m_platform_on_vy;
         let minus_m_2_left_on_vy = minus_g1_vy_left * t3_left;
-        let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
+        let inv_l_2_a_on_f2_left = INV_L_2 * a_on_f2_left;
         let c2_left = t2_left * L_1_PER_HALF_SQUARED;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
         let qd_2_left = rate_2_left - actuator_velocities[0];
-        let t4_left = ::overact::math::signed(k_left, qd_2_left);
+        let t4_left = ::overact::math::sign(qd_2_left) / det_left;
         // --- right
         let zz_1_right_on_vx = g1_vx_right * actuator_accelerations[1];
         let zz_1_right_on_vy = g1_vy_right * actuator_accelerations[1];
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
-            + minus_bias_a_on_f2_right;
-        let minus_rate_dot_2_right = (minus_a_on_f2_right
-            + rate_2_squared_right * t2_right) / det_right;
-        let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
-        let zz_2_right_on_vy = minus_g2_vy_right * minus_rate_dot_2_right;
+        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+            - minus_bias_a_on_f2_right;
+        let rate_dot_2_right = k_right
+            * (a_on_f2_right - rate_2_squared_right * t2_right);
+        let minus_zz_2_right_on_vx = minus_g2_vx_right * rate_dot_2_right;
+        let minus_zz_2_right_on_vy = minus_g2_vy_right * rate_dot_2_right;
         let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
             + L_1 * actuator_accelerations[1];
         let t3_right = L_1 * bias_a1_y_plus_l_1_qdd1_right;
         let m_2_right_on_vx = g1_vx_right * t3_right;
         let m_2_right_on_vy = g1_vy_right * t3_right;
-        let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
         let c2_right = t2_right * L_1_PER_HALF_SQUARED;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * bias_a1_y_plus_l_1_qdd1_right;
-        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
-        let t4_right = ::overact::math::sign(minus_qd_2_right) / det_right;
+        let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
+        let qd_2_right = rate_2_right - actuator_velocities[1];
+        let t4_right = ::overact::math::sign(qd_2_right) / det_right;
         ::core::result::Result::Ok([
             [
                 -minus_zz_1_left_on_vx, -(minus_g1_vx_left * bias_a1_y_left),
-                minus_g1_vx_left * bias_a1_x_left, -minus_zz_1_left_on_vx, -minus_fv_1_left_on_vx,
+                minus_g1_vx_left * bias_a1_x_left, -minus_zz_1_left_on_vx,
+                -(minus_g1_vx_left * actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
-                -minus_g1_vx_left, zz_2_left_on_vx,
-                inv_l_2_dvx
-                    - L_1_SQUARED_PER_L_2
-                        * (1.5625 * zz_2_left_on_vx
-                            - INV_L_1_SQUARED * minus_m_2_left_on_vx),
-                -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
-                    + g2_vx_left * a2_x_left),
+                -minus_g1_vx_left, -minus_zz_2_left_on_vx,
+                L_1_SQUARED_PER_L_2
+                    * (INV_L_1_SQUARED * minus_m_2_left_on_vx
+                        + 1.5625 * minus_zz_2_left_on_vx) - minus_inv_l_2_dvx,
+                minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
                 -minus_m_2_left_on_vx,
                 d_x_left * t4_left,
                 zz_1_right_on_vx,
                 g1_vx_right * bias_a1_y_right,
                 -(g1_vx_right * bias_a1_x_right),
                 zz_1_right_on_vx,
-                fv_1_right_on_vx,
+                g1_vx_right * actuator_velocities[1],
                 ::overact::math::signed(g1_vx_right, actuator_velocities[1]),
                 g1_vx_right,
-                zz_2_right_on_vx,
-                inv_l_2_dvx
-                    - L_1_SQUARED_PER_L_2
+                -minus_zz_2_right_on_vx,
+                -(minus_inv_l_2_dvx
+                    + L_1_SQUARED_PER_L_2
                         * (INV_L_1_SQUARED * m_2_right_on_vx
-                            + 1.5625 * zz_2_right_on_vx),
-                g1_vx_right * minus_inv_l_2_a_on_f2_right
-                    + minus_g2_vx_right * a2_x_right,
+                            - 1.5625 * minus_zz_2_right_on_vx)),
+                minus_g2_vx_right * a2_x_right - g1_vx_right * inv_l_2_a_on_f2_right,
                 m_2_right_on_vx,
-                d_x_right * t4_right,
-                dvx,
+                -(d_x_right * t4_right),
+                -minus_dvx,
             ],
             [
                 -minus_zz_1_left_on_vy, -(minus_g1_vy_left * bias_a1_y_left),
-                minus_g1_vy_left * bias_a1_x_left, -minus_zz_1_left_on_vy, -minus_fv_1_left_on_vy,
+                minus_g1_vy_left * bias_a1_x_left, -minus_zz_1_left_on_vy,
+                -(minus_g1_vy_left * actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vy_left, actuator_velocities[0]),
-                -minus_g1_vy_left, zz_2_left_on_vy,
+                -minus_g1_vy_left, -minus_zz_2_left_on_vy,
                 inv_l_2_m_platform_on_vy
-                    - L_1_SQUARED_PER_L_2
-                        * (1.5625 * zz_2_left_on_vy
-                            - INV_L_1_SQUARED * minus_m_2_left_on_vy),
-                -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
-                    + g2_vy_left * a2_x_left),
+                    + L_1_SQUARED_PER_L_2
+                        * (INV_L_1_SQUARED * minus_m_2_left_on_vy
+                            + 1.5625 * minus_zz_2_left_on_vy),
+                minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
                 -minus_m_2_left_on_vy,
                 pose[1] * t4_left,
                 zz_1_right_on_vy,
                 g1_vy_right * bias_a1_y_right,
                 -(g1_vy_right * bias_a1_x_right),
                 zz_1_right_on_vy,
-                fv_1_right_on_vy,
+                g1_vy_right * actuator_velocities[1],
                 ::overact::math::signed(g1_vy_right, actuator_velocities[1]),
                 g1_vy_right,
-                zz_2_right_on_vy,
+                -minus_zz_2_right_on_vy,
                 inv_l_2_m_platform_on_vy
                     - L_1_SQUARED_PER_L_2
                         * (INV_L_1_SQUARED * m_2_right_on_vy
-                            + 1.5625 * zz_2_right_on_vy),
-                g1_vy_right * minus_inv_l_2_a_on_f2_right
-                    + minus_g2_vy_right * a2_x_right,
+                            - 1.5625 * minus_zz_2_right_on_vy),
+                minus_g2_vy_right * a2_x_right - g1_vy_right * inv_l_2_a_on_f2_right,
                 m_2_right_on_vy,
-                pose[1] * t4_right,
+                -(pose[1] * t4_right),
                 m_platform_on_vy,
             ],
         ])
@@ -2138,7 +2124,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 230 operations (76 additions, 146 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 8 negations, 211 intermediates.
+    /// 208 operations (68 additions, 134 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 8 negations, 189 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2228,58 +2214,39 @@ impl FiveBar {
             22.615508735629323,
             ::overact::ActuatorGroup::Kept,
         )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
         let vy_by_a1 = g1_vx_right * inv_det_ja;
         let g2_vx_left = l1_x_left * k_left;
         let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
         let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let t1 = g1_vx_right * actuator_velocities[1]
-            - minus_g1_vx_left * actuator_velocities[0];
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let vy = inv_pivot_2
-            * (g1_vy_right * actuator_velocities[1]
-                - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1);
-        let vx = t1 * inv_pivot_1 - l_2_1 * vy;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
+        let vy = inv_det_ja
+            * (g1_vx_right * actuator_velocities[0]
+                + minus_g1_vx_left * actuator_velocities[1]);
+        let minus_vx = inv_det_ja
+            * (g1_vy_right * actuator_velocities[0]
+                + minus_g1_vy_left * actuator_velocities[1]);
         // --- left
-        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
@@ -2289,28 +2256,42 @@ impl FiveBar {
             * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
-        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
-        let dvy = inv_pivot_2
-            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
-                - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2);
-        let dvx = inv_pivot_1 * t2 - l_2_1 * dvy;
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+        let rate_2_squared_right = rate_2_right * rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        let minus_dvx = inv_det_ja
+            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+        let dvy = inv_det_ja
+            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
+        // --- left
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
-            + minus_bias_a_on_f2_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-        let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
+        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+            - minus_bias_a_on_f2_left;
+        let minus_rate_dot_2_left = k_left
+            * (a_on_f2_left - rate_2_squared_left * t3_left);
+        let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
         let g2_a2_left = k_left * inv_det_ja;
-        let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
+        let minus_zz_2_left_on_q1_right = g2_a2_left * minus_rate_dot_2_left;
         let t1_platform = dvy + 9.81;
-        let m_platform_on_q1_left = vy_by_a1 * t1_platform - minus_vx_by_a1 * dvx;
+        let m_platform_on_q1_left = minus_vx_by_a1 * minus_dvx + vy_by_a1 * t1_platform;
         let inv_l_2_m_platform_on_q1_left = INV_L_2 * m_platform_on_q1_left;
         let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
             + L_1 * actuator_accelerations[0];
-        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
         let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
-        let m_platform_on_q1_right = vy_by_a2 * t1_platform - minus_vx_by_a2 * dvx;
+        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
+        let m_platform_on_q1_right = minus_vx_by_a2 * minus_dvx + vy_by_a2 * t1_platform;
         let inv_l_2_m_platform_on_q1_right = INV_L_2 * m_platform_on_q1_right;
         let c2_left = INV_HALF * t2_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
@@ -2322,31 +2303,31 @@ impl FiveBar {
         let g2_a1_right = k_right * inv_det_ja;
         // --- right
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
-            + minus_bias_a_on_f2_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let minus_zz_2_right_on_q1_left = g2_a1_right * minus_rate_dot_2_right;
+        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+            - minus_bias_a_on_f2_right;
+        let rate_dot_2_right = k_right
+            * (a_on_f2_right - rate_2_squared_right * t3_right);
+        let zz_2_right_on_q1_left = g2_a1_right * rate_dot_2_right;
         let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
             - minus_g2_vy_right * vy_by_a2;
-        let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
+        let zz_2_right_on_q1_right = g2_a2_right * rate_dot_2_right;
         let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
             + L_1 * actuator_accelerations[1];
         let c2_right = INV_HALF * t2_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * bias_a1_y_plus_l_1_qdd1_right;
-        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
+        let qd_2_right = rate_2_right - actuator_velocities[1];
         ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], bias_a1_y_left, -bias_a1_x_left,
                 actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, zz_2_left_on_q1_left,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, -minus_zz_2_left_on_q1_left,
                 inv_l_2_m_platform_on_q1_left
                     - L_1_SQUARED_PER_L_2
                         * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_left
-                            + 1.5625 * zz_2_left_on_q1_left),
-                INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left,
+                            - 1.5625 * minus_zz_2_left_on_q1_left),
+                -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left),
                 L_1 * bias_a1_y_plus_l_1_qdd1_left,
                 ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
                 0.0,
@@ -2356,27 +2337,27 @@ impl FiveBar {
                 0.0,
                 0.0,
                 0.0,
-                -minus_zz_2_right_on_q1_left,
-                inv_l_2_m_platform_on_q1_left + L_2 * minus_zz_2_right_on_q1_left,
+                zz_2_right_on_q1_left,
+                inv_l_2_m_platform_on_q1_left - L_2 * zz_2_right_on_q1_left,
                 -(g2_a1_right * a2_x_right),
                 0.0,
-                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
+                ::overact::math::signed(g2_a1_right, qd_2_right),
                 m_platform_on_q1_left,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, zz_2_left_on_q1_right,
-                inv_l_2_m_platform_on_q1_right - L_2 * zz_2_left_on_q1_right,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -minus_zz_2_left_on_q1_right,
+                inv_l_2_m_platform_on_q1_right + L_2 * minus_zz_2_left_on_q1_right,
                 -(g2_a2_left * a2_x_left), 0.0, ::overact::math::signed(g2_a2_left, qd_2_left),
                 actuator_accelerations[1], bias_a1_y_right, -bias_a1_x_right,
                 actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -minus_zz_2_right_on_q1_right,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, zz_2_right_on_q1_right,
                 inv_l_2_m_platform_on_q1_right
                     - L_1_SQUARED_PER_L_2
                         * (INV_L_1 * bias_a1_y_plus_l_1_qdd1_right
-                            - 1.5625 * minus_zz_2_right_on_q1_right),
-                INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                            + 1.5625 * zz_2_right_on_q1_right),
+                -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right),
                 L_1 * bias_a1_y_plus_l_1_qdd1_right,
-                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
+                ::overact::math::signed(g2_a2_right - 1.0, qd_2_right),
                 m_platform_on_q1_right,
             ],
         ])
@@ -2689,7 +2670,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 208 operations (65 additions, 131 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 12 guards, 14 negations, 175 intermediates.
+    /// 195 operations (58 additions, 125 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 12 guards, 19 negations, 163 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -2727,13 +2708,11 @@ impl FiveBar {
         let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
         let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let fv_1_right_on_vx = g1_vx_right * actuator_velocities[1];
+        let g1_vy_right = l2_y_right * k_right;
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
@@ -2742,67 +2721,49 @@ impl FiveBar {
         let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
-        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
         ::overact::guard::reach(h_squared_right, "right")?;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let minus_fv_1_left_on_vx = minus_g1_vx_left * actuator_velocities[0];
-        let t1 = fv_1_right_on_vx - minus_fv_1_left_on_vx;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 / s_1_1;
-        let fv_1_right_on_vy = g1_vy_right * actuator_velocities[1];
-        let minus_fv_1_left_on_vy = minus_g1_vy_left * actuator_velocities[0];
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        let vy = (fv_1_right_on_vy - minus_fv_1_left_on_vy - t1 * l_2_1) / pivot_2;
-        let vx = t1 / s_1_1 - l_2_1 * vy;
-        // --- right
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        // --- left
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let vy = (g1_vx_right * actuator_velocities[0]
+            + minus_g1_vx_left * actuator_velocities[1]) / t1;
         let g2_vx_left = l1_x_left * k_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let minus_vx = (g1_vy_right * actuator_velocities[0]
+            + minus_g1_vy_left * actuator_velocities[1]) / t1;
+        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
@@ -2811,72 +2772,80 @@ impl FiveBar {
             * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
-        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
-        let dvy = (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2) / pivot_2;
-        let dvx = t2 / s_1_1 - l_2_1 * dvy;
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+        let rate_2_squared_right = rate_2_right * rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        let minus_dvx = (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+            + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right) / t1;
+        let dvy = (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+            + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right) / t1;
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_left = 49.05 * l1_y_left;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
-            + minus_bias_a_on_f2_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+            - minus_bias_a_on_f2_left;
+        let minus_rate_dot_2_left = k_left
+            * (a_on_f2_left - rate_2_squared_left * t2_left);
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
-            + minus_bias_a_on_f2_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
-        let minus_inv_l_2_a_on_f2_left = INV_L_2 * minus_a_on_f2_left;
+        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+            - minus_bias_a_on_f2_right;
+        let rate_dot_2_right = k_right
+            * (a_on_f2_right - rate_2_squared_right * t2_right);
+        // --- left
+        let inv_l_2_a_on_f2_left = INV_L_2 * a_on_f2_left;
         let c2_left = t2_left * L_1_PER_HALF_SQUARED;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
         // --- right
-        let minus_inv_l_2_a_on_f2_right = INV_L_2 * minus_a_on_f2_right;
         let c2_right = t2_right * L_1_PER_HALF_SQUARED;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+        let inv_l_2_a_on_f2_right = INV_L_2 * a_on_f2_right;
         let qd_2_left = rate_2_left - actuator_velocities[0];
         let t3_left = ::overact::math::signed(k_left, qd_2_left);
-        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
-        let t3_right = ::overact::math::signed(k_right, minus_qd_2_right);
+        let qd_2_right = rate_2_right - actuator_velocities[1];
+        let t3_right = ::overact::math::sign(qd_2_right) / det_right;
         ::core::result::Result::Ok([
             [
-                dvx, -(minus_g1_vx_left * actuator_accelerations[0]),
+                -minus_dvx, -(minus_g1_vx_left * actuator_accelerations[0]),
                 g1_vx_right * actuator_accelerations[1], -(minus_g1_vx_left * bias_a1_y_left),
                 g1_vx_right * bias_a1_y_right, minus_g1_vx_left * bias_a1_x_left,
-                -(g1_vx_right * bias_a1_x_right), -minus_fv_1_left_on_vx, fv_1_right_on_vx,
+                -(g1_vx_right * bias_a1_x_right), -(minus_g1_vx_left * actuator_velocities[0]),
+                g1_vx_right * actuator_velocities[1],
                 -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
                 ::overact::math::signed(g1_vx_right, actuator_velocities[1]), -minus_g1_vx_left,
-                g1_vx_right, g2_vx_left * rate_dot_2_left,
-                minus_g2_vx_right * minus_rate_dot_2_right,
-                -(minus_g1_vx_left * minus_inv_l_2_a_on_f2_left
-                    + g2_vx_left * a2_x_left),
-                g1_vx_right * minus_inv_l_2_a_on_f2_right
-                    + minus_g2_vx_right * a2_x_right,
-                d_x_left * t3_left,
-                d_x_right * t3_right,
+                g1_vx_right, -(g2_vx_left * minus_rate_dot_2_left),
+                -(minus_g2_vx_right * rate_dot_2_right),
+                minus_g1_vx_left * inv_l_2_a_on_f2_left - g2_vx_left * a2_x_left,
+                minus_g2_vx_right * a2_x_right - g1_vx_right * inv_l_2_a_on_f2_right,
+                d_x_left * t3_left, -(d_x_right * t3_right),
             ],
             [
                 dvy + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
                 g1_vy_right * actuator_accelerations[1], -(minus_g1_vy_left * bias_a1_y_left),
                 g1_vy_right * bias_a1_y_right, minus_g1_vy_left * bias_a1_x_left,
-                -(g1_vy_right * bias_a1_x_right), -minus_fv_1_left_on_vy, fv_1_right_on_vy,
+                -(g1_vy_right * bias_a1_x_right), -(minus_g1_vy_left * actuator_velocities[0]),
+                g1_vy_right * actuator_velocities[1],
                 -::overact::math::signed(minus_g1_vy_left, actuator_velocities[0]),
                 ::overact::math::signed(g1_vy_right, actuator_velocities[1]), -minus_g1_vy_left,
-                g1_vy_right, g2_vy_left * rate_dot_2_left,
-                minus_g2_vy_right * minus_rate_dot_2_right,
-                -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
-                    + g2_vy_left * a2_x_left),
-                g1_vy_right * minus_inv_l_2_a_on_f2_right
-                    + minus_g2_vy_right * a2_x_right,
-                pose[1] * t3_left,
-                pose[1] * t3_right,
+                g1_vy_right, -(g2_vy_left * minus_rate_dot_2_left),
+                -(minus_g2_vy_right * rate_dot_2_right),
+                minus_g1_vy_left * inv_l_2_a_on_f2_left - g2_vy_left * a2_x_left,
+                minus_g2_vy_right * a2_x_right - g1_vy_right * inv_l_2_a_on_f2_right,
+                pose[1] * t3_left, -(pose[1] * t3_right),
             ],
         ])
     }
@@ -3209,7 +3178,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 212 operations (70 additions, 134 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 8 negations, 199 intermediates.
+    /// 190 operations (62 additions, 122 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 8 negations, 177 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3250,11 +3219,11 @@ impl FiveBar {
         let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
         let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
+        let g1_vy_right = l2_y_right * k_right;
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
@@ -3273,12 +3242,12 @@ impl FiveBar {
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
         let det_ja = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
             det_ja,
@@ -3290,58 +3259,37 @@ impl FiveBar {
             22.615508735629323,
             ::overact::ActuatorGroup::Kept,
         )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            det_ja,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
         let inv_det_ja = 1.0 / det_ja;
-        let vy_by_a1 = g1_vx_right * inv_det_ja;
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let t1 = g1_vx_right * actuator_velocities[1]
-            - minus_g1_vx_left * actuator_velocities[0];
-        let vy = inv_pivot_2
-            * (g1_vy_right * actuator_velocities[1]
-                - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1);
-        let vx = t1 * inv_pivot_1 - l_2_1 * vy;
-        // --- right
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        // --- left
-        let g2_vx_left = l1_x_left * k_left;
+        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
         let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let vy = inv_det_ja
+            * (g1_vx_right * actuator_velocities[0]
+                + minus_g1_vx_left * actuator_velocities[1]);
+        let g2_vx_left = l1_x_left * k_left;
+        let minus_vx = inv_det_ja
+            * (g1_vy_right * actuator_velocities[0]
+                + minus_g1_vy_left * actuator_velocities[1]);
+        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
@@ -3351,33 +3299,46 @@ impl FiveBar {
             * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
-        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
-        let dvy = inv_pivot_2
-            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
-                - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2);
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+        let rate_2_squared_right = rate_2_right * rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        let minus_dvx = inv_det_ja
+            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+        let vy_by_a1 = g1_vx_right * inv_det_ja;
+        let dvy = inv_det_ja
+            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
         let t1_platform = dvy + 9.81;
-        let minus_vx_by_a1 = g1_vy_right * inv_det_ja;
-        let dvx = inv_pivot_1 * t2 - l_2_1 * dvy;
-        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
         let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
+        let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_left = 49.05 * l1_y_left;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let g2_a1_left = g2_vy_left * vy_by_a1 - g2_vx_left * minus_vx_by_a1;
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
-            + minus_bias_a_on_f2_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+            - minus_bias_a_on_f2_left;
+        let minus_rate_dot_2_left = k_left
+            * (a_on_f2_left - rate_2_squared_left * t3_left);
         let g2_a2_left = k_left * inv_det_ja;
         let g2_a1_right = k_right * inv_det_ja;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
-            + minus_bias_a_on_f2_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+            - minus_bias_a_on_f2_right;
+        let rate_dot_2_right = k_right
+            * (a_on_f2_right - rate_2_squared_right * t3_right);
         let g2_a2_right = minus_g2_vx_right * minus_vx_by_a2
             - minus_g2_vy_right * vy_by_a2;
         let c2_left = INV_HALF * t2_left;
@@ -3389,25 +3350,25 @@ impl FiveBar {
         let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
         let qd_2_left = rate_2_left - actuator_velocities[0];
-        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
+        let qd_2_right = rate_2_right - actuator_velocities[1];
         ::core::result::Result::Ok([
             [
-                vy_by_a1 * t1_platform - minus_vx_by_a1 * dvx, actuator_accelerations[0], 0.0,
+                minus_vx_by_a1 * minus_dvx + vy_by_a1 * t1_platform, actuator_accelerations[0], 0.0,
                 bias_a1_y_left, 0.0, -bias_a1_x_left, 0.0, actuator_velocities[0], 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 1.0, 0.0,
-                g2_a1_left * rate_dot_2_left, -(g2_a1_right * minus_rate_dot_2_right),
-                INV_L_2 * minus_a_on_f2_left - g2_a1_left * a2_x_left, -(g2_a1_right * a2_x_right),
+                -(g2_a1_left * minus_rate_dot_2_left), g2_a1_right * rate_dot_2_right,
+                -(INV_L_2 * a_on_f2_left + g2_a1_left * a2_x_left), -(g2_a1_right * a2_x_right),
                 ::overact::math::signed(g2_a1_left - 1.0, qd_2_left),
-                -::overact::math::signed(g2_a1_right, minus_qd_2_right),
+                ::overact::math::signed(g2_a1_right, qd_2_right),
             ],
             [
-                vy_by_a2 * t1_platform - minus_vx_by_a2 * dvx, 0.0, actuator_accelerations[1], 0.0,
-                bias_a1_y_right, 0.0, -bias_a1_x_right, 0.0, actuator_velocities[1], 0.0,
+                minus_vx_by_a2 * minus_dvx + vy_by_a2 * t1_platform, 0.0, actuator_accelerations[1],
+                0.0, bias_a1_y_right, 0.0, -bias_a1_x_right, 0.0, actuator_velocities[1], 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 1.0,
-                g2_a2_left * rate_dot_2_left, -(g2_a2_right * minus_rate_dot_2_right),
-                -(g2_a2_left * a2_x_left), INV_L_2 * minus_a_on_f2_right - g2_a2_right * a2_x_right,
+                -(g2_a2_left * minus_rate_dot_2_left), g2_a2_right * rate_dot_2_right,
+                -(g2_a2_left * a2_x_left), -(INV_L_2 * a_on_f2_right + g2_a2_right * a2_x_right),
                 ::overact::math::signed(g2_a2_left, qd_2_left),
-                -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right),
+                ::overact::math::signed(g2_a2_right - 1.0, qd_2_right),
             ],
         ])
     }
@@ -3505,7 +3466,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 243 operations (93 additions, 144 multiplications, 6 divisions), 2 square roots, 4 signs, 8 guards, 1 negation, 243 intermediates.
+    /// 222 operations (86 additions, 125 multiplications, 11 divisions), 2 square roots, 4 signs, 8 guards, 222 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3546,48 +3507,36 @@ impl FiveBar {
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let a1_y_left = 49.05 * l1_x_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let a1_x_left = 49.05 * l1_y_left;
         let l2_x_left = d_x_left - l1_x_left;
+        let l2_y_left = pose[1] - l1_y_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
+        let g2_vx_left = l1_x_left / det_left;
+        let g2_vy_left = l1_y_left / det_left;
+        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_left;
+        let minus_g1_vx_left = l2_x_left / det_left;
+        let minus_g1_vy_left = l2_y_left / det_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let minus_a_on_f2_left = l1_x_left * acceleration[0]
-            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
         let t2_left = rho_squared_left - 0.1025;
         let t3_left = TWICE_L_2 * t2_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let minus_rate_dot_1_left = (a_on_f1_left + rate_1_squared_left * t3_left)
+            / det_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a1_x_left = 49.05 * l1_y_left;
-        let a1_x_minus_l_1_rate_1_squared_left = a1_x_left - L_1 * rate_1_squared_left;
-        let c2_left = INV_HALF * t2_left;
-        let a1_y_left = 49.05 * l1_x_left;
-        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_left;
-        let minus_rate_dot_1_left = k_left
-            * (a_on_f1_left + rate_1_squared_left * t3_left);
-        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left - L_1 * minus_rate_dot_1_left;
-        let a2_y_left = minus_s2_left * a1_x_minus_l_1_rate_1_squared_left
-            + c2_left * a1_y_plus_l_1_rate_dot_1_left;
-        let a2_x_left = c2_left * a1_x_minus_l_1_rate_1_squared_left
-            - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
-        let moment2_z_left = parameters[7] * rate_dot_2_left + parameters[8] * a2_y_left
-            - parameters[9] * a2_x_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+        let rate_dot_2_left = (minus_a_on_f2_left + rate_2_squared_left * t3_left)
+            / det_left;
         let minus_force2_x_left = parameters[8] * rate_2_squared_left
             + parameters[9] * rate_dot_2_left;
+        let c2_left = INV_HALF * t2_left;
         let force2_y_left = parameters[8] * rate_dot_2_left
             - parameters[9] * rate_2_squared_left;
         let t4_left = a1_y_left * (parameters[1] + L_1 * parameters[10])
@@ -3597,6 +3546,8 @@ impl FiveBar {
         let tau_1_left = parameters[6]
             - (parameters[3] * minus_rate_dot_1_left + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
@@ -3613,82 +3564,85 @@ impl FiveBar {
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
+        // --- left
+        let a1_x_minus_l_1_rate_1_squared_left = a1_x_left - L_1 * rate_1_squared_left;
+        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left - L_1 * minus_rate_dot_1_left;
+        let a2_y_left = minus_s2_left * a1_x_minus_l_1_rate_1_squared_left
+            + c2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let a2_x_left = c2_left * a1_x_minus_l_1_rate_1_squared_left
+            - minus_s2_left * a1_y_plus_l_1_rate_dot_1_left;
+        let moment2_z_left = parameters[7] * rate_dot_2_left + parameters[8] * a2_y_left
+            - parameters[9] * a2_x_left;
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let minus_g2_vx_right = l1_x_right * k_right;
         let minus_g2_vy_right = l1_y_right * k_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let c2_right = INV_HALF * t2_right;
+        let a1_y_right = 49.05 * l1_x_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t3_right = TWICE_L_2 * t2_right;
+        let rate_dot_1_right = k_right
+            * (a_on_f1_right + rate_1_squared_right * t3_right);
+        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a1_x_right = 49.05 * l1_y_right;
+        let t4_right = a1_x_right - L_1 * rate_1_squared_right;
+        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t4_right;
+        let a2_x_right = c2_right * t4_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
+            - parameters[19] * minus_rate_dot_2_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
             minus_qd_2_right,
         );
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t3_right);
-        let a1_y_right = 49.05 * l1_x_right;
-        let a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let minus_a_on_f2_right = l1_x_right * acceleration[0]
-            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
+        let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = (g2_vy_left * force_on_u2_left - minus_g2_vy_right * force_on_u2_right
+            + force_y_platform) / t1;
+        let force_x_platform = acceleration[0] * parameters[24];
+        let t3 = (g2_vx_left * force_on_u2_left - minus_g2_vx_right * force_on_u2_right
+            + force_x_platform) / t1;
         let force2_x_right = parameters[21] * minus_rate_dot_2_right
             - parameters[20] * rate_2_squared_right;
-        let c2_right = INV_HALF * t2_right;
         let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
             + parameters[21] * rate_2_squared_right;
-        let t4_right = rate_dot_1_right * (parameters[12] + L_1_SQUARED * parameters[22])
+        let t5_right = rate_dot_1_right * (parameters[12] + L_1_SQUARED * parameters[22])
             + a1_y_right * (parameters[13] + L_1 * parameters[22])
             - parameters[14] * a1_x_right
             + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
         let tau_1_right = parameters[15] * rate_dot_1_right
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
-        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-        let t5_right = a1_x_right - L_1 * rate_1_squared_right;
-        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t5_right;
-        let a2_x_right = c2_right * t5_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
-            - parameters[19] * minus_rate_dot_2_right;
-        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
-        let force_x_platform = acceleration[0] * parameters[24];
-        let t1_platform = g2_vx_left * force_on_u2_left
-            - minus_g1_vx_left * force_on_u1_left + g1_vx_right * force_on_u1_right
-            - minus_g2_vx_right * force_on_u2_right + force_x_platform;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
-        let t1 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-            + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
-            + force_y_platform - t1_platform * l_2_1;
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = t1 / pivot_2;
-        let t3 = t1_platform * inv_pivot_1 - l_2_1 * t2;
+        let force_on_u1_right = minus_tau_2_right + t5_right + tau_1_right;
         ::core::result::Result::Ok([
-            -(minus_g1_vx_left * t3 + minus_g1_vy_left * t2), g1_vx_right * t3 + g1_vy_right * t2,
+            force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
+            force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3702,7 +3656,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 212 operations (79 additions, 129 multiplications, 4 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 218 intermediates.
+    /// 188 operations (72 additions, 110 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 194 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3739,12 +3693,11 @@ impl FiveBar {
         // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let inv_s2_left = 1.0 / s2_left;
-        let k1_left = INV_L_1 * inv_s2_left;
+        let k1_left = INV_L_1 / s2_left;
         let g1_vx_left = c12_left * k1_left;
         let g1_vy_left = s12_left * k1_left;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let k2_left = INV_L_2 * inv_s2_left;
+        let k2_left = INV_L_2 / s2_left;
         let minus_g2_vx_left = c1_left * k2_left;
         let minus_g2_vy_left = s1_left * k2_left;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
@@ -3776,47 +3729,70 @@ impl FiveBar {
         let tau_1_left = parameters[3] * rate_dot_1_left + parameters[4] * rate_1_left
             + ::overact::math::signed(parameters[5], rate_1_left) + parameters[6];
         let force_on_u1_left = minus_tau_2_left + t1_left + tau_1_left;
-        let a1_y_plus_l_1_rate_dot_1_left = a1_y_left + L_1 * rate_dot_1_left;
-        let a1_x_minus_l_1_rate_1_squared_left = a1_x_left - l_1_rate_1_squared_left;
-        let a2_y_left = c2_left * a1_y_plus_l_1_rate_dot_1_left
-            - s2_left * a1_x_minus_l_1_rate_1_squared_left;
-        let a2_x_left = c2_left * a1_x_minus_l_1_rate_1_squared_left
-            + s2_left * a1_y_plus_l_1_rate_dot_1_left;
+        // --- right
+        let c12_right = c1_right * c2_right - s1_right * s2_right;
+        let s12_right = s1_right * c2_right + c1_right * s2_right;
+        let k1_right = INV_L_1 / s2_right;
+        let g1_vx_right = c12_right * k1_right;
+        let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
+        // --- left
+        let a2_y_left = c2_left * (a1_y_left + L_1 * rate_dot_1_left)
+            - s2_left * (a1_x_left - l_1_rate_1_squared_left);
+        let a2_x_left = a_on_f1_left + s12_left * 9.81;
         let moment2_z_left = parameters[8] * a2_y_left - parameters[9] * a2_x_left
             - parameters[7] * minus_rate_dot_2_left;
         let force_on_u2_left = moment2_z_left - minus_tau_2_left;
         // --- right
-        let c12_right = c1_right * c2_right - s1_right * s2_right;
-        let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let inv_s2_right = 1.0 / s2_right;
-        let k1_right = INV_L_1 * inv_s2_right;
-        let g1_vx_right = c12_right * k1_right;
-        let g1_vy_right = s12_right * k1_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let k2_right = INV_L_2 * inv_s2_right;
-        let minus_g2_vx_right = c1_right * k2_right;
+        let k2_right = INV_L_2 / s2_right;
         let minus_g2_vy_right = s1_right * k2_right;
+        let a1_y_right = 9.81 * c1_right;
+        let minus_g2_vx_right = c1_right * k2_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
+        let g1_vy_right = s12_right * k1_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let rate_dot_1_right = k1_right
+            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
+        let a1_x_right = 9.81 * s1_right;
+        let a2_y_right = c2_right * (a1_y_right + L_1 * rate_dot_1_right)
+            - s2_right * (a1_x_right - l_1_rate_1_squared_right);
+        let a2_x_right = a_on_f1_right + 9.81 * s12_right;
+        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
+            + l_1_rate_1_squared_right;
+        let minus_rate_dot_2_right = k2_right
+            * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
+        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
+            - parameters[19] * minus_rate_dot_2_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             parameters[23],
             minus_qd_2_right,
         );
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
-        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
-            + l_2_rate_2_squared_right;
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
-        let rate_dot_1_right = k1_right
-            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
-        let a1_y_right = 9.81 * c1_right;
-        let a1_x_right = 9.81 * s1_right;
-        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
-            + l_1_rate_1_squared_right;
-        let minus_rate_dot_2_right = k2_right
-            * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
+        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
+        let t1 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629227,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629227,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = (force_y_platform
+            - (minus_g2_vy_left * force_on_u2_left
+                + minus_g2_vy_right * force_on_u2_right)) / t1;
+        let force_x_platform = acceleration[0] * parameters[24];
+        let t3 = (force_x_platform
+            - (minus_g2_vx_left * force_on_u2_left
+                + minus_g2_vx_right * force_on_u2_right)) / t1;
         let force2_x_right = parameters[21] * minus_rate_dot_2_right
             - parameters[20] * rate_2_squared_right;
         let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
@@ -3829,41 +3805,9 @@ impl FiveBar {
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
         let force_on_u1_right = minus_tau_2_right + t1_right + tau_1_right;
-        let a1_y_plus_l_1_rate_dot_1_right = a1_y_right + L_1 * rate_dot_1_right;
-        let t2_right = a1_x_right - l_1_rate_1_squared_right;
-        let a2_y_right = c2_right * a1_y_plus_l_1_rate_dot_1_right - s2_right * t2_right;
-        let a2_x_right = c2_right * t2_right + s2_right * a1_y_plus_l_1_rate_dot_1_right;
-        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
-            - parameters[19] * minus_rate_dot_2_right;
-        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
-        let force_x_platform = acceleration[0] * parameters[24];
-        let t1_platform = g1_vx_left * force_on_u1_left
-            - minus_g2_vx_left * force_on_u2_left + g1_vx_right * force_on_u1_right
-            - minus_g2_vx_right * force_on_u2_right + force_x_platform;
-        let s_1_1 = g1_vx_left * g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.70772285878917,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let s_1_2 = g1_vx_left * g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
-        let t1 = g1_vy_left * force_on_u1_left - minus_g2_vy_left * force_on_u2_left
-            + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
-            + force_y_platform - t1_platform * l_2_1;
-        let s_2_2 = g1_vy_left * g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            14.32354668467552,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = t1 / pivot_2;
-        let t3 = t1_platform * inv_pivot_1 - l_2_1 * t2;
         ::core::result::Result::Ok([
-            g1_vx_left * t3 + g1_vy_left * t2, g1_vx_right * t3 + g1_vy_right * t2,
+            force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
+            force_on_u1_right + g1_vy_left * t3 - g1_vx_left * t2,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3877,7 +3821,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 278 operations (107 additions, 164 multiplications, 7 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 1 negation, 281 intermediates.
+    /// 248 operations (96 additions, 144 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 251 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3898,8 +3842,6 @@ impl FiveBar {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
@@ -3915,194 +3857,183 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let k_left = 1.0 / det_left;
+        let l2_x_left = d_x_left - l1_x_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let g2_vx_left = l1_x_left * k_left;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let t1 = g1_vx_right * actuator_velocities[1]
-            - minus_g1_vx_left * actuator_velocities[0];
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let g1_vy_right = l2_y_right * k_right;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right * k_right;
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let vy = inv_pivot_2
-            * (g1_vy_right * actuator_velocities[1]
-                - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1);
-        let vx = t1 * inv_pivot_1 - l_2_1 * vy;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        // --- left
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = 1.0 / t1;
         let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let vy = t2
+            * (g1_vx_right * actuator_velocities[0]
+                + minus_g1_vx_left * actuator_velocities[1]);
+        let g2_vx_left = l1_x_left * k_left;
+        let minus_vx = t2
+            * (g1_vy_right * actuator_velocities[0]
+                + minus_g1_vy_left * actuator_velocities[1]);
+        // --- left
+        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
         let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
-        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
-        let dvy = inv_pivot_2
-            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
-                - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2);
-        let dvx = inv_pivot_1 * t2 - l_2_1 * dvy;
+        // --- right
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+        let rate_2_squared_right = rate_2_right * rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        let minus_dvx = t2
+            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+        let dvy = t2
+            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
+        // --- left
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
-            + minus_bias_a_on_f2_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let t4_left = bias_a1_x_left - L_1 * rate_1_squared_left;
-        let c2_left = INV_HALF * t2_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
-            + L_1 * actuator_accelerations[0];
-        let a2_y_left = minus_s2_left * t4_left + c2_left * bias_a1_y_plus_l_1_qdd1_left;
-        let a2_x_left = c2_left * t4_left - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
-        let moment2_z_left = parameters[7] * rate_dot_2_left + parameters[8] * a2_y_left
-            - parameters[9] * a2_x_left;
-        let qd_2_left = rate_2_left - actuator_velocities[0];
-        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        let minus_force2_x_left = rate_2_squared_left * parameters[8]
-            + parameters[9] * rate_dot_2_left;
-        let force2_y_left = parameters[8] * rate_dot_2_left
-            - rate_2_squared_left * parameters[9];
-        let t5_left = actuator_accelerations[0]
+        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+            - minus_bias_a_on_f2_left;
+        let minus_rate_dot_2_left = k_left
+            * (a_on_f2_left - rate_2_squared_left * t2_left);
+        let force2_x_left = parameters[9] * minus_rate_dot_2_left
+            - rate_2_squared_left * parameters[8];
+        let c2_left = L_1_PER_HALF_SQUARED * t2_left;
+        let minus_force2_y_left = parameters[8] * minus_rate_dot_2_left
+            + rate_2_squared_left * parameters[9];
+        let t3_left = actuator_accelerations[0]
             * (parameters[0] + L_1_SQUARED * parameters[10])
             + bias_a1_y_left * (parameters[1] + L_1 * parameters[10])
             - bias_a1_x_left * parameters[2]
-            + L_1 * (minus_s2_left * minus_force2_x_left + c2_left * force2_y_left);
+            - L_1 * (minus_s2_left * force2_x_left + c2_left * minus_force2_y_left);
         let tau_1_left = actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let force_on_u1_left = t5_left + tau_1_left - tau_2_left;
+        let qd_2_left = rate_2_left - actuator_velocities[0];
+        let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
+        let force_on_u1_left = t3_left + tau_1_left - tau_2_left;
+        let t4_left = bias_a1_x_left - L_1 * rate_1_squared_left;
+        let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
+            + L_1 * actuator_accelerations[0];
+        let a2_y_left = minus_s2_left * t4_left + c2_left * bias_a1_y_plus_l_1_qdd1_left;
+        let a2_x_left = c2_left * t4_left - minus_s2_left * bias_a1_y_plus_l_1_qdd1_left;
+        let moment2_z_left = parameters[8] * a2_y_left - parameters[9] * a2_x_left
+            - parameters[7] * minus_rate_dot_2_left;
+        let force_on_u2_left = moment2_z_left + tau_2_left;
         // --- right
-        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            parameters[23],
-            minus_qd_2_right,
-        );
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
-            + minus_bias_a_on_f2_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let force2_x_right = parameters[21] * minus_rate_dot_2_right
-            - rate_2_squared_right * parameters[20];
-        let c2_right = INV_HALF * t2_right;
-        let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
-            + rate_2_squared_right * parameters[21];
+        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+            - minus_bias_a_on_f2_right;
+        let rate_dot_2_right = k_right
+            * (a_on_f2_right - rate_2_squared_right * t2_right);
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
+            + L_1 * actuator_accelerations[1];
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let t3_right = bias_a1_x_right - L_1 * rate_1_squared_right;
+        let a2_y_right = c2_right * bias_a1_y_plus_l_1_qdd1_right - s2_right * t3_right;
+        let a2_x_right = c2_right * t3_right + s2_right * bias_a1_y_plus_l_1_qdd1_right;
+        let moment2_z_right = parameters[19] * rate_dot_2_right
+            + parameters[20] * a2_y_right - parameters[21] * a2_x_right;
+        let qd_2_right = rate_2_right - actuator_velocities[1];
+        let tau_2_right = ::overact::math::signed(parameters[23], qd_2_right);
+        let force_on_u2_right = moment2_z_right + tau_2_right;
+        let force_y_platform = parameters[24] * (dvy + 9.81);
+        let t3 = t2
+            * (g2_vy_left * force_on_u2_left - minus_g2_vy_right * force_on_u2_right
+                + force_y_platform);
+        let minus_force_x_platform = minus_dvx * parameters[24];
+        let t4 = t2
+            * (g2_vx_left * force_on_u2_left - minus_g2_vx_right * force_on_u2_right
+                - minus_force_x_platform);
+        let force2_y_right = parameters[20] * rate_dot_2_right
+            - rate_2_squared_right * parameters[21];
+        let minus_force2_x_right = rate_2_squared_right * parameters[20]
+            + parameters[21] * rate_dot_2_right;
         let t4_right = actuator_accelerations[1]
             * (parameters[12] + L_1_SQUARED * parameters[22])
             + bias_a1_y_right * (parameters[13] + L_1 * parameters[22])
             - bias_a1_x_right * parameters[14]
-            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+            + L_1 * (c2_right * force2_y_right - s2_right * minus_force2_x_right);
         let tau_1_right = actuator_accelerations[1] * parameters[15]
             + actuator_velocities[1] * parameters[16]
             + ::overact::math::signed(parameters[17], actuator_velocities[1])
             + parameters[18];
-        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
-        let bias_a1_y_plus_l_1_qdd1_right = bias_a1_y_right
-            + L_1 * actuator_accelerations[1];
-        let t5_right = bias_a1_x_right - L_1 * rate_1_squared_right;
-        let a2_y_right = c2_right * bias_a1_y_plus_l_1_qdd1_right - s2_right * t5_right;
-        let a2_x_right = c2_right * t5_right + s2_right * bias_a1_y_plus_l_1_qdd1_right;
-        let moment2_z_right = parameters[20] * a2_y_right - parameters[21] * a2_x_right
-            - parameters[19] * minus_rate_dot_2_right;
-        let force_on_u2_right = moment2_z_right - minus_tau_2_right;
-        let force_x_platform = dvx * parameters[24];
-        let t1_platform = g2_vx_left * force_on_u2_left
-            - minus_g1_vx_left * force_on_u1_left + g1_vx_right * force_on_u1_right
-            - minus_g2_vx_right * force_on_u2_right + force_x_platform;
-        let force_y_platform = parameters[24] * (dvy + 9.81);
-        let t3 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-            + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
-            + force_y_platform - l_2_1 * t1_platform;
-        let t4 = inv_pivot_2 * t3;
-        let t5 = inv_pivot_1 * t1_platform - l_2_1 * t4;
+        let force_on_u1_right = t4_right + tau_1_right - tau_2_right;
         ::core::result::Result::Ok([
-            -(minus_g1_vx_left * t5 + minus_g1_vy_left * t4), g1_vx_right * t5 + g1_vy_right * t4,
+            force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
+            force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4115,7 +4046,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 213 operations (79 additions, 128 multiplications, 6 divisions), 2 square roots, 4 signs, 8 guards, 1 negation, 213 intermediates.
+    /// 186 operations (70 additions, 109 multiplications, 7 divisions), 2 square roots, 4 signs, 8 guards, 186 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4156,59 +4087,47 @@ impl FiveBar {
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
-        let l2_x_left = d_x_left - l1_x_left;
+        let a1_y_left = 49.05 * l1_x_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let a1_x_left = 49.05 * l1_y_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
         let k_left = 1.0 / det_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
-        let g2_vx_left = l1_x_left * k_left;
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let l2_x_left = d_x_left - l1_x_left;
         let l2_y_left = pose[1] - l1_y_left;
+        let g2_vx_left = l1_x_left * k_left;
+        let g2_vy_left = l1_y_left * k_left;
+        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
+        let rate_2_squared_left = rate_2_left * rate_2_left;
+        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_left;
+        let minus_g1_vx_left = l2_x_left * k_left;
         let minus_g1_vy_left = l2_y_left * k_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
-        let minus_a_on_f2_left = l1_x_left * acceleration[0]
-            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-        let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let rate_2_squared_left = rate_2_left * rate_2_left;
         let t2_left = rho_squared_left - 0.1025;
         let t3_left = TWICE_L_2 * t2_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-        let c2_left = INV_HALF * t2_left;
-        let a1_x_left = 49.05 * l1_y_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let a1_y_left = 49.05 * l1_x_left;
-        let a_on_f1_left = l2_x_left * acceleration[0] + l2_y_left * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_left;
         let minus_rate_dot_1_left = k_left
             * (a_on_f1_left + rate_1_squared_left * t3_left);
-        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-        let moment2_z_left = base_parameters[13] * rate_dot_2_left
-            - base_parameters[15] * a2_x_left;
-        let qd_2_left = minus_rate_1_left + rate_2_left;
-        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        let minus_force2_x_left = base_parameters[15] * rate_dot_2_left;
-        let minus_force2_y_left = base_parameters[15] * rate_2_squared_left;
-        let t4_left = base_parameters[3] * a1_y_left - base_parameters[5] * a1_x_left
-            - base_parameters[1] * minus_rate_dot_1_left
-            + L_1
-                * (minus_s2_left * minus_force2_x_left - c2_left * minus_force2_y_left);
+        let minus_a_on_f2_left = l1_x_left * acceleration[0]
+            + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
         let tau_1_left = base_parameters[11]
             - (base_parameters[7] * minus_rate_1_left
                 + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
+        let t4_left = base_parameters[3] * a1_y_left - base_parameters[5] * a1_x_left
+            - base_parameters[1] * minus_rate_dot_1_left
+            + L_1 * (minus_a_on_f2_left * (L_1_PER_HALF_SQUARED * base_parameters[15]))
+            + tau_1_left;
+        let qd_2_left = minus_rate_1_left + rate_2_left;
+        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
+        let force_on_u1_left = t4_left - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -4217,78 +4136,79 @@ impl FiveBar {
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
+        // --- left
+        let rate_dot_2_left = k_left
+            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
+        let c2_left = INV_HALF * t2_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
+        let moment2_z_left = base_parameters[13] * rate_dot_2_left
+            - base_parameters[15] * a2_x_left;
+        let force_on_u2_left = moment2_z_left + tau_2_left;
+        // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let minus_a_on_f2_right = l1_x_right * acceleration[0]
+            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
         let minus_g2_vx_right = l1_x_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let t2_right = rho_squared_right - 0.1025;
+        let t3_right = TWICE_L_2 * t2_right;
+        let minus_rate_dot_2_right = k_right
+            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
+        let a1_x_right = 49.05 * l1_y_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let a1_y_right = 49.05 * l1_x_right;
+        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
+            + L_2_SQUARED * rate_2_squared_right;
+        let rate_dot_1_right = k_right
+            * (a_on_f1_right + rate_1_squared_right * t3_right);
+        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
+            + base_parameters[16] * a2_x_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             base_parameters[18],
             minus_qd_2_right,
         );
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let a_on_f1_right = l2_x_right * acceleration[0] + l2_y_right * acceleration[1]
-            + L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let rate_dot_1_right = k_right
-            * (a_on_f1_right + rate_1_squared_right * t3_right);
-        let a1_y_right = 49.05 * l1_x_right;
-        let a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let minus_a_on_f2_right = l1_x_right * acceleration[0]
-            + l1_y_right * acceleration[1] + L_1_SQUARED * rate_1_squared_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let force2_x_right = base_parameters[16] * minus_rate_dot_2_right;
-        let c2_right = INV_HALF * t2_right;
-        let minus_force2_y_right = base_parameters[16] * rate_2_squared_right;
-        let t4_right = base_parameters[2] * rate_dot_1_right
-            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right
-            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+        let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = (g2_vy_left * force_on_u2_left
+            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform) / t1;
+        let force_x_platform = acceleration[0] * base_parameters[0];
+        let t3 = (g2_vx_left * force_on_u2_left
+            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform) / t1;
         let tau_1_right = base_parameters[8] * rate_1_right
             + ::overact::math::signed(base_parameters[10], rate_1_right)
             + base_parameters[12];
-        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
-        let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
-            + base_parameters[16] * a2_x_right;
-        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let force_x_platform = acceleration[0] * base_parameters[0];
-        let t1_platform = g2_vx_left * force_on_u2_left
-            - minus_g1_vx_left * force_on_u1_left + g1_vx_right * force_on_u1_right
-            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
-        let t1 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-            + g1_vy_right * force_on_u1_right
-            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform
-            - t1_platform * l_2_1;
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = t1 / pivot_2;
-        let t3 = t1_platform * inv_pivot_1 - l_2_1 * t2;
+        let t4_right = base_parameters[2] * rate_dot_1_right
+            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right
+            + L_1 * (minus_a_on_f2_right * (L_1_PER_HALF_SQUARED * base_parameters[16]))
+            + tau_1_right;
+        let force_on_u1_right = minus_tau_2_right + t4_right;
         ::core::result::Result::Ok([
-            -(minus_g1_vx_left * t3 + minus_g1_vy_left * t2), g1_vx_right * t3 + g1_vy_right * t2,
+            force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
+            force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4302,7 +4222,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 182 operations (65 additions, 113 multiplications, 4 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 188 intermediates.
+    /// 147 operations (52 additions, 90 multiplications, 5 divisions), 4 trigonometric pairs, 4 signs, 4 guards, 153 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4337,12 +4257,11 @@ impl FiveBar {
         // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let inv_s2_left = 1.0 / s2_left;
-        let k1_left = INV_L_1 * inv_s2_left;
+        let k1_left = INV_L_1 / s2_left;
         let g1_vx_left = c12_left * k1_left;
         let g1_vy_left = s12_left * k1_left;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let k2_left = INV_L_2 * inv_s2_left;
+        let k2_left = INV_L_2 / s2_left;
         let minus_g2_vx_left = c1_left * k2_left;
         let minus_g2_vy_left = s1_left * k2_left;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
@@ -4364,97 +4283,85 @@ impl FiveBar {
         let a1_x_left = 9.81 * s1_left;
         let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
             + l_1_rate_1_squared_left;
-        let minus_rate_dot_2_left = k2_left
-            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
-        let force2_x_left = base_parameters[15] * minus_rate_dot_2_left;
-        let minus_force2_y_left = base_parameters[15] * rate_2_squared_left;
-        let t1_left = base_parameters[1] * rate_dot_1_left
-            + base_parameters[3] * a1_y_left - base_parameters[5] * a1_x_left
-            + L_1 * (s2_left * force2_x_left - c2_left * minus_force2_y_left);
         let tau_1_left = base_parameters[7] * rate_1_left
             + ::overact::math::signed(base_parameters[9], rate_1_left)
             + base_parameters[11];
-        let force_on_u1_left = minus_tau_2_left + t1_left + tau_1_left;
-        let a2_x_left = c2_left * (a1_x_left - l_1_rate_1_squared_left)
-            + s2_left * (a1_y_left + L_1 * rate_dot_1_left);
-        let minus_moment2_z_left = base_parameters[13] * minus_rate_dot_2_left
-            + base_parameters[15] * a2_x_left;
-        let minus_force_on_u2_left = minus_moment2_z_left + minus_tau_2_left;
+        let t1_left = base_parameters[1] * rate_dot_1_left
+            + base_parameters[3] * a1_y_left - base_parameters[5] * a1_x_left
+            + L_1 * (minus_a_on_f2_left * (INV_L_2 * base_parameters[15])) + tau_1_left;
+        let force_on_u1_left = minus_tau_2_left + t1_left;
         // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
         let inv_s2_right = 1.0 / s2_right;
         let k1_right = INV_L_1 * inv_s2_right;
         let g1_vx_right = c12_right * k1_right;
+        // --- left
+        let minus_rate_dot_2_left = k2_left
+            * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+        let a2_x_left = a_on_f1_left + s12_left * 9.81;
+        let minus_moment2_z_left = base_parameters[13] * minus_rate_dot_2_left
+            + base_parameters[15] * a2_x_left;
+        let minus_force_on_u2_left = minus_moment2_z_left + minus_tau_2_left;
+        // --- right
+        let k2_right = INV_L_2 * inv_s2_right;
+        let minus_g2_vy_right = s1_right * k2_right;
         let g1_vy_right = s12_right * k1_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let k2_right = INV_L_2 * inv_s2_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
+            + l_1_rate_1_squared_right;
         let minus_g2_vx_right = c1_right * k2_right;
-        let minus_g2_vy_right = s1_right * k2_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
+        let minus_rate_dot_2_right = k2_right
+            * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
+        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
+            + l_2_rate_2_squared_right;
+        let a2_x_right = a_on_f1_right + 9.81 * s12_right;
+        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
+            + base_parameters[16] * a2_x_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             base_parameters[18],
             minus_qd_2_right,
         );
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
-        let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
-            + l_2_rate_2_squared_right;
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
+        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+        let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
+        let t1 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629227,
+            ::overact::ActuatorGroup::All,
+        )?;
+        ::overact::guard::platform(
+            t1,
+            22.615508735629227,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = (minus_g2_vy_left * minus_force_on_u2_left
+            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform) / t1;
+        let force_x_platform = acceleration[0] * base_parameters[0];
+        let t3 = (minus_g2_vx_left * minus_force_on_u2_left
+            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform) / t1;
         let rate_dot_1_right = k1_right
-            * (a_on_f1_right + c2_right * l_1_rate_1_squared_right);
+            * (a_on_f1_right + l_1_rate_1_squared_right * c2_right);
         let a1_y_right = 9.81 * c1_right;
         let a1_x_right = 9.81 * s1_right;
-        let minus_a_on_f2_right = c1_right * acceleration[0] + s1_right * acceleration[1]
-            + l_1_rate_1_squared_right;
-        let minus_rate_dot_2_right = k2_right
-            * (minus_a_on_f2_right + l_2_rate_2_squared_right * c2_right);
-        let force2_x_right = base_parameters[16] * minus_rate_dot_2_right;
-        let minus_force2_y_right = base_parameters[16] * rate_2_squared_right;
-        let t1_right = base_parameters[2] * rate_dot_1_right
-            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right
-            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
         let tau_1_right = base_parameters[8] * rate_1_right
             + ::overact::math::signed(base_parameters[10], rate_1_right)
             + base_parameters[12];
-        let force_on_u1_right = minus_tau_2_right + t1_right + tau_1_right;
-        let a2_x_right = c2_right * (a1_x_right - l_1_rate_1_squared_right)
-            + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
-            + base_parameters[16] * a2_x_right;
-        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let force_x_platform = acceleration[0] * base_parameters[0];
-        let t1_platform = g1_vx_left * force_on_u1_left
-            + minus_g2_vx_left * minus_force_on_u2_left + g1_vx_right * force_on_u1_right
-            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform;
-        let s_1_1 = g1_vx_left * g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.70772285878917,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let s_1_2 = g1_vx_left * g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
-        let t1 = g1_vy_left * force_on_u1_left
-            + minus_g2_vy_left * minus_force_on_u2_left + g1_vy_right * force_on_u1_right
-            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform
-            - t1_platform * l_2_1;
-        let s_2_2 = g1_vy_left * g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            14.32354668467552,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let t2 = t1 / pivot_2;
-        let t3 = t1_platform * inv_pivot_1 - l_2_1 * t2;
+        let t1_right = base_parameters[2] * rate_dot_1_right
+            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right
+            + L_1 * (minus_a_on_f2_right * (INV_L_2 * base_parameters[16]))
+            + tau_1_right;
+        let force_on_u1_right = minus_tau_2_right + t1_right;
         ::core::result::Result::Ok([
-            g1_vx_left * t3 + g1_vy_left * t2, g1_vx_right * t3 + g1_vy_right * t2,
+            force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
+            force_on_u1_right + g1_vy_left * t3 - g1_vx_left * t2,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4468,7 +4375,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 248 operations (93 additions, 148 multiplications, 7 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 1 negation, 251 intermediates.
+    /// 211 operations (80 additions, 118 multiplications, 13 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 14 guards, 214 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4489,8 +4396,6 @@ impl FiveBar {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
@@ -4506,12 +4411,14 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
+        let bias_a1_y_left = 49.05 * l1_x_left;
+        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
+        let bias_a1_x_left = 49.05 * l1_y_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
@@ -4521,165 +4428,147 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
-        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        let l2_x_right = d_x_right - l1_x_right;
-        let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let s_1_1 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let g2_vx_left = l1_x_left * k_left;
-        let minus_g2_vx_right = l1_x_right * k_right;
-        let t1 = g1_vx_right * actuator_velocities[1]
-            - minus_g1_vx_left * actuator_velocities[0];
-        let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let s_1_2 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        let det_right = rho_squared_right * h_right;
+        ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
+        let g1_vy_right = l2_y_right / det_right;
+        let l2_y_left = pose[1] - l1_y_left;
+        let minus_g1_vy_left = l2_y_left * k_left;
+        let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
+        let l2_x_right = d_x_right - l1_x_right;
+        let g1_vx_right = l2_x_right / det_right;
+        let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            s_1_1,
-            35.707722858788905,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
         ::overact::guard::platform(
-            pivot_2,
-            14.323546684675748,
+            t1,
+            22.615508735629323,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let vy = inv_pivot_2
-            * (g1_vy_right * actuator_velocities[1]
-                - minus_g1_vy_left * actuator_velocities[0] - t1 * l_2_1);
-        let vx = t1 * inv_pivot_1 - l_2_1 * vy;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * vx + minus_g2_vy_right * vy;
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
-        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
-            - bias_rate_dot_1_right;
-        // --- left
+        ::overact::guard::platform(
+            t1,
+            22.615508735629323,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let t2 = 1.0 / t1;
         let g2_vy_left = l1_y_left * k_left;
-        let rate_2_left = g2_vx_left * vx + g2_vy_left * vy;
+        let vy = t2
+            * (g1_vx_right * actuator_velocities[0]
+                + minus_g1_vx_left * actuator_velocities[1]);
+        let g2_vx_left = l1_x_left * k_left;
+        let minus_vx = t2
+            * (g1_vy_right * actuator_velocities[0]
+                + minus_g1_vy_left * actuator_velocities[1]);
+        // --- left
+        let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let rate_1_squared_left = actuator_velocities[0] * actuator_velocities[0];
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
         let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let qdd1_minus_bias_rate_dot_1_left = actuator_accelerations[0]
             + minus_bias_rate_dot_1_left;
-        let t2 = g1_vx_right * qdd1_minus_bias_rate_dot_1_right
-            - minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_left;
-        let dvy = inv_pivot_2
-            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_right
-                - minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_left - l_2_1 * t2);
-        let dvx = inv_pivot_1 * t2 - l_2_1 * dvy;
+        // --- right
+        let minus_g2_vx_right = l1_x_right / det_right;
+        let minus_g2_vy_right = l1_y_right / det_right;
+        let rate_2_right = minus_g2_vx_right * minus_vx - minus_g2_vy_right * vy;
+        let rate_2_squared_right = rate_2_right * rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = actuator_velocities[1] * actuator_velocities[1];
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let bias_rate_dot_1_right = (bias_a_on_f1_right
+            + rate_1_squared_right * t2_right) / det_right;
+        let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
+            - bias_rate_dot_1_right;
+        let minus_dvx = t2
+            * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right);
+        let dvy = t2
+            * (g1_vx_right * qdd1_minus_bias_rate_dot_1_left
+                + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right);
+        // --- left
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let minus_a_on_f2_left = l1_x_left * dvx + l1_y_left * dvy
-            + minus_bias_a_on_f2_left;
-        let rate_dot_2_left = k_left
-            * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
-        let c2_left = INV_HALF * t2_left;
-        let bias_a1_x_left = 49.05 * l1_y_left;
-        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
-        let bias_a1_y_left = 49.05 * l1_x_left;
-        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
-            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-        let moment2_z_left = base_parameters[13] * rate_dot_2_left
-            - base_parameters[15] * a2_x_left;
-        let qd_2_left = rate_2_left - actuator_velocities[0];
-        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
-        let force_on_u2_left = moment2_z_left + tau_2_left;
-        let minus_force2_x_left = base_parameters[15] * rate_dot_2_left;
-        let minus_force2_y_left = rate_2_squared_left * base_parameters[15];
-        let t4_left = actuator_accelerations[0] * base_parameters[1]
-            + bias_a1_y_left * base_parameters[3] - bias_a1_x_left * base_parameters[5]
-            + L_1
-                * (minus_s2_left * minus_force2_x_left - c2_left * minus_force2_y_left);
+        let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
+            - minus_bias_a_on_f2_left;
         let tau_1_left = actuator_velocities[0] * base_parameters[7]
             + ::overact::math::signed(base_parameters[9], actuator_velocities[0])
             + base_parameters[11];
-        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
+        let t3_left = actuator_accelerations[0] * base_parameters[1]
+            + bias_a1_y_left * base_parameters[3] - bias_a1_x_left * base_parameters[5]
+            - L_1 * (a_on_f2_left * (L_1_PER_HALF_SQUARED * base_parameters[15]))
+            + tau_1_left;
+        let qd_2_left = rate_2_left - actuator_velocities[0];
+        let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
+        let force_on_u1_left = t3_left - tau_2_left;
+        let minus_rate_dot_2_left = k_left
+            * (a_on_f2_left - rate_2_squared_left * t2_left);
+        let c2_left = L_1_PER_HALF_SQUARED * t2_left;
+        let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
+        let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+            - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
+        let minus_moment2_z_left = base_parameters[13] * minus_rate_dot_2_left
+            + base_parameters[15] * a2_x_left;
+        let force_on_u2_left = tau_2_left - minus_moment2_z_left;
         // --- right
-        let minus_qd_2_right = actuator_velocities[1] + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            base_parameters[18],
-            minus_qd_2_right,
-        );
-        let bias_a1_y_right = 49.05 * l1_x_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
+            - minus_bias_a_on_f2_right;
+        let rate_dot_2_right = (a_on_f2_right - rate_2_squared_right * t2_right)
+            / det_right;
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_a_on_f2_right = l1_x_right * dvx + l1_y_right * dvy
-            + minus_bias_a_on_f2_right;
-        let minus_rate_dot_2_right = k_right
-            * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
-        let force2_x_right = base_parameters[16] * minus_rate_dot_2_right;
-        let c2_right = INV_HALF * t2_right;
-        let minus_force2_y_right = rate_2_squared_right * base_parameters[16];
-        let t4_right = actuator_accelerations[1] * base_parameters[2]
-            + bias_a1_y_right * base_parameters[4] - bias_a1_x_right * base_parameters[6]
-            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
+        let moment2_z_right = base_parameters[14] * rate_dot_2_right
+            - base_parameters[16] * a2_x_right;
+        let qd_2_right = rate_2_right - actuator_velocities[1];
+        let tau_2_right = ::overact::math::signed(base_parameters[18], qd_2_right);
+        let force_on_u2_right = moment2_z_right + tau_2_right;
+        let force_y_platform = base_parameters[0] * (dvy + 9.81);
+        let t3 = t2
+            * (g2_vy_left * force_on_u2_left - minus_g2_vy_right * force_on_u2_right
+                + force_y_platform);
+        let minus_force_x_platform = minus_dvx * base_parameters[0];
+        let t4 = t2
+            * (g2_vx_left * force_on_u2_left - minus_g2_vx_right * force_on_u2_right
+                - minus_force_x_platform);
         let tau_1_right = actuator_velocities[1] * base_parameters[8]
             + ::overact::math::signed(base_parameters[10], actuator_velocities[1])
             + base_parameters[12];
-        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
-        let a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
-            + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
-        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
-            + base_parameters[16] * a2_x_right;
-        let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let force_x_platform = dvx * base_parameters[0];
-        let t1_platform = g2_vx_left * force_on_u2_left
-            - minus_g1_vx_left * force_on_u1_left + g1_vx_right * force_on_u1_right
-            + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform;
-        let force_y_platform = base_parameters[0] * (dvy + 9.81);
-        let t3 = g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
-            + g1_vy_right * force_on_u1_right
-            + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform
-            - l_2_1 * t1_platform;
-        let t4 = inv_pivot_2 * t3;
-        let t5 = inv_pivot_1 * t1_platform - l_2_1 * t4;
+        let t3_right = actuator_accelerations[1] * base_parameters[2]
+            + bias_a1_y_right * base_parameters[4] - bias_a1_x_right * base_parameters[6]
+            - L_1 * (a_on_f2_right * (L_1_PER_HALF_SQUARED * base_parameters[16]))
+            + tau_1_right;
+        let force_on_u1_right = t3_right - tau_2_right;
         ::core::result::Result::Ok([
-            -(minus_g1_vx_left * t5 + minus_g1_vy_left * t4), g1_vx_right * t5 + g1_vy_right * t4,
+            force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
+            force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -4690,7 +4579,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 114 operations (43 additions, 67 multiplications, 4 divisions), 2 square roots, 6 guards, 113 intermediates.
+    /// 111 operations (43 additions, 57 multiplications, 11 divisions), 2 square roots, 6 guards, 110 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4724,10 +4613,9 @@ impl FiveBar {
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let g2_vx_left = l1_x_left * k_left;
+        let g2_vx_left = l1_x_left / det_left;
         let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
+        let minus_g1_vx_left = l2_x_left / det_left;
         let c2_left = INV_HALF * (rho_squared_left - 0.1025);
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let force1_y_by_2_left = c2_left * parameters[8] + minus_s2_left * parameters[9];
@@ -4738,20 +4626,18 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
+        let g1_vx_right = l2_x_right / det_right;
         let masses_right_1_1 = parameters[12] + L_1_SQUARED * parameters[22]
             + parameters[15];
-        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vx_right = l1_x_right / det_right;
         let c2_right = INV_HALF * (rho_squared_right - 0.1025);
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let force1_y_by_2_right = c2_right * parameters[20] - s2_right * parameters[21];
@@ -4766,16 +4652,16 @@ impl FiveBar {
                 * (g1_vx_right * masses_right_1_2 - minus_g2_vx_right * parameters[19]);
         // --- left
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
-        let g2_vy_left = l1_y_left * k_left;
+        let g2_vy_left = l1_y_left / det_left;
         let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
+        let minus_g1_vy_left = l2_y_left / det_left;
         let t2_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
         let t3_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
+        let g1_vy_right = l2_y_right / det_right;
+        let minus_g2_vy_right = l1_y_right / det_right;
         let t3_right = g1_vy_right * masses_right_1_1
             - minus_g2_vy_right * masses_right_1_2;
         let t4_right = g1_vy_right * masses_right_1_2
@@ -4800,7 +4686,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 100 operations (35 additions, 61 multiplications, 4 divisions), 2 square roots, 6 guards, 99 intermediates.
+    /// 98 operations (35 additions, 55 multiplications, 8 divisions), 2 square roots, 6 guards, 97 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4845,18 +4731,16 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
-        let k_right = 1.0 / det_right;
-        let g1_vx_right = l2_x_right * k_right;
-        let minus_g2_vx_right = l1_x_right * k_right;
+        let g1_vx_right = l2_x_right / det_right;
+        let minus_g2_vx_right = l1_x_right / det_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let minus_force1_y_by_2_right = s2_right * base_parameters[16];
         let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
@@ -4882,8 +4766,8 @@ impl FiveBar {
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
+        let g1_vy_right = l2_y_right / det_right;
+        let minus_g2_vy_right = l1_y_right / det_right;
         let t3_right = g1_vy_right * base_parameters[2]
             + minus_g2_vy_right * minus_masses_right_1_2;
         let t4_right = minus_masses_right_1_2 * g1_vy_right
@@ -4909,7 +4793,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 199 operations (75 additions, 120 multiplications, 4 divisions), 2 square roots, 4 signs, 6 guards, 199 intermediates.
+    /// 198 operations (77 additions, 110 multiplications, 11 divisions), 2 square roots, 4 signs, 6 guards, 198 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4925,6 +4809,8 @@ impl FiveBar {
         const HALF: ::core::primitive::f64 = 0.1;
         /// 1 / half
         const INV_HALF: ::core::primitive::f64 = 10.0;
+        /// 1 / l_2
+        const INV_L_2: ::core::primitive::f64 = 4.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
@@ -4940,40 +4826,38 @@ impl FiveBar {
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
         ::overact::guard::leg(det_left, 0.04998437255783052, "left")?;
-        let k_left = 1.0 / det_left;
-        let g2_vx_left = l1_x_left * k_left;
+        let g2_vx_left = l1_x_left / det_left;
         let l2_x_left = d_x_left - l1_x_left;
-        let minus_g1_vx_left = l2_x_left * k_left;
+        let minus_g1_vx_left = l2_x_left / det_left;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
-        let minus_g1_vy_left = l2_y_left * k_left;
+        let minus_g1_vy_left = l2_y_left / det_left;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
         let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-        let g2_vy_left = l1_y_left * k_left;
+        let g2_vy_left = l1_y_left / det_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
         let t2_left = rho_squared_left - 0.1025;
         let t3_left = TWICE_L_2 * t2_left;
-        let bias_rate_dot_2_left = k_left
-            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+        let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
+            + rate_2_squared_left * t3_left) / det_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
         let t4_left = bias_a1_x_left - L_1 * rate_1_squared_left;
         let c2_left = INV_HALF * t2_left;
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
-        let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+        let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
+            + rate_1_squared_left * t3_left) / det_left;
         let t5_left = bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left;
         let bias_a2_y_left = minus_s2_left * t4_left + c2_left * t5_left;
         let bias_a2_x_left = c2_left * t4_left - minus_s2_left * t5_left;
@@ -4982,26 +4866,29 @@ impl FiveBar {
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let minus_force2_x_left = parameters[8] * rate_2_squared_left
-            + parameters[9] * bias_rate_dot_2_left;
-        let force2_y_left = parameters[8] * bias_rate_dot_2_left
-            - parameters[9] * rate_2_squared_left;
-        let t6_left = bias_a1_y_left * (parameters[1] + L_1 * parameters[10])
-            - parameters[2] * bias_a1_x_left
-            - minus_bias_rate_dot_1_left * (parameters[0] + L_1_SQUARED * parameters[10])
-            + L_1 * (minus_s2_left * minus_force2_x_left + c2_left * force2_y_left);
+        let moment1_z_left = parameters[1] * bias_a1_y_left
+            - parameters[0] * minus_bias_rate_dot_1_left
+            - parameters[2] * bias_a1_x_left;
         let tau_1_left = parameters[6]
             - (parameters[3] * minus_bias_rate_dot_1_left
                 + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let force_on_u1_left = t6_left + tau_1_left - tau_2_left;
+        let v2_by_1_y_left = t2_left + t2_left;
+        let force2_y_left = parameters[8] * bias_rate_dot_2_left
+            - parameters[9] * rate_2_squared_left + parameters[10] * bias_a2_y_left;
+        let minus_v2_by_1_x_left = INV_L_2 * det_left;
+        let force2_x_left = parameters[10] * bias_a2_x_left
+            - (parameters[8] * rate_2_squared_left
+                + parameters[9] * bias_rate_dot_2_left);
+        let force_on_u1_left = moment1_z_left + tau_1_left
+            + v2_by_1_y_left * force2_y_left - minus_v2_by_1_x_left * force2_x_left
+            - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -5010,21 +4897,16 @@ impl FiveBar {
         ::overact::guard::leg(det_right, 0.04998437255783052, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
-        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let l2_y_right = pose[1] - l1_y_right;
-        let g1_vy_right = l2_y_right * k_right;
-        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let minus_g2_vx_right = l1_x_right * k_right;
+        let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let minus_g2_vy_right = l1_y_right * k_right;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            parameters[23],
-            minus_qd_2_right,
-        );
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let l2_y_right = pose[1] - l1_y_right;
+        let g1_vy_right = l2_y_right * k_right;
+        let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let rate_1_squared_right = rate_1_right * rate_1_right;
         let t2_right = rho_squared_right - 0.1025;
         let t3_right = TWICE_L_2 * t2_right;
@@ -5032,31 +4914,38 @@ impl FiveBar {
             * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
-        let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
-            - parameters[20] * rate_2_squared_right;
-        let c2_right = INV_HALF * t2_right;
-        let minus_force2_y_right = parameters[20] * minus_bias_rate_dot_2_right
-            + parameters[21] * rate_2_squared_right;
-        let t4_right = bias_rate_dot_1_right
-            * (parameters[12] + L_1_SQUARED * parameters[22])
-            + bias_a1_y_right * (parameters[13] + L_1 * parameters[22])
-            - parameters[14] * bias_a1_x_right
-            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let moment1_z_right = parameters[12] * bias_rate_dot_1_right
+            + parameters[13] * bias_a1_y_right - parameters[14] * bias_a1_x_right;
         let tau_1_right = parameters[15] * bias_rate_dot_1_right
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
+        let v2_by_1_x_right = INV_L_2 * det_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
+        let t4_right = bias_a1_x_right - L_1 * rate_1_squared_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let t5_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
-        let t6_right = bias_a1_x_right - L_1 * rate_1_squared_right;
-        let bias_a2_y_right = c2_right * t5_right - s2_right * t6_right;
-        let bias_a2_x_right = c2_right * t6_right + s2_right * t5_right;
+        let bias_a2_x_right = c2_right * t4_right + s2_right * t5_right;
+        let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
+            - parameters[20] * rate_2_squared_right + parameters[22] * bias_a2_x_right;
+        let v2_by_1_y_right = t2_right + t2_right;
+        let bias_a2_y_right = c2_right * t5_right - s2_right * t4_right;
+        let force2_y_right = parameters[22] * bias_a2_y_right
+            - (parameters[20] * minus_bias_rate_dot_2_right
+                + parameters[21] * rate_2_squared_right);
+        let minus_qd_2_right = rate_1_right + minus_rate_2_right;
+        let minus_tau_2_right = ::overact::math::signed(
+            parameters[23],
+            minus_qd_2_right,
+        );
+        let force_on_u1_right = moment1_z_right + tau_1_right
+            + v2_by_1_x_right * force2_x_right + v2_by_1_y_right * force2_y_right
+            + minus_tau_2_right;
         let moment2_z_right = parameters[20] * bias_a2_y_right
-            - parameters[21] * bias_a2_x_right
-            - parameters[19] * minus_bias_rate_dot_2_right;
+            - parameters[19] * minus_bias_rate_dot_2_right
+            - parameters[21] * bias_a2_x_right;
         let force_on_u2_right = moment2_z_right - minus_tau_2_right;
         let force_y_platform = 9.81 * parameters[24];
         ::core::result::Result::Ok([
@@ -5077,7 +4966,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 169 operations (61 additions, 104 multiplications, 4 divisions), 2 square roots, 4 signs, 6 guards, 169 intermediates.
+    /// 160 operations (61 additions, 94 multiplications, 5 divisions), 2 square roots, 4 signs, 6 guards, 160 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5136,36 +5025,33 @@ impl FiveBar {
             * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
         let c2_left = INV_HALF * t2_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
+        let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let minus_bias_rate_dot_1_left = k_left
             * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
-        let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
+        let bias_a2_x_left = c2_left * (bias_a1_x_left - l_1_rate_1_squared_left)
             - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
         let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
             - base_parameters[15] * bias_a2_x_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let minus_force2_x_left = base_parameters[15] * bias_rate_dot_2_left;
-        let minus_force2_y_left = base_parameters[15] * rate_2_squared_left;
-        let t4_left = base_parameters[3] * bias_a1_y_left
-            - base_parameters[5] * bias_a1_x_left
-            - base_parameters[1] * minus_bias_rate_dot_1_left
-            + L_1
-                * (minus_s2_left * minus_force2_x_left - c2_left * minus_force2_y_left);
         let tau_1_left = base_parameters[11]
             - (base_parameters[7] * minus_rate_1_left
                 + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let force_on_u1_left = t4_left + tau_1_left - tau_2_left;
+        let force_on_u1_left = base_parameters[3] * bias_a1_y_left
+            - base_parameters[5] * bias_a1_x_left
+            - base_parameters[1] * minus_bias_rate_dot_1_left
+            - base_parameters[15] * (minus_bias_a_on_f2_left - l_1_rate_1_squared_left)
+            + tau_1_left - tau_2_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
         ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         ::overact::guard::reach(h_squared_right, "right")?;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
@@ -5196,21 +5082,21 @@ impl FiveBar {
             * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
         let bias_a1_y_right = 49.05 * l1_x_right;
         let bias_a1_x_right = 49.05 * l1_y_right;
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
-        let force2_x_right = base_parameters[16] * minus_bias_rate_dot_2_right;
-        let c2_right = INV_HALF * t2_right;
-        let minus_force2_y_right = base_parameters[16] * rate_2_squared_right;
-        let t4_right = base_parameters[2] * bias_rate_dot_1_right
-            + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
-            + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
+        let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
         let tau_1_right = base_parameters[8] * rate_1_right
             + ::overact::math::signed(base_parameters[10], rate_1_right)
             + base_parameters[12];
-        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
-        let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
+        let force_on_u1_right = minus_tau_2_right
+            + base_parameters[2] * bias_rate_dot_1_right
+            + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
+            - base_parameters[16] * (minus_bias_a_on_f2_right - l_1_rate_1_squared_right)
+            + tau_1_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+        let c2_right = INV_HALF * t2_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let bias_a2_x_right = c2_right * (bias_a1_x_right - l_1_rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
         let minus_moment2_z_right = base_parameters[14] * minus_bias_rate_dot_2_right
             + base_parameters[16] * bias_a2_x_right;
@@ -5235,7 +5121,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 274 operations (105 additions, 163 multiplications, 6 divisions), 2 square roots, 4 signs, 8 guards, 274 intermediates.
+    /// 272 operations (105 additions, 159 multiplications, 8 divisions), 2 square roots, 4 signs, 8 guards, 272 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5252,8 +5138,6 @@ impl FiveBar {
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
         /// l_1 / half²
@@ -5268,9 +5152,8 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
@@ -5281,9 +5164,8 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -5306,40 +5188,39 @@ impl FiveBar {
         let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
         let bias_rate_dot_2_left = k_left
-            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+            * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let bias_a1_x_left = 49.05 * l1_y_left;
-        let t4_left = bias_a1_x_left - L_1 * rate_1_squared_left;
-        let c2_left = INV_HALF * t2_left;
+        let t3_left = bias_a1_x_left - L_1 * rate_1_squared_left;
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
-        let t5_left = bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left;
-        let bias_a2_y_left = minus_s2_left * t4_left + c2_left * t5_left;
-        let bias_a2_x_left = c2_left * t4_left - minus_s2_left * t5_left;
+            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
+        let t4_left = bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left;
+        let bias_a2_y_left = minus_s2_left * t3_left + c2_left * t4_left;
+        let bias_a2_x_left = c2_left * t3_left - minus_s2_left * t4_left;
         let moment2_z_left = parameters[7] * bias_rate_dot_2_left
             + parameters[8] * bias_a2_y_left - parameters[9] * bias_a2_x_left;
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(parameters[11], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
         let force1_y_by_1_left = parameters[1] + L_1 * parameters[10];
-        let t6_left = parameters[0] + L_1_SQUARED * parameters[10];
+        let t5_left = parameters[0] + L_1_SQUARED * parameters[10];
         let minus_force2_x_left = parameters[8] * rate_2_squared_left
             + parameters[9] * bias_rate_dot_2_left;
         let force2_y_left = parameters[8] * bias_rate_dot_2_left
             - parameters[9] * rate_2_squared_left;
-        let t7_left = bias_a1_y_left * force1_y_by_1_left
-            - parameters[2] * bias_a1_x_left - minus_bias_rate_dot_1_left * t6_left
+        let t6_left = bias_a1_y_left * force1_y_by_1_left
+            - parameters[2] * bias_a1_x_left - minus_bias_rate_dot_1_left * t5_left
             + L_1 * (minus_s2_left * minus_force2_x_left + c2_left * force2_y_left);
         let tau_1_left = parameters[6]
             - (parameters[3] * minus_bias_rate_dot_1_left
                 + parameters[4] * minus_rate_1_left
                 + ::overact::math::signed(parameters[5], minus_rate_1_left));
-        let force_on_u1_left = t7_left + tau_1_left - tau_2_left;
+        let force_on_u1_left = t6_left + tau_1_left - tau_2_left;
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
@@ -5357,34 +5238,33 @@ impl FiveBar {
         let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
         let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
         let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let t4_right = parameters[12] + L_1_SQUARED * parameters[22];
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+        let t3_right = parameters[12] + L_1_SQUARED * parameters[22];
         let bias_a1_y_right = 49.05 * l1_x_right;
         let force1_y_by_1_right = parameters[13] + L_1 * parameters[22];
         let bias_a1_x_right = 49.05 * l1_y_right;
         let s2_right = L_1_PER_HALF_SQUARED * det_right;
         let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
         let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
         let force2_x_right = parameters[21] * minus_bias_rate_dot_2_right
             - parameters[20] * rate_2_squared_right;
-        let c2_right = INV_HALF * t2_right;
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
         let minus_force2_y_right = parameters[20] * minus_bias_rate_dot_2_right
             + parameters[21] * rate_2_squared_right;
-        let t5_right = bias_rate_dot_1_right * t4_right
+        let t4_right = bias_rate_dot_1_right * t3_right
             + bias_a1_y_right * force1_y_by_1_right - parameters[14] * bias_a1_x_right
             + L_1 * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
         let tau_1_right = parameters[15] * bias_rate_dot_1_right
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let force_on_u1_right = minus_tau_2_right + t5_right + tau_1_right;
-        let t6_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
-        let t7_right = bias_a1_x_right - L_1 * rate_1_squared_right;
-        let bias_a2_y_right = c2_right * t6_right - s2_right * t7_right;
-        let bias_a2_x_right = c2_right * t7_right + s2_right * t6_right;
+        let force_on_u1_right = minus_tau_2_right + t4_right + tau_1_right;
+        let t5_right = bias_a1_y_right + L_1 * bias_rate_dot_1_right;
+        let t6_right = bias_a1_x_right - L_1 * rate_1_squared_right;
+        let bias_a2_y_right = c2_right * t5_right - s2_right * t6_right;
+        let bias_a2_x_right = c2_right * t6_right + s2_right * t5_right;
         let moment2_z_right = parameters[20] * bias_a2_y_right
             - parameters[21] * bias_a2_x_right
             - parameters[19] * minus_bias_rate_dot_2_right;
@@ -5395,11 +5275,11 @@ impl FiveBar {
                 - minus_g2_vx_right * force_on_u2_right);
         let force1_y_by_2_left = c2_left * parameters[8] + minus_s2_left * parameters[9];
         let masses_left_1_2 = L_1 * force1_y_by_2_left;
-        let masses_left_1_1 = t6_left + parameters[3];
-        let masses_right_1_1 = t4_right + parameters[15];
+        let masses_left_1_1 = t5_left + parameters[3];
+        let masses_right_1_1 = t3_right + parameters[15];
         let force1_y_by_2_right = c2_right * parameters[20] - s2_right * parameters[21];
         let masses_right_1_2 = L_1 * force1_y_by_2_right;
-        let t8_right = g2_vx_left
+        let t7_right = g2_vx_left
             * (g2_vx_left * parameters[7] - minus_g1_vx_left * masses_left_1_2)
             - minus_g1_vx_left
                 * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * masses_left_1_1)
@@ -5407,25 +5287,25 @@ impl FiveBar {
                 * (g1_vx_right * masses_right_1_1 - minus_g2_vx_right * masses_right_1_2)
             - minus_g2_vx_right
                 * (g1_vx_right * masses_right_1_2 - minus_g2_vx_right * parameters[19]);
-        let mass_1_1 = t8_right + parameters[24];
+        let mass_1_1 = t7_right + parameters[24];
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
-        let t8_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
-        let t9_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
-        let t9_right = g1_vy_right * masses_right_1_1
+        let t7_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
+        let t8_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
+        let t8_right = g1_vy_right * masses_right_1_1
             - minus_g2_vy_right * masses_right_1_2;
-        let t10_right = g1_vy_right * masses_right_1_2
+        let t9_right = g1_vy_right * masses_right_1_2
             - minus_g2_vy_right * parameters[19];
-        let mass_1_2 = g2_vx_left * t8_left - minus_g1_vx_left * t9_left
-            + g1_vx_right * t9_right - minus_g2_vx_right * t10_right;
+        let mass_1_2 = g2_vx_left * t7_left - minus_g1_vx_left * t8_left
+            + g1_vx_right * t8_right - minus_g2_vx_right * t9_right;
         let l_2_1 = mass_1_2 * inv_pivot_1;
         let force_y_platform = 9.81 * parameters[24];
         let t2 = g1_vy_right * torques[1] - minus_g1_vy_left * torques[0]
             - (g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
                 + g1_vy_right * force_on_u1_right - minus_g2_vy_right * force_on_u2_right
                 + force_y_platform);
-        let mass_2_2 = g2_vy_left * t8_left - minus_g1_vy_left * t9_left
-            + g1_vy_right * t9_right - minus_g2_vy_right * t10_right + parameters[24];
+        let mass_2_2 = g2_vy_left * t7_left - minus_g1_vy_left * t8_left
+            + g1_vy_right * t8_right - minus_g2_vy_right * t9_right + parameters[24];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let t3 = (t2 - t1 * l_2_1) / pivot_2;
@@ -5441,7 +5321,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 236 operations (87 additions, 143 multiplications, 6 divisions), 2 square roots, 4 signs, 8 guards, 236 intermediates.
+    /// 227 operations (85 additions, 132 multiplications, 10 divisions), 2 square roots, 4 signs, 8 guards, 227 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5459,12 +5339,8 @@ impl FiveBar {
         )?;
         /// half
         const HALF: ::core::primitive::f64 = 0.1;
-        /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
         /// l_1
         const L_1: ::core::primitive::f64 = 0.2;
-        /// l_1 / half
-        const L_1_PER_HALF: ::core::primitive::f64 = 2.0;
         /// l_1 / half²
         const L_1_PER_HALF_SQUARED: ::core::primitive::f64 = 20.0;
         /// l_1²
@@ -5477,9 +5353,8 @@ impl FiveBar {
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        let inv_rho_squared_right = 1.0 / rho_squared_right;
-        let t1_right = TWICE_L_2 - 0.01125 * inv_rho_squared_right;
-        let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
+        let t1_right = TWICE_L_2 - 0.01125 / rho_squared_right;
+        let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
         let h_right = ::overact::math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
@@ -5490,9 +5365,8 @@ impl FiveBar {
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
         ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
-        let inv_rho_squared_left = 1.0 / rho_squared_left;
-        let t1_left = TWICE_L_2 - 0.01125 * inv_rho_squared_left;
-        let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
+        let t1_left = TWICE_L_2 - 0.01125 / rho_squared_left;
+        let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
         ::overact::guard::reach(h_squared_left, "left")?;
         let h_left = ::overact::math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -5515,17 +5389,16 @@ impl FiveBar {
         let g2_vy_left = l1_y_left * k_left;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let rate_2_squared_left = rate_2_left * rate_2_left;
-        let t2_left = rho_squared_left - 0.1025;
-        let t3_left = TWICE_L_2 * t2_left;
+        let t2_left = TWICE_L_2 * (rho_squared_left - 0.1025);
         let bias_rate_dot_2_left = k_left
-            * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
-        let c2_left = INV_HALF * t2_left;
+            * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
+        let c2_left = t2_left * L_1_PER_HALF_SQUARED;
         let bias_a1_x_left = 49.05 * l1_y_left;
         let minus_s2_left = L_1_PER_HALF_SQUARED * det_left;
         let bias_a1_y_left = 49.05 * l1_x_left;
         let bias_a_on_f1_left = L_2_SQUARED * rate_2_squared_left;
         let minus_bias_rate_dot_1_left = k_left
-            * (bias_a_on_f1_left + rate_1_squared_left * t3_left);
+            * (bias_a_on_f1_left + rate_1_squared_left * t2_left);
         let bias_a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
             - minus_s2_left * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
         let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
@@ -5533,60 +5406,53 @@ impl FiveBar {
         let qd_2_left = minus_rate_1_left + rate_2_left;
         let tau_2_left = ::overact::math::signed(base_parameters[17], qd_2_left);
         let force_on_u2_left = moment2_z_left + tau_2_left;
-        let moment1_z_left = base_parameters[3] * bias_a1_y_left
-            - base_parameters[1] * minus_bias_rate_dot_1_left
-            - base_parameters[5] * bias_a1_x_left;
+        let force1_y_by_2_left = minus_s2_left * base_parameters[15];
+        let masses_left_1_2 = L_1 * force1_y_by_2_left;
         let tau_1_left = base_parameters[11]
             - (base_parameters[7] * minus_rate_1_left
                 + ::overact::math::signed(base_parameters[9], minus_rate_1_left));
-        let force1_y_by_2_left = minus_s2_left * base_parameters[15];
-        let masses_left_1_2 = L_1 * force1_y_by_2_left;
-        let v2_by_1_y_left = L_1_PER_HALF * t2_left;
-        let minus_force2_y_left = base_parameters[15] * rate_2_squared_left;
-        let force_on_u1_left = moment1_z_left + tau_1_left
-            + bias_rate_dot_2_left * masses_left_1_2
-            - v2_by_1_y_left * minus_force2_y_left - tau_2_left;
+        let force_on_u1_left = base_parameters[3] * bias_a1_y_left
+            - base_parameters[5] * bias_a1_x_left
+            - base_parameters[1] * minus_bias_rate_dot_1_left
+            + masses_left_1_2 * (minus_bias_a_on_f2_left / det_left) + tau_1_left
+            - tau_2_left;
         // --- right
-        let minus_g2_vx_right = l1_x_right * k_right;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
-        let minus_g2_vy_right = l1_y_right * k_right;
-        let minus_rate_2_right = minus_g2_vx_right * twist[0]
-            + minus_g2_vy_right * twist[1];
-        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
-        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let rate_1_squared_right = rate_1_right * rate_1_right;
-        let t2_right = rho_squared_right - 0.1025;
-        let t3_right = TWICE_L_2 * t2_right;
-        let bias_rate_dot_1_right = k_right
-            * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
-        let bias_a1_y_right = 49.05 * l1_x_right;
-        let bias_a1_x_right = 49.05 * l1_y_right;
-        let moment1_z_right = base_parameters[2] * bias_rate_dot_1_right
-            + base_parameters[4] * bias_a1_y_right
-            - base_parameters[6] * bias_a1_x_right;
-        let tau_1_right = base_parameters[8] * rate_1_right
-            + ::overact::math::signed(base_parameters[10], rate_1_right)
-            + base_parameters[12];
-        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-        let minus_bias_rate_dot_2_right = k_right
-            * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
-        let s2_right = L_1_PER_HALF_SQUARED * det_right;
-        let minus_force1_y_by_2_right = s2_right * base_parameters[16];
-        let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
-        let v2_by_1_y_right = L_1_PER_HALF * t2_right;
-        let minus_force2_y_right = base_parameters[16] * rate_2_squared_right;
+        let minus_g2_vx_right = l1_x_right * k_right;
+        let minus_g2_vy_right = l1_y_right * k_right;
+        let minus_rate_2_right = minus_g2_vx_right * twist[0]
+            + minus_g2_vy_right * twist[1];
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
         let minus_tau_2_right = ::overact::math::signed(
             base_parameters[18],
             minus_qd_2_right,
         );
-        let force_on_u1_right = moment1_z_right + tau_1_right
-            + minus_bias_rate_dot_2_right * minus_masses_right_1_2
-            - v2_by_1_y_right * minus_force2_y_right + minus_tau_2_right;
-        let c2_right = INV_HALF * t2_right;
+        let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
+        let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
+        let rate_1_squared_right = rate_1_right * rate_1_right;
+        let t2_right = TWICE_L_2 * (rho_squared_right - 0.1025);
+        let bias_rate_dot_1_right = k_right
+            * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+        let bias_a1_y_right = 49.05 * l1_x_right;
+        let bias_a1_x_right = 49.05 * l1_y_right;
+        let s2_right = L_1_PER_HALF_SQUARED * det_right;
+        let minus_force1_y_by_2_right = s2_right * base_parameters[16];
+        let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
+        let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
+        let tau_1_right = base_parameters[8] * rate_1_right
+            + ::overact::math::signed(base_parameters[10], rate_1_right)
+            + base_parameters[12];
+        let force_on_u1_right = minus_tau_2_right
+            + base_parameters[2] * bias_rate_dot_1_right
+            + base_parameters[4] * bias_a1_y_right - base_parameters[6] * bias_a1_x_right
+            + minus_masses_right_1_2 * (k_right * minus_bias_a_on_f2_right)
+            + tau_1_right;
+        let minus_bias_rate_dot_2_right = k_right
+            * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+        let c2_right = L_1_PER_HALF_SQUARED * t2_right;
         let bias_a2_x_right = c2_right * (bias_a1_x_right - L_1 * rate_1_squared_right)
             + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
         let minus_moment2_z_right = base_parameters[14] * minus_bias_rate_dot_2_right
@@ -5596,7 +5462,7 @@ impl FiveBar {
             - (g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
                 + g1_vx_right * force_on_u1_right
                 + minus_g2_vx_right * minus_force_on_u2_right);
-        let t4_right = g2_vx_left
+        let t3_right = g2_vx_left
             * (g2_vx_left * base_parameters[13] - minus_g1_vx_left * masses_left_1_2)
             - minus_g1_vx_left
                 * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * base_parameters[1])
@@ -5606,31 +5472,30 @@ impl FiveBar {
             + minus_g2_vx_right
                 * (g1_vx_right * minus_masses_right_1_2
                     + minus_g2_vx_right * base_parameters[14]);
-        let mass_1_1 = t4_right + base_parameters[0];
+        let mass_1_1 = t3_right + base_parameters[0];
         ::overact::guard::mass(mass_1_1)?;
-        let inv_pivot_1 = 1.0 / mass_1_1;
-        let t4_left = g2_vy_left * base_parameters[13]
+        let t3_left = g2_vy_left * base_parameters[13]
             - minus_g1_vy_left * masses_left_1_2;
-        let t5_left = g2_vy_left * masses_left_1_2
+        let t4_left = g2_vy_left * masses_left_1_2
             - minus_g1_vy_left * base_parameters[1];
-        let t5_right = g1_vy_right * base_parameters[2]
+        let t4_right = g1_vy_right * base_parameters[2]
             + minus_g2_vy_right * minus_masses_right_1_2;
-        let t6_right = g1_vy_right * minus_masses_right_1_2
+        let t5_right = g1_vy_right * minus_masses_right_1_2
             + minus_g2_vy_right * base_parameters[14];
-        let mass_1_2 = g2_vx_left * t4_left - minus_g1_vx_left * t5_left
-            + g1_vx_right * t5_right + minus_g2_vx_right * t6_right;
-        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let mass_1_2 = g2_vx_left * t3_left - minus_g1_vx_left * t4_left
+            + g1_vx_right * t4_right + minus_g2_vx_right * t5_right;
+        let l_2_1 = mass_1_2 / mass_1_1;
         let force_y_platform = 9.81 * base_parameters[0];
         let t2 = g1_vy_right * torques[1] - minus_g1_vy_left * torques[0]
             - (g2_vy_left * force_on_u2_left - minus_g1_vy_left * force_on_u1_left
                 + g1_vy_right * force_on_u1_right
                 + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform);
-        let mass_2_2 = g2_vy_left * t4_left - minus_g1_vy_left * t5_left
-            + g1_vy_right * t5_right + minus_g2_vy_right * t6_right + base_parameters[0];
+        let mass_2_2 = g2_vy_left * t3_left - minus_g1_vy_left * t4_left
+            + g1_vy_right * t4_right + minus_g2_vy_right * t5_right + base_parameters[0];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let t3 = (t2 - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
+        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t3, t3])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///

@@ -21,14 +21,14 @@
 /// | `idm_red_platform` | 623, 5 sc, 6 sg |  |
 /// | `idm_red_platform_base` | 601, 5 sc, 6 sg |  |
 /// | `project_platform` | 0 |  |
-/// | `inverse_dynamics` | 553, 5 sc, 6 sg |  |
-/// | `inverse_dynamics_base` | 526, 5 sc, 6 sg |  |
+/// | `inverse_dynamics` | 549, 5 sc, 6 sg |  |
+/// | `inverse_dynamics_base` | 522, 5 sc, 6 sg |  |
 /// | `mass_matrix` | 244, 5 sc |  |
 /// | `mass_matrix_base` | 226, 5 sc |  |
-/// | `bias` | 498, 5 sc, 6 sg |  |
-/// | `bias_base` | 473, 5 sc, 6 sg |  |
-/// | `forward_dynamics` | 895, 5 sc, 6 sg, 6 gd |  |
-/// | `forward_dynamics_base` | 860, 5 sc, 6 sg, 6 gd |  |
+/// | `bias` | 491, 5 sc, 6 sg |  |
+/// | `bias_base` | 470, 5 sc, 6 sg |  |
+/// | `forward_dynamics` | 884, 5 sc, 6 sg, 6 gd |  |
+/// | `forward_dynamics_base` | 855, 5 sc, 6 sg, 6 gd |  |
 /// | `project_torques` | 0 |  |
 ///
 /// # Names
@@ -1383,7 +1383,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 553 operations (283 additions, 270 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 557 intermediates.
+    /// 549 operations (281 additions, 268 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 553 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1401,8 +1401,6 @@ impl Rx90 {
         )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
-        /// d3²
-        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
         // --- sines and cosines
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
@@ -1410,14 +1408,14 @@ impl Rx90 {
         ]);
         // --- arm
         let t1_arm = parameters[40] + parameters[54] + parameters[68];
-        let t2_arm = parameters[26] + t1_arm;
-        let t3_arm = D3_SQUARED * t2_arm;
-        let t4_arm = parameters[8] + parameters[20] + t3_arm;
+        let t2_arm = D3 * (parameters[26] + t1_arm);
+        let t3_arm = D3 * t2_arm;
+        let t4_arm = parameters[8] + t3_arm;
         let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
         let w2_y_arm = c2_arm * joint_velocities[0];
         let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
         let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
-        let t5_arm = parameters[5] + parameters[20] - t4_arm;
+        let t5_arm = parameters[5] - t4_arm;
         let t6_arm = parameters[10] + t3_arm;
         let w2_x_arm = s2_arm * joint_velocities[0];
         let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
@@ -1436,11 +1434,11 @@ impl Rx90 {
         let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
             + joint_velocities[2] * w3_y_arm;
         let t8_arm = parameters[39] + D3 * t1_arm;
-        let t9_arm = D3 * (parameters[39] + t8_arm);
-        let t10_arm = parameters[17] + parameters[34] + t9_arm - parameters[20];
+        let t9_arm = parameters[34] + D3 * (parameters[39] + t8_arm);
+        let t10_arm = parameters[17] + t9_arm - parameters[20];
         let w3_z_arm = joint_velocities[1] + joint_velocities[2];
         let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
-        let t11_arm = parameters[22] + parameters[34] + t9_arm;
+        let t11_arm = parameters[22] + t9_arm;
         let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
         let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
         let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
@@ -1471,19 +1469,20 @@ impl Rx90 {
         let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
         let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
         let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
-        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
         let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
         let t15_arm = wd4_x_arm * t14_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
             - parameters[32] * u4_zx_arm + parameters[33] * u4_yx_arm
-            + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
+            + parameters[35] * (minus_u3_yy_arm - minus_u4_yy_arm);
         let a2_y_arm = 9.81 * c2_arm;
         let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
         let a2_x_arm = 9.81 * s2_arm;
         let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
         let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
         let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
         let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
         let my_4_minus_mz_5 = parameters[38] - parameters[53];
         let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
@@ -1529,23 +1528,27 @@ impl Rx90 {
         let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
         let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
         let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t19_arm = wd6_x_arm * xx_6_minus_yy_6 - parameters[64] * minus_w6_y_w6_z_arm
-            - parameters[60] * u6_zx_arm + parameters[61] * u6_yx_arm
-            + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
+        let t19_arm = w6_y_squared_arm - w6_z_squared_arm;
         let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t18_arm;
         let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-        let moment6_x_arm = t19_arm + parameters[66] * a5_y_arm;
+        let moment6_x_arm = wd6_x_arm * xx_6_minus_yy_6
+            - parameters[64] * minus_w6_y_w6_z_arm - parameters[60] * u6_zx_arm
+            + parameters[61] * u6_yx_arm + parameters[63] * t19_arm
+            + parameters[66] * a5_y_arm;
         let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let minus_u6_yy_arm = minus_u5_yy_arm - t19_arm;
+        let u6_xx_minus_u6_yy_arm = minus_u6_yy_arm - minus_u6_xx_arm;
         let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
         let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
             + parameters[60] * u6_zy_arm
-            + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
+            - parameters[61] * (t19_arm + u6_xx_minus_u6_yy_arm)
             + parameters[63] * minus_u6_xy_arm - parameters[65] * a5_y_arm;
         let moment5_x_arm = t17_arm + a5_z_arm * my_5_plus_mz_6 + c6_arm * moment6_x_arm
             - s6_arm * moment6_y_arm;
         let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
         let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
         let t20_arm = w5_x_w5_z_arm * (t16_arm - zz_5_plus_yy_6)
             + parameters[46] * u5_zy_arm
@@ -1553,23 +1556,22 @@ impl Rx90 {
             - parameters[49] * u5_xy_arm - parameters[51] * a5_z_arm;
         let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
         let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-        let t21_arm = parameters[64] * wd6_z_arm + minus_w6_x_w6_y_arm * xx_6_minus_yy_6
-            + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
-            + parameters[61] * minus_u6_yz_arm + parameters[63] * u6_xz_arm;
         let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
         let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
         let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-        let moment6_z_arm = t21_arm
+        let moment6_z_arm = parameters[64] * wd6_z_arm
+            + minus_w6_x_w6_y_arm * xx_6_minus_yy_6
+            + parameters[60] * u6_xx_minus_u6_yy_arm + parameters[61] * minus_u6_yz_arm
+            + parameters[63] * u6_xz_arm
             - (parameters[65] * minus_a6_y_arm + parameters[66] * a6_x_arm);
         let moment5_y_arm = t20_arm + moment6_z_arm;
         let moment4_x_arm = t15_arm + a4_z_arm * my_4_minus_mz_5 + c5_arm * moment5_x_arm
             - s5_arm * moment5_y_arm;
         let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let t21_arm = w4_z_squared_arm - w4_x_squared_arm;
         let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
         let t22_arm = w4_x_w4_z_arm * (t14_arm - zz_4_plus_yy_5)
-            + parameters[32] * u4_zy_arm
-            + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
+            + parameters[32] * u4_zy_arm + parameters[33] * t21_arm
             + parameters[35] * minus_u4_xy_arm - parameters[37] * a4_z_arm;
         let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
         let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
@@ -1581,21 +1583,17 @@ impl Rx90 {
             - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
         let moment4_y_arm = t22_arm - moment5_z_arm;
         let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
         let minus_force6_x_arm = parameters[65] * minus_u6_xx_arm
             + parameters[66] * minus_u6_xy_arm;
-        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
         let force6_y_arm = parameters[65] * u6_yx_arm - parameters[66] * minus_u6_yy_arm;
         let force5_x_arm = u5_xy_arm * my_5_plus_mz_6 - parameters[51] * minus_u5_xx_arm
             - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
-        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
         let force6_z_arm = parameters[65] * u6_zx_arm + parameters[66] * u6_zy_arm;
         let force5_y_arm = parameters[51] * u5_yx_arm - minus_u5_yy_arm * my_5_plus_mz_6
             + force6_z_arm;
-        let minus_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let minus_u4_xx_arm = minus_u3_yy_arm + t21_arm;
         let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
             - (parameters[37] * minus_u4_xx_arm + minus_u4_xy_arm * my_4_minus_mz_5);
-        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
         let force5_z_arm = parameters[51] * u5_zx_arm + u5_zy_arm * my_5_plus_mz_6
             - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
         let force4_y_arm = parameters[37] * u4_yx_arm - minus_u4_yy_arm * my_4_minus_mz_5
@@ -1610,7 +1608,7 @@ impl Rx90 {
         let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
         let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
         let t25_arm = wd4_z_arm * zz_4_plus_yy_5 + minus_w4_x_w4_y_arm * t14_arm
-            + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
+            + parameters[32] * (minus_u4_yy_arm - minus_u4_xx_arm)
             + parameters[33] * minus_u4_yz_arm + parameters[35] * u4_xz_arm;
         let moment4_z_arm = t25_arm
             - (parameters[37] * a5_z_arm + a4_x_arm * my_4_minus_mz_5)
@@ -1626,8 +1624,9 @@ impl Rx90 {
             + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
             - parameters[9] * u2_xy_arm + s3_arm * moment3_x_arm + c3_arm * moment3_y_arm
             - D3 * force3_z_arm;
-        let moment1_z_arm = joint_accelerations[0] * (parameters[0] + t4_arm)
-            + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
+        let moment1_z_arm = joint_accelerations[0]
+            * (parameters[0] + parameters[20] + t4_arm) + s2_arm * moment2_x_arm
+            + c2_arm * moment2_y_arm;
         let tau_1_arm = joint_accelerations[0] * parameters[1]
             + joint_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], joint_velocities[0])
@@ -1645,7 +1644,7 @@ impl Rx90 {
             + s5_arm * force5_x_arm + c5_arm * force5_y_arm;
         let force3_y_arm = parameters[23] * u3_yx_arm - minus_u3_yy_arm * t13_arm
             + force4_z_arm;
-        let t27_arm = t26_arm + a2_y_arm * (parameters[11] + D3 * t2_arm)
+        let t27_arm = t26_arm + a2_y_arm * (parameters[11] + t2_arm)
             - parameters[12] * a2_x_arm
             + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
         let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
@@ -1697,7 +1696,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 526 operations (261 additions, 265 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 530 intermediates.
+    /// 522 operations (260 additions, 262 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 526 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -1715,22 +1714,20 @@ impl Rx90 {
         )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
-        /// d3²
-        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
         // --- sines and cosines
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
         // --- arm
-        let d3_squared_m_4R = D3_SQUARED * base_parameters[35];
-        let t1_arm = base_parameters[27] + base_parameters[29] + d3_squared_m_4R;
+        let d3_m_4R = D3 * base_parameters[35];
+        let d3_d3_m_4R = D3 * d3_m_4R;
+        let yy_2R_plus_d3_d3_m_4R = base_parameters[27] + d3_d3_m_4R;
         let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
         let w2_y_arm = c2_arm * joint_velocities[0];
         let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
         let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
-        let t2_arm = base_parameters[29] - t1_arm;
-        let zz_2R_plus_d3_squared_m_4R = base_parameters[4] + d3_squared_m_4R;
+        let zz_2R_plus_d3_d3_m_4R = base_parameters[4] + d3_d3_m_4R;
         let w2_x_arm = s2_arm * joint_velocities[0];
         let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
         let u2_xz_arm = c2_arm * joint_accelerations[0];
@@ -1740,16 +1737,17 @@ impl Rx90 {
         let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
         let w2_y_squared_arm = w2_y_arm * w2_y_arm;
         let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t3_arm = wd2_x_arm * t2_arm + qd2_w2_y_arm * zz_2R_plus_d3_squared_m_4R
-            - base_parameters[31] * u2_zx_arm + base_parameters[28] * u2_yx_arm
+        let t1_arm = qd2_w2_y_arm * zz_2R_plus_d3_d3_m_4R
+            - wd2_x_arm * yy_2R_plus_d3_d3_m_4R - base_parameters[31] * u2_zx_arm
+            + base_parameters[28] * u2_yx_arm
             + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm);
         let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
         let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
             + joint_velocities[2] * w3_y_arm;
-        let d3_squared_m_4R_minus_yy_3R = d3_squared_m_4R - base_parameters[29];
+        let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
         let w3_z_arm = joint_velocities[1] + joint_velocities[2];
         let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
-        let zz_3R_plus_d3_squared_m_4R = base_parameters[24] + d3_squared_m_4R;
+        let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
         let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
         let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
         let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
@@ -1760,9 +1758,9 @@ impl Rx90 {
         let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
         let w3_y_squared_arm = w3_y_arm * w3_y_arm;
         let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t4_arm = wd3_x_arm * d3_squared_m_4R_minus_yy_3R
-            + w3_y_w3_z_arm * zz_3R_plus_d3_squared_m_4R
-            - base_parameters[32] * u3_zx_arm + base_parameters[33] * u3_yx_arm
+        let t2_arm = wd3_x_arm * d3_d3_m_4R_minus_yy_3R
+            + w3_y_w3_z_arm * zz_3R_plus_d3_d3_m_4R - base_parameters[32] * u3_zx_arm
+            + base_parameters[33] * u3_yx_arm
             + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm);
         let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
         let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
@@ -1777,20 +1775,21 @@ impl Rx90 {
         let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
         let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
         let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
-        let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
+        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
+        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
+        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
         let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let t5_arm = base_parameters[37] * wd4_x_arm
+        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+        let t3_arm = base_parameters[37] * wd4_x_arm
             - base_parameters[36] * minus_w4_y_w4_z_arm - base_parameters[40] * u4_zx_arm
             + base_parameters[39] * u4_yx_arm
-            + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
+            + base_parameters[38] * (minus_u3_yy_arm - minus_u4_yy_arm);
         let a2_y_arm = 9.81 * c2_arm;
         let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
         let a2_x_arm = 9.81 * s2_arm;
         let minus_u2_xx_arm = w2_y_squared_arm + rate_2_squared_arm;
         let a2_x_plus_d3_u2_xx_arm = a2_x_arm - D3 * minus_u2_xx_arm;
         let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm - s3_arm * a2_x_plus_d3_u2_xx_arm;
-        let w3_x_squared_arm = w3_x_arm * w3_x_arm;
-        let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
         let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
         let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
         let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
@@ -1805,18 +1804,19 @@ impl Rx90 {
         let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
         let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
         let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
-        let w5_y_squared_arm = w5_y_arm * w5_y_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
         let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t6_arm = base_parameters[43] * wd5_x_arm
+        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let t4_arm = base_parameters[43] * wd5_x_arm
             + base_parameters[42] * w5_y_w5_z_arm - base_parameters[45] * u5_zx_arm
             + base_parameters[46] * u5_yx_arm
-            + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
+            + base_parameters[47] * (minus_u4_yy_arm - minus_u5_yy_arm);
         let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm + s3_arm * a2_y_plus_d3_u2_yx_arm;
         let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
         let a3_x_plus_d3_u3_xy_arm = a3_x_arm + D3 * u3_xy_arm;
         let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
-        let t7_arm = D3 * (u2_zx_arm + u3_zy_arm);
-        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t7_arm;
+        let t5_arm = D3 * (u2_zx_arm + u3_zy_arm);
+        let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t5_arm;
         let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
         let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
             - joint_velocities[5] * minus_w6_y_arm;
@@ -1832,80 +1832,75 @@ impl Rx90 {
         let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
         let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
         let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t8_arm = base_parameters[49] * wd6_x_arm
-            - base_parameters[48] * minus_w6_y_w6_z_arm - base_parameters[54] * u6_zx_arm
-            + base_parameters[52] * u6_yx_arm
-            + base_parameters[53] * (w6_y_squared_arm - w6_z_squared_arm);
-        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t7_arm;
+        let t6_arm = w6_y_squared_arm - w6_z_squared_arm;
+        let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t5_arm;
         let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-        let moment6_x_arm = t8_arm + base_parameters[57] * a5_y_arm;
+        let moment6_x_arm = base_parameters[49] * wd6_x_arm
+            - base_parameters[48] * minus_w6_y_w6_z_arm - base_parameters[54] * u6_zx_arm
+            + base_parameters[52] * u6_yx_arm + base_parameters[53] * t6_arm
+            + base_parameters[57] * a5_y_arm;
         let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
         let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
         let moment6_y_arm = w6_x_w6_z_arm * (base_parameters[49] - base_parameters[48])
             + base_parameters[54] * u6_zy_arm
-            + base_parameters[52] * (w6_z_squared_arm - w6_x_squared_arm)
+            + base_parameters[52] * (minus_u6_xx_arm - minus_u5_yy_arm)
             + base_parameters[53] * minus_u6_xy_arm - base_parameters[56] * a5_y_arm;
-        let moment5_x_arm = t6_arm + base_parameters[50] * a5_z_arm
+        let moment5_x_arm = t4_arm + base_parameters[50] * a5_z_arm
             + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
         let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let t7_arm = w5_z_squared_arm - w5_x_squared_arm;
         let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
-        let t9_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
-            + base_parameters[45] * u5_zy_arm
-            + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
+        let t8_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
+            + base_parameters[45] * u5_zy_arm + base_parameters[46] * t7_arm
             - base_parameters[47] * u5_xy_arm - base_parameters[55] * a5_z_arm;
+        let minus_u6_yy_arm = minus_u5_yy_arm - t6_arm;
         let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
         let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-        let t10_arm = base_parameters[48] * wd6_z_arm
+        let t9_arm = base_parameters[48] * wd6_z_arm
             + base_parameters[49] * minus_w6_x_w6_y_arm
-            + base_parameters[54] * (w6_x_squared_arm - w6_y_squared_arm)
+            + base_parameters[54] * (minus_u6_yy_arm - minus_u6_xx_arm)
             + base_parameters[52] * minus_u6_yz_arm + base_parameters[53] * u6_xz_arm;
         let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
         let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
         let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-        let moment6_z_arm = t10_arm
+        let moment6_z_arm = t9_arm
             - (base_parameters[56] * minus_a6_y_arm + base_parameters[57] * a6_x_arm);
-        let moment5_y_arm = t9_arm + moment6_z_arm;
-        let moment4_x_arm = t5_arm + base_parameters[44] * a4_z_arm
+        let moment5_y_arm = t8_arm + moment6_z_arm;
+        let moment4_x_arm = t3_arm + base_parameters[44] * a4_z_arm
             + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
         let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
-        let w4_x_squared_arm = w4_x_arm * w4_x_arm;
+        let t10_arm = w4_z_squared_arm - w4_x_squared_arm;
         let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
         let t11_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
-            + base_parameters[40] * u4_zy_arm
-            + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
+            + base_parameters[40] * u4_zy_arm + base_parameters[39] * t10_arm
             + base_parameters[38] * minus_u4_xy_arm - base_parameters[51] * a4_z_arm;
+        let minus_u5_xx_arm = t7_arm + minus_u4_yy_arm;
         let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
         let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
         let t12_arm = base_parameters[42] * wd5_z_arm
             - base_parameters[43] * w5_x_w5_y_arm
-            + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
+            + base_parameters[45] * (minus_u5_yy_arm - minus_u5_xx_arm)
             - base_parameters[46] * u5_yz_arm + base_parameters[47] * u5_xz_arm;
         let moment5_z_arm = t12_arm + base_parameters[55] * a5_y_arm
             - base_parameters[50] * a5_x_arm
             - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
         let moment4_y_arm = t11_arm - moment5_z_arm;
-        let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
         let minus_force6_x_arm = base_parameters[56] * minus_u6_xx_arm
             + base_parameters[57] * minus_u6_xy_arm;
-        let minus_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
         let force6_y_arm = base_parameters[56] * u6_yx_arm
             - base_parameters[57] * minus_u6_yy_arm;
         let force5_x_arm = base_parameters[50] * u5_xy_arm
             - base_parameters[55] * minus_u5_xx_arm
             - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
-        let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
         let force6_z_arm = base_parameters[56] * u6_zx_arm
             + base_parameters[57] * u6_zy_arm;
         let force5_y_arm = base_parameters[55] * u5_yx_arm
             - base_parameters[50] * minus_u5_yy_arm + force6_z_arm;
-        let minus_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
+        let minus_u4_xx_arm = minus_u3_yy_arm + t10_arm;
         let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
             - (base_parameters[51] * minus_u4_xx_arm
                 + base_parameters[44] * minus_u4_xy_arm);
-        let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
         let force5_z_arm = base_parameters[55] * u5_zx_arm
             + base_parameters[50] * u5_zy_arm
             - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
@@ -1913,11 +1908,10 @@ impl Rx90 {
             - base_parameters[44] * minus_u4_yy_arm - force5_z_arm;
         let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
             + c4_arm * force4_y_arm;
-        let moment3_x_arm = t4_arm + d3_squared_m_4R * u2_zx_arm + c4_arm * moment4_x_arm
+        let moment3_x_arm = t2_arm + d3_d3_m_4R * u2_zx_arm + c4_arm * moment4_x_arm
             - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
         let a3_z_arm = D3 * u2_zx_arm;
-        let t13_arm = w3_x_w3_z_arm
-            * (d3_squared_m_4R_minus_yy_3R - zz_3R_plus_d3_squared_m_4R)
+        let t13_arm = w3_x_w3_z_arm * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
             + base_parameters[32] * u3_zy_arm
             + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
             - base_parameters[34] * u3_xy_arm - base_parameters[41] * a3_z_arm;
@@ -1925,32 +1919,32 @@ impl Rx90 {
         let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
         let t14_arm = base_parameters[36] * wd4_z_arm
             + base_parameters[37] * minus_w4_x_w4_y_arm
-            + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
+            + base_parameters[40] * (minus_u4_yy_arm - minus_u4_xx_arm)
             + base_parameters[39] * minus_u4_yz_arm + base_parameters[38] * u4_xz_arm;
         let moment4_z_arm = t14_arm
             - (base_parameters[51] * a5_z_arm + base_parameters[44] * a4_x_arm)
             + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
         let moment3_y_arm = t13_arm + moment4_z_arm;
-        let moment2_x_arm = t3_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let moment2_x_arm = t1_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
         let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
         let w2_x_squared_arm = w2_x_arm * w2_x_arm;
         let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
-        let d3_m_4R = D3 * base_parameters[35];
         let force3_z_arm = base_parameters[41] * u3_zx_arm + u3_zy_arm * d3_m_4R
             - s4_force4_x_plus_c4_force4_y_arm;
-        let moment2_y_arm = qd2_w2_x_arm * (t2_arm - zz_2R_plus_d3_squared_m_4R)
-            + base_parameters[31] * u2_zy_arm
+        let moment2_y_arm = base_parameters[31] * u2_zy_arm
+            - qd2_w2_x_arm * (yy_2R_plus_d3_d3_m_4R + zz_2R_plus_d3_d3_m_4R)
             + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
             - base_parameters[30] * u2_xy_arm + s3_arm * moment3_x_arm
             + c3_arm * moment3_y_arm - D3 * force3_z_arm;
-        let moment1_z_arm = joint_accelerations[0] * (base_parameters[0] + t1_arm)
+        let moment1_z_arm = joint_accelerations[0]
+            * (base_parameters[0] + base_parameters[29] + yy_2R_plus_d3_d3_m_4R)
             + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
         let tau_1_arm = joint_velocities[0] * base_parameters[1]
             + ::overact::math::signed(base_parameters[2], joint_velocities[0])
             + base_parameters[3];
         let force_on_u1_arm = moment1_z_arm + tau_1_arm;
-        let t15_arm = joint_accelerations[1] * zz_2R_plus_d3_squared_m_4R
-            - w2_x_w2_y_arm * t2_arm
+        let t15_arm = joint_accelerations[1] * zz_2R_plus_d3_d3_m_4R
+            + w2_x_w2_y_arm * yy_2R_plus_d3_d3_m_4R
             + base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
             + base_parameters[28] * minus_u2_yz_arm + base_parameters[30] * u2_xz_arm;
         let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
@@ -1968,8 +1962,8 @@ impl Rx90 {
             + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
         let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
         let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
-        let t17_arm = wd3_z_arm * zz_3R_plus_d3_squared_m_4R
-            - w3_x_w3_y_arm * d3_squared_m_4R_minus_yy_3R
+        let t17_arm = wd3_z_arm * zz_3R_plus_d3_d3_m_4R
+            - w3_x_w3_y_arm * d3_d3_m_4R_minus_yy_3R
             + base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
             - base_parameters[33] * u3_yz_arm + base_parameters[34] * u3_xz_arm;
         let moment3_z_arm = t17_arm + base_parameters[41] * a3_y_arm - a3_x_arm * d3_m_4R
@@ -2378,7 +2372,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 498 operations (247 additions, 251 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 502 intermediates.
+    /// 491 operations (245 additions, 246 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 495 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -2410,41 +2404,38 @@ impl Rx90 {
         let t1_arm = parameters[40] + parameters[54] + parameters[68];
         let t2_arm = parameters[26] + t1_arm;
         let t3_arm = D3_SQUARED * t2_arm;
-        let t4_arm = parameters[5] + parameters[20]
-            - (parameters[8] + parameters[20] + t3_arm);
+        let t4_arm = parameters[5] - (parameters[8] + t3_arm);
         let t5_arm = parameters[10] + t3_arm;
         let w2_x_arm = s2_arm * joint_velocities[0];
         let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
-        let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+        let twice_xy_2 = parameters[6] + parameters[6];
         let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
         let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
         let w2_y_squared_arm = w2_y_arm * w2_y_arm;
         let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t6_arm = bias_wd2_x_arm * t4_arm + bias_wd2_x_arm * t5_arm
-            - parameters[6] * bias_u2_zx_arm + bias_u2_xy_arm * xz_2_minus_d3_mz_3
-            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
         let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
         let w3_z_arm = joint_velocities[1] + joint_velocities[2];
         let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let t7_arm = parameters[39] + D3 * t1_arm;
-        let t8_arm = D3 * (parameters[39] + t7_arm);
-        let t9_arm = parameters[17] + parameters[34] + t8_arm - parameters[20];
-        let t10_arm = parameters[22] + parameters[34] + t8_arm;
+        let t6_arm = parameters[39] + D3 * t1_arm;
+        let t7_arm = parameters[34] + D3 * (parameters[39] + t6_arm);
+        let t8_arm = parameters[17] + t7_arm - parameters[20];
+        let t9_arm = parameters[22] + t7_arm;
         let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
         let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
         let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
         let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
         let w3_y_squared_arm = w3_y_arm * w3_y_arm;
         let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t11_arm = bias_wd3_x_arm * t9_arm + bias_wd3_x_arm * t10_arm
-            - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
-            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
         let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-        let t12_arm = t7_arm + parameters[24];
+        let t10_arm = t6_arm + parameters[24];
+        let t11_arm = bias_wd3_x_arm * (t8_arm + t9_arm)
+            - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
+            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm)
+            + bias_a3_z_arm * t10_arm;
         let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
         let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
             - joint_velocities[3] * minus_w4_y_arm;
-        let t13_arm = parameters[31] + parameters[48] - parameters[34];
+        let t12_arm = parameters[31] + parameters[48] - parameters[34];
         let w4_z_arm = w3_y_arm + joint_velocities[3];
         let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
         let zz_4_plus_yy_5 = parameters[36] + parameters[48];
@@ -2456,7 +2447,7 @@ impl Rx90 {
         let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
         let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
         let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let t14_arm = bias_wd4_x_arm * t13_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
+        let t13_arm = bias_wd4_x_arm * t12_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
             - parameters[32] * bias_u4_zx_arm - parameters[33] * minus_bias_u4_yx_arm
             + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
         let bias_a2_y_arm = 9.81 * c2_arm;
@@ -2473,7 +2464,7 @@ impl Rx90 {
         let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
         let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm - s5_arm * minus_bias_wd3_y_arm
             + joint_velocities[4] * w5_y_arm;
-        let t15_arm = parameters[45] + parameters[62] - parameters[48];
+        let t14_arm = parameters[45] + parameters[62] - parameters[48];
         let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
         let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
         let zz_5_plus_yy_6 = parameters[50] + parameters[62];
@@ -2486,14 +2477,14 @@ impl Rx90 {
         let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
         let w5_y_squared_arm = w5_y_arm * w5_y_arm;
         let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t16_arm = bias_wd5_x_arm * t15_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
+        let t15_arm = bias_wd5_x_arm * t14_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
             - parameters[46] * bias_u5_zx_arm + parameters[47] * bias_u5_yx_arm
             + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
         let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
             + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
         let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
-        let t17_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
-        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t17_arm;
+        let t16_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t16_arm;
         let my_5_plus_mz_6 = parameters[52] + parameters[67];
         let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
         let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
@@ -2508,73 +2499,73 @@ impl Rx90 {
         let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
         let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
         let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
-        let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
+        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
         let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t18_arm = bias_wd6_x_arm * xx_6_minus_yy_6
+        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let bias_u6_yy_minus_bias_u5_yy_arm = minus_bias_u5_yy_arm
+            - minus_bias_u6_yy_arm;
+        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t16_arm;
+        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+        let moment6_x_arm = bias_wd6_x_arm * xx_6_minus_yy_6
             - parameters[64] * minus_w6_y_w6_z_arm - parameters[60] * bias_u6_zx_arm
             - parameters[61] * minus_bias_u6_yx_arm
-            + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
-        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t17_arm;
-        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-        let moment6_x_arm = t18_arm + parameters[66] * bias_a5_y_arm;
+            + parameters[63] * bias_u6_yy_minus_bias_u5_yy_arm
+            + parameters[66] * bias_a5_y_arm;
         let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let t17_arm = w6_z_squared_arm - w6_x_squared_arm;
         let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
         let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
-            + parameters[60] * bias_u6_zy_arm
-            + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
+            + parameters[60] * bias_u6_zy_arm + parameters[61] * t17_arm
             - parameters[63] * bias_u6_xy_arm - parameters[65] * bias_a5_y_arm;
-        let moment5_x_arm = t16_arm + bias_a5_z_arm * my_5_plus_mz_6
+        let moment5_x_arm = t15_arm + bias_a5_z_arm * my_5_plus_mz_6
             + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
         let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
         let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-        let t19_arm = w5_x_w5_z_arm * (t15_arm - zz_5_plus_yy_6)
+        let t18_arm = w5_x_w5_z_arm * (t14_arm - zz_5_plus_yy_6)
             + parameters[46] * bias_u5_zy_arm
             + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
             - parameters[49] * bias_u5_xy_arm - parameters[51] * bias_a5_z_arm;
+        let t19_arm = bias_u6_yy_minus_bias_u5_yy_arm + t17_arm;
         let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
         let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-        let t20_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
-            - parameters[64] * minus_bias_wd5_y_arm
-            + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
-            + parameters[61] * minus_bias_u6_yz_arm + parameters[63] * bias_u6_xz_arm;
         let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
         let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
         let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-        let moment6_z_arm = t20_arm
+        let moment6_z_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
+            - parameters[64] * minus_bias_wd5_y_arm - parameters[60] * t19_arm
+            + parameters[61] * minus_bias_u6_yz_arm + parameters[63] * bias_u6_xz_arm
             - (parameters[65] * minus_bias_a6_y_arm + parameters[66] * bias_a6_x_arm);
-        let moment5_y_arm = t19_arm + moment6_z_arm;
-        let moment4_x_arm = t14_arm + bias_a4_z_arm * my_4_minus_mz_5
+        let moment5_y_arm = t18_arm + moment6_z_arm;
+        let moment4_x_arm = t13_arm + bias_a4_z_arm * my_4_minus_mz_5
             + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
         let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
         let w4_x_squared_arm = w4_x_arm * w4_x_arm;
         let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-        let t21_arm = w4_x_w4_z_arm * (t13_arm - zz_4_plus_yy_5)
+        let t20_arm = w4_x_w4_z_arm * (t12_arm - zz_4_plus_yy_5)
             + parameters[32] * bias_u4_zy_arm
             + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
             - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
         let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
         let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-        let t22_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t15_arm
+        let t21_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t14_arm
             + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
             - parameters[47] * bias_u5_yz_arm + parameters[49] * bias_u5_xz_arm;
-        let moment5_z_arm = t22_arm + parameters[51] * bias_a5_y_arm
+        let moment5_z_arm = t21_arm + parameters[51] * bias_a5_y_arm
             - bias_a5_x_arm * my_5_plus_mz_6
             - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let moment4_y_arm = t21_arm - moment5_z_arm;
+        let moment4_y_arm = t20_arm - moment5_z_arm;
         let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
         let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let minus_bias_u6_xx_arm = t19_arm + minus_bias_u6_yy_arm;
         let force6_x_arm = parameters[66] * bias_u6_xy_arm
             - parameters[65] * minus_bias_u6_xx_arm;
-        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
         let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
             + parameters[66] * minus_bias_u6_yy_arm;
         let force5_x_arm = bias_u5_xy_arm * my_5_plus_mz_6
             - parameters[51] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
             + s6_arm * minus_force6_y_arm;
-        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
         let force6_z_arm = parameters[65] * bias_u6_zx_arm
             + parameters[66] * bias_u6_zy_arm;
         let force5_y_arm = parameters[51] * bias_u5_yx_arm
@@ -2590,30 +2581,32 @@ impl Rx90 {
             + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
         let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
             - c4_arm * minus_force4_y_arm;
-        let moment3_x_arm = t11_arm + bias_a3_z_arm * t12_arm + c4_arm * moment4_x_arm
-            - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+        let moment3_x_arm = t11_arm + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
+            - D3 * s4_force4_x_plus_c4_force4_y_arm;
         let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
-        let t23_arm = minus_bias_wd3_y_arm * (t9_arm - t10_arm)
+        let t22_arm = minus_bias_wd3_y_arm * (t8_arm - t9_arm)
             + parameters[18] * bias_u3_zy_arm
             + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
             - parameters[21] * bias_u3_xy_arm - parameters[23] * bias_a3_z_arm;
         let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
         let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-        let t24_arm = minus_w4_x_w4_y_arm * t13_arm
+        let t23_arm = minus_w4_x_w4_y_arm * t12_arm
             - minus_bias_wd3_y_arm * zz_4_plus_yy_5
             + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
             + parameters[33] * minus_bias_u4_yz_arm + parameters[35] * bias_u4_xz_arm;
-        let moment4_z_arm = t24_arm
+        let moment4_z_arm = t23_arm
             - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
             + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
-        let moment3_y_arm = t23_arm + moment4_z_arm;
-        let moment2_x_arm = t6_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+        let moment3_y_arm = t22_arm + moment4_z_arm;
+        let moment2_x_arm = bias_wd2_x_arm * (t4_arm + t5_arm)
+            - minus_bias_wd2_y_arm * twice_xy_2 + bias_u2_xy_arm * xz_2_minus_d3_mz_3
+            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm)
+            + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
         let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let force3_z_arm = parameters[23] * bias_u3_zx_arm + bias_u3_zy_arm * t12_arm
+        let force3_z_arm = parameters[23] * bias_u3_zx_arm + bias_u3_zy_arm * t10_arm
             - s4_force4_x_plus_c4_force4_y_arm;
         let moment2_y_arm = minus_bias_wd2_y_arm * (t4_arm - t5_arm)
-            + parameters[6] * bias_u2_zy_arm
+            + bias_wd2_x_arm * twice_xy_2
             + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
             - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
             + c3_arm * moment3_y_arm - D3 * force3_z_arm;
@@ -2622,24 +2615,24 @@ impl Rx90 {
             + ::overact::math::signed(parameters[3], joint_velocities[0])
             + parameters[4];
         let force_on_u1_arm = moment1_z_arm + tau_1_arm;
-        let t25_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+        let t24_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
             - bias_u2_xy_arm * t4_arm + bias_a2_y_arm * (parameters[11] + D3 * t2_arm)
             - parameters[12] * bias_a2_x_arm;
         let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
         let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
             + s4_arm * minus_force4_y_arm;
-        let force3_x_arm = bias_u3_xy_arm * t12_arm
+        let force3_x_arm = bias_u3_xy_arm * t10_arm
             - parameters[23] * minus_bias_u3_xx_arm + c4_force4_x_minus_s4_force4_y_arm;
         let force4_z_arm = parameters[37] * bias_u4_zx_arm
             + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
             + c5_arm * force5_y_arm;
         let force3_y_arm = parameters[23] * bias_u3_xy_arm
-            - minus_bias_u3_yy_arm * t12_arm + force4_z_arm;
-        let t26_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-            - bias_u3_xy_arm * t9_arm + parameters[23] * bias_a3_y_arm
-            - bias_a3_x_arm * t12_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
-        let moment3_z_arm = t26_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
-        let moment2_z_arm = t25_arm
+            - minus_bias_u3_yy_arm * t10_arm + force4_z_arm;
+        let t25_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
+            - bias_u3_xy_arm * t8_arm + parameters[23] * bias_a3_y_arm
+            - bias_a3_x_arm * t10_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
+        let moment3_z_arm = t25_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
+        let moment2_z_arm = t24_arm
             + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm) + moment3_z_arm;
         let tau_2_arm = joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
@@ -2675,7 +2668,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 473 operations (225 additions, 248 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 477 intermediates.
+    /// 470 operations (225 additions, 245 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 474 intermediates.
     ///
     /// # Errors
     /// An input that is not finite.
@@ -2692,8 +2685,6 @@ impl Rx90 {
         )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
-        /// d3²
-        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
         /// 2 d3
         const TWICE_D3: ::core::primitive::f64 = 0.9;
         // --- sines and cosines
@@ -2704,34 +2695,30 @@ impl Rx90 {
         // --- arm
         let w2_y_arm = c2_arm * joint_velocities[0];
         let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
-        let d3_squared_m_4R = D3_SQUARED * base_parameters[35];
-        let yy_2R_plus_d3_squared_m_4R = base_parameters[27] + d3_squared_m_4R;
-        let zz_2R_plus_d3_squared_m_4R = base_parameters[4] + d3_squared_m_4R;
+        let yy_2R_minus_zz_2R = base_parameters[27] - base_parameters[4];
         let w2_x_arm = s2_arm * joint_velocities[0];
         let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
         let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
         let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
         let w2_y_squared_arm = w2_y_arm * w2_y_arm;
         let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t1_arm = bias_wd2_x_arm * zz_2R_plus_d3_squared_m_4R
-            - bias_wd2_x_arm * yy_2R_plus_d3_squared_m_4R
-            - base_parameters[31] * bias_u2_zx_arm + base_parameters[28] * bias_u2_xy_arm
-            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm);
         let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
         let w3_z_arm = joint_velocities[1] + joint_velocities[2];
         let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let d3_squared_m_4R_minus_yy_3R = d3_squared_m_4R - base_parameters[29];
-        let zz_3R_plus_d3_squared_m_4R = base_parameters[24] + d3_squared_m_4R;
+        let d3_m_4R = D3 * base_parameters[35];
+        let d3_d3_m_4R = D3 * d3_m_4R;
+        let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
+        let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
         let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
         let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
         let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
         let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
         let w3_y_squared_arm = w3_y_arm * w3_y_arm;
         let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t2_arm = bias_wd3_x_arm * d3_squared_m_4R_minus_yy_3R
-            + bias_wd3_x_arm * zz_3R_plus_d3_squared_m_4R
+        let t1_arm = bias_wd3_x_arm * (d3_d3_m_4R_minus_yy_3R + zz_3R_plus_d3_d3_m_4R)
             - base_parameters[32] * bias_u3_zx_arm + base_parameters[33] * bias_u3_xy_arm
-            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm);
+            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm)
+            + d3_d3_m_4R * bias_u2_zx_arm;
         let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
         let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
             - joint_velocities[3] * minus_w4_y_arm;
@@ -2745,7 +2732,7 @@ impl Rx90 {
         let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
         let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
         let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let t3_arm = base_parameters[37] * bias_wd4_x_arm
+        let t2_arm = base_parameters[37] * bias_wd4_x_arm
             - base_parameters[36] * minus_w4_y_w4_z_arm
             - base_parameters[40] * bias_u4_zx_arm
             - base_parameters[39] * minus_bias_u4_yx_arm
@@ -2774,15 +2761,15 @@ impl Rx90 {
         let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
         let w5_y_squared_arm = w5_y_arm * w5_y_arm;
         let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t4_arm = base_parameters[43] * bias_wd5_x_arm
+        let t3_arm = base_parameters[43] * bias_wd5_x_arm
             + base_parameters[42] * w5_y_w5_z_arm - base_parameters[45] * bias_u5_zx_arm
             + base_parameters[46] * bias_u5_yx_arm
             + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
         let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
             + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
         let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
-        let t5_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
-        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t5_arm;
+        let t4_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t4_arm;
         let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
         let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
             - joint_velocities[5] * minus_w6_y_arm;
@@ -2797,76 +2784,76 @@ impl Rx90 {
         let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
         let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
         let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t6_arm = base_parameters[49] * bias_wd6_x_arm
+        let t5_arm = w6_y_squared_arm - w6_z_squared_arm;
+        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t4_arm;
+        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+        let moment6_x_arm = base_parameters[49] * bias_wd6_x_arm
             - base_parameters[48] * minus_w6_y_w6_z_arm
             - base_parameters[54] * bias_u6_zx_arm
-            - base_parameters[52] * minus_bias_u6_yx_arm
-            + base_parameters[53] * (w6_y_squared_arm - w6_z_squared_arm);
-        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t5_arm;
-        let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-        let moment6_x_arm = t6_arm + base_parameters[57] * bias_a5_y_arm;
+            - base_parameters[52] * minus_bias_u6_yx_arm + base_parameters[53] * t5_arm
+            + base_parameters[57] * bias_a5_y_arm;
         let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
-        let w6_x_squared_arm = w6_x_arm * w6_x_arm;
+        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
+        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
+        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
+        let bias_u5_yy_minus_bias_u6_xx_arm = minus_bias_u6_xx_arm
+            - minus_bias_u5_yy_arm;
         let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
         let moment6_y_arm = w6_x_w6_z_arm * (base_parameters[49] - base_parameters[48])
             + base_parameters[54] * bias_u6_zy_arm
-            + base_parameters[52] * (w6_z_squared_arm - w6_x_squared_arm)
+            + base_parameters[52] * bias_u5_yy_minus_bias_u6_xx_arm
             - base_parameters[53] * bias_u6_xy_arm - base_parameters[56] * bias_a5_y_arm;
-        let moment5_x_arm = t4_arm + base_parameters[50] * bias_a5_z_arm
+        let moment5_x_arm = t3_arm + base_parameters[50] * bias_a5_z_arm
             + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
         let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
-        let w5_x_squared_arm = w5_x_arm * w5_x_arm;
         let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-        let t7_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
+        let t6_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
             + base_parameters[45] * bias_u5_zy_arm
             + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
             - base_parameters[47] * bias_u5_xy_arm - base_parameters[55] * bias_a5_z_arm;
+        let t7_arm = t5_arm + bias_u5_yy_minus_bias_u6_xx_arm;
         let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
         let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-        let t8_arm = base_parameters[49] * minus_w6_x_w6_y_arm
-            - base_parameters[48] * minus_bias_wd5_y_arm
-            + base_parameters[54] * (w6_x_squared_arm - w6_y_squared_arm)
-            + base_parameters[52] * minus_bias_u6_yz_arm
-            + base_parameters[53] * bias_u6_xz_arm;
         let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
         let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
         let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-        let moment6_z_arm = t8_arm
+        let moment6_z_arm = base_parameters[49] * minus_w6_x_w6_y_arm
+            - base_parameters[48] * minus_bias_wd5_y_arm - base_parameters[54] * t7_arm
+            + base_parameters[52] * minus_bias_u6_yz_arm
+            + base_parameters[53] * bias_u6_xz_arm
             - (base_parameters[56] * minus_bias_a6_y_arm
                 + base_parameters[57] * bias_a6_x_arm);
-        let moment5_y_arm = t7_arm + moment6_z_arm;
-        let moment4_x_arm = t3_arm + base_parameters[44] * bias_a4_z_arm
+        let moment5_y_arm = t6_arm + moment6_z_arm;
+        let moment4_x_arm = t2_arm + base_parameters[44] * bias_a4_z_arm
             + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
         let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
         let w4_x_squared_arm = w4_x_arm * w4_x_arm;
         let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-        let t9_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
+        let t8_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
             + base_parameters[40] * bias_u4_zy_arm
             + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
             - base_parameters[38] * bias_u4_xy_arm - base_parameters[51] * bias_a4_z_arm;
         let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
         let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-        let t10_arm = base_parameters[42] * bias_wd5_z_arm
+        let t9_arm = base_parameters[42] * bias_wd5_z_arm
             - base_parameters[43] * w5_x_w5_y_arm
             + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
             - base_parameters[46] * bias_u5_yz_arm
             + base_parameters[47] * bias_u5_xz_arm;
-        let moment5_z_arm = t10_arm + base_parameters[55] * bias_a5_y_arm
+        let moment5_z_arm = t9_arm + base_parameters[55] * bias_a5_y_arm
             - base_parameters[50] * bias_a5_x_arm
             - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let moment4_y_arm = t9_arm - moment5_z_arm;
+        let moment4_y_arm = t8_arm - moment5_z_arm;
         let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
         let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-        let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
         let force6_x_arm = base_parameters[57] * bias_u6_xy_arm
             - base_parameters[56] * minus_bias_u6_xx_arm;
-        let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
+        let minus_bias_u6_yy_arm = minus_bias_u6_xx_arm - t7_arm;
         let minus_force6_y_arm = base_parameters[56] * minus_bias_u6_yx_arm
             + base_parameters[57] * minus_bias_u6_yy_arm;
         let force5_x_arm = base_parameters[50] * bias_u5_xy_arm
             - base_parameters[55] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
             + s6_arm * minus_force6_y_arm;
-        let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
         let force6_z_arm = base_parameters[56] * bias_u6_zx_arm
             + base_parameters[57] * bias_u6_zy_arm;
         let force5_y_arm = base_parameters[55] * bias_u5_yx_arm
@@ -2882,36 +2869,38 @@ impl Rx90 {
             + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
         let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
             - c4_arm * minus_force4_y_arm;
-        let moment3_x_arm = t2_arm + d3_squared_m_4R * bias_u2_zx_arm
-            + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
+        let moment3_x_arm = t1_arm + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
             - D3 * s4_force4_x_plus_c4_force4_y_arm;
         let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
         let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-        let t11_arm = minus_bias_wd3_y_arm
-            * (d3_squared_m_4R_minus_yy_3R - zz_3R_plus_d3_squared_m_4R)
+        let t10_arm = minus_bias_wd3_y_arm
+            * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
             + base_parameters[32] * bias_u3_zy_arm
             + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
             - base_parameters[34] * bias_u3_xy_arm - base_parameters[41] * bias_a3_z_arm;
         let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
         let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-        let t12_arm = base_parameters[37] * minus_w4_x_w4_y_arm
+        let t11_arm = base_parameters[37] * minus_w4_x_w4_y_arm
             - base_parameters[36] * minus_bias_wd3_y_arm
             + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
             + base_parameters[39] * minus_bias_u4_yz_arm
             + base_parameters[38] * bias_u4_xz_arm;
-        let moment4_z_arm = t12_arm
+        let moment4_z_arm = t11_arm
             - (base_parameters[51] * bias_a5_z_arm + base_parameters[44] * bias_a4_x_arm)
             + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
-        let moment3_y_arm = t11_arm + moment4_z_arm;
-        let moment2_x_arm = t1_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let moment3_y_arm = t10_arm + moment4_z_arm;
+        let moment2_x_arm = base_parameters[28] * bias_u2_xy_arm
+            - (bias_wd2_x_arm * yy_2R_minus_zz_2R + base_parameters[31] * bias_u2_zx_arm)
+            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm)
+            + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let zz_2R_plus_d3_d3_m_4R = base_parameters[4] + d3_d3_m_4R;
+        let t12_arm = zz_2R_plus_d3_d3_m_4R + yy_2R_minus_zz_2R;
         let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
         let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let d3_m_4R = D3 * base_parameters[35];
         let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
             + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
         let moment2_y_arm = base_parameters[31] * bias_u2_zy_arm
-            - minus_bias_wd2_y_arm
-                * (yy_2R_plus_d3_squared_m_4R + zz_2R_plus_d3_squared_m_4R)
+            - minus_bias_wd2_y_arm * (t12_arm + zz_2R_plus_d3_d3_m_4R)
             + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
             - base_parameters[30] * bias_u2_xy_arm + s3_arm * moment3_x_arm
             + c3_arm * moment3_y_arm - D3 * force3_z_arm;
@@ -2932,12 +2921,11 @@ impl Rx90 {
         let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
             - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
         let t13_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
-            + bias_u2_xy_arm * yy_2R_plus_d3_squared_m_4R
-            + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
+            + bias_u2_xy_arm * t12_arm + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
             - base_parameters[26] * bias_a2_x_arm
             + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
         let t14_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
-            - bias_u3_xy_arm * d3_squared_m_4R_minus_yy_3R
+            - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R
             + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
             - D3 * c4_force4_x_minus_s4_force4_y_arm;
         let moment3_z_arm = t14_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
@@ -2977,7 +2965,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 895 operations (438 additions, 451 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 6 guards, 899 intermediates.
+    /// 884 operations (432 additions, 446 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 6 guards, 888 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3011,40 +2999,35 @@ impl Rx90 {
         let mass4_arm = parameters[40] + mass5_arm;
         let mass3_arm = parameters[26] + mass4_arm;
         let d3_squared_mass3_arm = D3_SQUARED * mass3_arm;
-        let t1_arm = parameters[5] + parameters[20]
-            - (parameters[8] + parameters[20] + d3_squared_mass3_arm);
+        let t1_arm = parameters[5] - (parameters[8] + d3_squared_mass3_arm);
         let zz_2_plus_d3_squared_mass3_arm = parameters[10] + d3_squared_mass3_arm;
         let w2_x_arm = s2_arm * joint_velocities[0];
         let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
-        let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+        let twice_xy_2 = parameters[6] + parameters[6];
         let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
-        let d3_mz_3 = D3 * parameters[25];
-        let xz_2_minus_d3_mz_3 = parameters[7] - d3_mz_3;
+        let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
         let w2_y_squared_arm = w2_y_arm * w2_y_arm;
         let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t2_arm = bias_wd2_x_arm * t1_arm
-            + bias_wd2_x_arm * zz_2_plus_d3_squared_mass3_arm
-            - parameters[6] * bias_u2_zx_arm + bias_u2_xy_arm * xz_2_minus_d3_mz_3
-            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
         let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
         let w3_z_arm = joint_velocities[1] + joint_velocities[2];
         let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let d3_mass4_arm = D3 * mass4_arm;
-        let t3_arm = D3 * (parameters[39] + parameters[39] + d3_mass4_arm);
-        let t4_arm = parameters[17] + parameters[34] + t3_arm - parameters[20];
-        let t5_arm = parameters[22] + parameters[34] + t3_arm;
+        let mz_4_plus_d3_mass4_arm = parameters[39] + D3 * mass4_arm;
+        let t2_arm = D3 * (parameters[39] + mz_4_plus_d3_mass4_arm);
+        let t3_arm = parameters[34] + t2_arm;
+        let t4_arm = parameters[17] + t3_arm - parameters[20];
+        let t5_arm = parameters[22] + t3_arm;
         let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
         let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
         let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
         let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
         let w3_y_squared_arm = w3_y_arm * w3_y_arm;
         let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t6_arm = bias_wd3_x_arm * t4_arm + bias_wd3_x_arm * t5_arm
-            - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
-            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
         let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-        let my_3_plus_d3_mass4_arm = parameters[24] + d3_mass4_arm;
-        let t7_arm = my_3_plus_d3_mass4_arm + parameters[39];
+        let t6_arm = mz_4_plus_d3_mass4_arm + parameters[24];
+        let t7_arm = bias_wd3_x_arm * (t4_arm + t5_arm) - parameters[18] * bias_u3_zx_arm
+            + parameters[19] * bias_u3_xy_arm
+            + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm)
+            + bias_a3_z_arm * t6_arm;
         let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
         let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
             - joint_velocities[3] * minus_w4_y_arm;
@@ -3194,8 +3177,8 @@ impl Rx90 {
             + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
         let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
             - c4_arm * minus_force4_y_arm;
-        let moment3_x_arm = t6_arm + bias_a3_z_arm * t7_arm + c4_arm * moment4_x_arm
-            - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
+        let moment3_x_arm = t7_arm + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
+            - D3 * s4_force4_x_plus_c4_force4_y_arm;
         let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
         let t18_arm = minus_bias_wd3_y_arm * (t4_arm - t5_arm)
             + parameters[18] * bias_u3_zy_arm
@@ -3211,13 +3194,15 @@ impl Rx90 {
             - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
             + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
         let moment3_y_arm = t18_arm + moment4_z_arm;
-        let moment2_x_arm = t2_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-        let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
+        let moment2_x_arm = bias_wd2_x_arm * (t1_arm + zz_2_plus_d3_squared_mass3_arm)
+            - minus_bias_wd2_y_arm * twice_xy_2 + bias_u2_xy_arm * xz_2_minus_d3_mz_3
+            + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm)
+            + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
         let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let force3_z_arm = parameters[23] * bias_u3_zx_arm + bias_u3_zy_arm * t7_arm
+        let force3_z_arm = parameters[23] * bias_u3_zx_arm + bias_u3_zy_arm * t6_arm
             - s4_force4_x_plus_c4_force4_y_arm;
         let moment2_y_arm = minus_bias_wd2_y_arm
-            * (t1_arm - zz_2_plus_d3_squared_mass3_arm) + parameters[6] * bias_u2_zy_arm
+            * (t1_arm - zz_2_plus_d3_squared_mass3_arm) + bias_wd2_x_arm * twice_xy_2
             + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
             - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
             + c3_arm * moment3_y_arm - D3 * force3_z_arm;
@@ -3252,8 +3237,7 @@ impl Rx90 {
         let minus_force5_z_by_6_arm = c6_arm * parameters[65] - s6_arm * parameters[66];
         let first5_x_arm = parameters[51] + minus_force5_z_by_6_arm;
         let minus_force4_x_by_5_arm = s5_arm * first5_x_arm + c5_arm * first5_y_arm;
-        let first4_z_arm = parameters[39] + minus_force4_x_by_5_arm;
-        let t26_arm = D3 * (first4_z_arm + first4_z_arm + d3_mass4_arm);
+        let t26_arm = t2_arm + TWICE_D3 * minus_force4_x_by_5_arm;
         let inertia3_xx_arm = parameters[17] + inertia4_xx_arm - t25_arm + t26_arm;
         let inertia4_xz_arm = parameters[33] + c5_arm * t22_arm - inertia5_xy_arm;
         let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm + c5_arm * inertia5_yz_arm;
@@ -3271,10 +3255,10 @@ impl Rx90 {
             + c3_arm * (2.0 * inertia3_xy_arm);
         let t28_arm = s3_arm * t27_arm;
         let first3_x_arm = parameters[23] + minus_force3_z_by_4_arm;
-        let first3_y_arm = my_3_plus_d3_mass4_arm + first4_z_arm;
+        let first3_y_arm = t6_arm + minus_force4_x_by_5_arm;
         let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
-        let d3_mass3_arm = D3 * mass3_arm;
-        let t29_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + d3_mass3_arm);
+        let d3_force2_y_by_3_arm = D3 * force2_y_by_3_arm;
+        let t29_arm = d3_force2_y_by_3_arm + d3_squared_mass3_arm + d3_force2_y_by_3_arm;
         let inertia2_yy_arm = parameters[8] + inertia3_yy_arm + t28_arm + t29_arm;
         let inertia2_xx_arm = parameters[5] + inertia3_xx_arm - t28_arm;
         let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
@@ -3287,15 +3271,15 @@ impl Rx90 {
         let masses_arm_1_1 = inertia1_zz_arm + parameters[1];
         ::overact::guard::mass(masses_arm_1_1)?;
         let inv_pivot_1 = 1.0 / masses_arm_1_1;
-        let inertia3_xz_arm = parameters[19] - (c4_arm * t24_arm - inertia4_xy_arm);
         let minus_force3_x_by_4_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
         let minus_d3_force3_x_by_4_arm = D3 * minus_force3_x_by_4_arm;
+        let inertia3_xz_arm = parameters[19] - (c4_arm * t24_arm - inertia4_xy_arm);
         let moment3_z_by_4_arm = minus_d3_force3_x_by_4_arm
             - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
         let inertia3_yz_arm = parameters[21] + moment3_z_by_4_arm;
         let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm - s3_arm * inertia3_yz_arm;
-        let inertia2_xz_arm = parameters[7] + moment2_x_by_3_arm
-            - (d3_mz_3 - minus_d3_force3_x_by_4_arm);
+        let inertia2_xz_arm = minus_d3_force3_x_by_4_arm + xz_2_minus_d3_mz_3
+            + moment2_x_by_3_arm;
         let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm + c3_arm * inertia3_yz_arm;
         let inertia2_yz_arm = parameters[9] + moment2_y_by_3_arm;
         let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm + c2_arm * inertia2_yz_arm;
@@ -3306,31 +3290,31 @@ impl Rx90 {
         let pivot_2 = masses_arm_2_2 - minus_inertia1_yz_arm * l_2_1;
         ::overact::guard::mass(pivot_2)?;
         let inv_pivot_2 = 1.0 / pivot_2;
+        let t30_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
+            - bias_u2_xy_arm * t1_arm + bias_a2_y_arm * (parameters[11] + D3 * mass3_arm)
+            - parameters[12] * bias_a2_x_arm;
         let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
         let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
             + s4_arm * minus_force4_y_arm;
-        let force3_x_arm = bias_u3_xy_arm * t7_arm
+        let force3_x_arm = bias_u3_xy_arm * t6_arm
             - parameters[23] * minus_bias_u3_xx_arm + c4_force4_x_minus_s4_force4_y_arm;
         let force4_z_arm = parameters[37] * bias_u4_zx_arm
             + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
             + c5_arm * force5_y_arm;
         let force3_y_arm = parameters[23] * bias_u3_xy_arm
-            - minus_bias_u3_yy_arm * t7_arm + force4_z_arm;
-        let t30_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-            - bias_u2_xy_arm * t1_arm + bias_a2_y_arm * (parameters[11] + d3_mass3_arm)
-            - parameters[12] * bias_a2_x_arm
-            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
+            - minus_bias_u3_yy_arm * t6_arm + force4_z_arm;
         let t31_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
             - bias_u3_xy_arm * t4_arm + parameters[23] * bias_a3_y_arm
-            - bias_a3_x_arm * t7_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
+            - bias_a3_x_arm * t6_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
         let moment3_z_arm = t31_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
-        let moment2_z_arm = t30_arm + moment3_z_arm;
+        let moment2_z_arm = t30_arm
+            + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm) + moment3_z_arm;
         let tau_2_arm = joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
             + parameters[16];
         let force_on_u2_arm = moment2_z_arm + tau_2_arm;
         let t1 = torques[1] - force_on_u2_arm - tau1_minus_force_on_u1_arm * l_2_1;
-        let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
+        let moment2_z_by_3_arm = inertia3_zz_arm + d3_force2_y_by_3_arm;
         let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
             + c2_arm * moment2_y_by_3_arm;
         let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
@@ -3469,7 +3453,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 860 operations (406 additions, 448 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 6 guards, 864 intermediates.
+    /// 855 operations (406 additions, 440 multiplications, 9 divisions), 5 trigonometric pairs, 6 signs, 6 guards, 859 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -3487,8 +3471,6 @@ impl Rx90 {
         )?;
         /// d3 = rl4
         const D3: ::core::primitive::f64 = 0.45;
-        /// d3²
-        const D3_SQUARED: ::core::primitive::f64 = 0.2025;
         /// 2 d3
         const TWICE_D3: ::core::primitive::f64 = 0.9;
         // --- sines and cosines
@@ -3499,34 +3481,30 @@ impl Rx90 {
         // --- arm
         let w2_y_arm = c2_arm * joint_velocities[0];
         let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
-        let d3_squared_m_4R = D3_SQUARED * base_parameters[35];
-        let yy_2R_plus_d3_squared_m_4R = base_parameters[27] + d3_squared_m_4R;
-        let zz_2R_plus_d3_squared_m_4R = base_parameters[4] + d3_squared_m_4R;
         let w2_x_arm = s2_arm * joint_velocities[0];
         let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
         let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
         let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
         let w2_y_squared_arm = w2_y_arm * w2_y_arm;
         let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
-        let t1_arm = bias_wd2_x_arm * zz_2R_plus_d3_squared_m_4R
-            - bias_wd2_x_arm * yy_2R_plus_d3_squared_m_4R
-            - base_parameters[31] * bias_u2_zx_arm + base_parameters[28] * bias_u2_xy_arm
-            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm);
         let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
         let w3_z_arm = joint_velocities[1] + joint_velocities[2];
         let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-        let d3_squared_m_4R_minus_yy_3R = d3_squared_m_4R - base_parameters[29];
-        let zz_3R_plus_d3_squared_m_4R = base_parameters[24] + d3_squared_m_4R;
+        let d3_m_4R = D3 * base_parameters[35];
+        let d3_d3_m_4R = D3 * d3_m_4R;
+        let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
+        let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
         let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
         let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
         let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
         let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
         let w3_y_squared_arm = w3_y_arm * w3_y_arm;
         let w3_z_squared_arm = w3_z_arm * w3_z_arm;
-        let t2_arm = bias_wd3_x_arm * d3_squared_m_4R_minus_yy_3R
-            + bias_wd3_x_arm * zz_3R_plus_d3_squared_m_4R
+        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+        let t1_arm = bias_wd3_x_arm * (d3_d3_m_4R_minus_yy_3R + zz_3R_plus_d3_d3_m_4R)
             - base_parameters[32] * bias_u3_zx_arm + base_parameters[33] * bias_u3_xy_arm
-            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm);
+            + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm)
+            + bias_a3_z_arm * d3_m_4R;
         let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
         let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
             - joint_velocities[3] * minus_w4_y_arm;
@@ -3540,7 +3518,7 @@ impl Rx90 {
         let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
         let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
         let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-        let t3_arm = base_parameters[37] * bias_wd4_x_arm
+        let t2_arm = base_parameters[37] * bias_wd4_x_arm
             - base_parameters[36] * minus_w4_y_w4_z_arm
             - base_parameters[40] * bias_u4_zx_arm
             - base_parameters[39] * minus_bias_u4_yx_arm
@@ -3569,15 +3547,15 @@ impl Rx90 {
         let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
         let w5_y_squared_arm = w5_y_arm * w5_y_arm;
         let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-        let t4_arm = base_parameters[43] * bias_wd5_x_arm
+        let t3_arm = base_parameters[43] * bias_wd5_x_arm
             + base_parameters[42] * w5_y_w5_z_arm - base_parameters[45] * bias_u5_zx_arm
             + base_parameters[46] * bias_u5_yx_arm
             + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
         let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
             + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
         let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm + D3 * bias_u3_xy_arm;
-        let t5_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
-        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t5_arm;
+        let t4_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
+        let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm + c4_arm * t4_arm;
         let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
         let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
             - joint_velocities[5] * minus_w6_y_arm;
@@ -3592,14 +3570,14 @@ impl Rx90 {
         let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
         let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
         let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-        let t6_arm = base_parameters[49] * bias_wd6_x_arm
+        let t5_arm = base_parameters[49] * bias_wd6_x_arm
             - base_parameters[48] * minus_w6_y_w6_z_arm
             - base_parameters[54] * bias_u6_zx_arm
             - base_parameters[52] * minus_bias_u6_yx_arm
             + base_parameters[53] * (w6_y_squared_arm - w6_z_squared_arm);
-        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t5_arm;
+        let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm - s4_arm * t4_arm;
         let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-        let moment6_x_arm = t6_arm + base_parameters[57] * bias_a5_y_arm;
+        let moment6_x_arm = t5_arm + base_parameters[57] * bias_a5_y_arm;
         let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
         let w6_x_squared_arm = w6_x_arm * w6_x_arm;
         let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
@@ -3607,18 +3585,18 @@ impl Rx90 {
             + base_parameters[54] * bias_u6_zy_arm
             + base_parameters[52] * (w6_z_squared_arm - w6_x_squared_arm)
             - base_parameters[53] * bias_u6_xy_arm - base_parameters[56] * bias_a5_y_arm;
-        let moment5_x_arm = t4_arm + base_parameters[50] * bias_a5_z_arm
+        let moment5_x_arm = t3_arm + base_parameters[50] * bias_a5_z_arm
             + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
         let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
         let w5_x_squared_arm = w5_x_arm * w5_x_arm;
         let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-        let t7_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
+        let t6_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
             + base_parameters[45] * bias_u5_zy_arm
             + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
             - base_parameters[47] * bias_u5_xy_arm - base_parameters[55] * bias_a5_z_arm;
         let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
         let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-        let t8_arm = base_parameters[49] * minus_w6_x_w6_y_arm
+        let t7_arm = base_parameters[49] * minus_w6_x_w6_y_arm
             - base_parameters[48] * minus_bias_wd5_y_arm
             + base_parameters[54] * (w6_x_squared_arm - w6_y_squared_arm)
             + base_parameters[52] * minus_bias_u6_yz_arm
@@ -3626,30 +3604,30 @@ impl Rx90 {
         let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
         let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm + c6_arm * bias_a5_z_arm;
         let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-        let moment6_z_arm = t8_arm
+        let moment6_z_arm = t7_arm
             - (base_parameters[56] * minus_bias_a6_y_arm
                 + base_parameters[57] * bias_a6_x_arm);
-        let moment5_y_arm = t7_arm + moment6_z_arm;
-        let moment4_x_arm = t3_arm + base_parameters[44] * bias_a4_z_arm
+        let moment5_y_arm = t6_arm + moment6_z_arm;
+        let moment4_x_arm = t2_arm + base_parameters[44] * bias_a4_z_arm
             + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
         let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
         let w4_x_squared_arm = w4_x_arm * w4_x_arm;
         let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-        let t9_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
+        let t8_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
             + base_parameters[40] * bias_u4_zy_arm
             + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
             - base_parameters[38] * bias_u4_xy_arm - base_parameters[51] * bias_a4_z_arm;
         let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
         let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-        let t10_arm = base_parameters[42] * bias_wd5_z_arm
+        let t9_arm = base_parameters[42] * bias_wd5_z_arm
             - base_parameters[43] * w5_x_w5_y_arm
             + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
             - base_parameters[46] * bias_u5_yz_arm
             + base_parameters[47] * bias_u5_xz_arm;
-        let moment5_z_arm = t10_arm + base_parameters[55] * bias_a5_y_arm
+        let moment5_z_arm = t9_arm + base_parameters[55] * bias_a5_y_arm
             - base_parameters[50] * bias_a5_x_arm
             - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
-        let moment4_y_arm = t9_arm - moment5_z_arm;
+        let moment4_y_arm = t8_arm - moment5_z_arm;
         let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
         let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
         let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
@@ -3677,39 +3655,42 @@ impl Rx90 {
             + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
         let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
             - c4_arm * minus_force4_y_arm;
-        let moment3_x_arm = t2_arm + d3_squared_m_4R * bias_u2_zx_arm
-            + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
+        let moment3_x_arm = t1_arm + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
             - D3 * s4_force4_x_plus_c4_force4_y_arm;
         let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
-        let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-        let t11_arm = minus_bias_wd3_y_arm
-            * (d3_squared_m_4R_minus_yy_3R - zz_3R_plus_d3_squared_m_4R)
+        let t10_arm = minus_bias_wd3_y_arm
+            * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
             + base_parameters[32] * bias_u3_zy_arm
             + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
             - base_parameters[34] * bias_u3_xy_arm - base_parameters[41] * bias_a3_z_arm;
         let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
         let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-        let t12_arm = base_parameters[37] * minus_w4_x_w4_y_arm
+        let t11_arm = base_parameters[37] * minus_w4_x_w4_y_arm
             - base_parameters[36] * minus_bias_wd3_y_arm
             + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
             + base_parameters[39] * minus_bias_u4_yz_arm
             + base_parameters[38] * bias_u4_xz_arm;
-        let moment4_z_arm = t12_arm
+        let moment4_z_arm = t11_arm
             - (base_parameters[51] * bias_a5_z_arm + base_parameters[44] * bias_a4_x_arm)
             + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
-        let moment3_y_arm = t11_arm + moment4_z_arm;
-        let moment2_x_arm = t1_arm + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let moment3_y_arm = t10_arm + moment4_z_arm;
+        let moment2_x_arm = base_parameters[28] * bias_u2_xy_arm
+            - (bias_wd2_x_arm * (base_parameters[27] - base_parameters[4])
+                + base_parameters[31] * bias_u2_zx_arm)
+            + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm)
+            + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
+        let yy_2R_plus_d3_d3_m_4R = base_parameters[27] + d3_d3_m_4R;
         let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
         let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-        let d3_m_4R = D3 * base_parameters[35];
+        let t12_arm = base_parameters[31] * bias_u2_zy_arm
+            - minus_bias_wd2_y_arm
+                * (yy_2R_plus_d3_d3_m_4R + base_parameters[4] + d3_d3_m_4R)
+            + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
+            - base_parameters[30] * bias_u2_xy_arm;
         let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
             + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
-        let moment2_y_arm = base_parameters[31] * bias_u2_zy_arm
-            - minus_bias_wd2_y_arm
-                * (yy_2R_plus_d3_squared_m_4R + zz_2R_plus_d3_squared_m_4R)
-            + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
-            - base_parameters[30] * bias_u2_xy_arm + s3_arm * moment3_x_arm
-            + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+        let moment2_y_arm = t12_arm + s3_arm * moment3_x_arm + c3_arm * moment3_y_arm
+            - D3 * force3_z_arm;
         let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
         let tau_1_arm = joint_velocities[0] * base_parameters[1]
             + ::overact::math::signed(base_parameters[2], joint_velocities[0])
@@ -3765,7 +3746,8 @@ impl Rx90 {
         let t20_arm = s3_arm * t19_arm;
         let first3_x_arm = base_parameters[41] + minus_force3_z_by_4_arm;
         let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
-        let t21_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + d3_m_4R);
+        let d3_force2_y_by_3_arm = D3 * force2_y_by_3_arm;
+        let t21_arm = d3_force2_y_by_3_arm + d3_d3_m_4R + d3_force2_y_by_3_arm;
         let inertia2_yy_arm = base_parameters[27] + inertia3_yy_arm + t20_arm + t21_arm;
         let inertia2_xx_arm = inertia3_xx_arm - t20_arm;
         let minus_force2_x_by_3_arm = s3_arm * first3_x_arm + c3_arm * first3_y_arm;
@@ -3807,12 +3789,12 @@ impl Rx90 {
         let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
             - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
         let t22_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
-            + bias_u2_xy_arm * yy_2R_plus_d3_squared_m_4R
+            + bias_u2_xy_arm * yy_2R_plus_d3_d3_m_4R
             + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
             - base_parameters[26] * bias_a2_x_arm
             + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
         let t23_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
-            - bias_u3_xy_arm * d3_squared_m_4R_minus_yy_3R
+            - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R
             + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
             - D3 * c4_force4_x_minus_s4_force4_y_arm;
         let moment3_z_arm = t23_arm - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
@@ -3822,7 +3804,7 @@ impl Rx90 {
             + base_parameters[7];
         let force_on_u2_arm = moment2_z_arm + tau_2_arm;
         let t1 = torques[1] - force_on_u2_arm - tau1_minus_force_on_u1_arm * l_2_1;
-        let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
+        let moment2_z_by_3_arm = inertia3_zz_arm + d3_force2_y_by_3_arm;
         let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
             + c2_arm * moment2_y_by_3_arm;
         let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
@@ -3850,17 +3832,16 @@ impl Rx90 {
         let schur_3_4 = moment3_z_by_4_arm - moment1_z_by_3_arm * l_4_1
             - schur_2_3 * l_4_2;
         let l_4_3 = schur_3_4 * inv_pivot_3;
-        let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
-        let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1 - schur_2_4 * l_4_2
-            - schur_3_4 * l_4_3;
-        ::overact::guard::mass(pivot_4)?;
-        let inv_pivot_4 = 1.0 / pivot_4;
         let tau_4_arm = joint_velocities[3] * base_parameters[13]
             + ::overact::math::signed(base_parameters[14], joint_velocities[3])
             + base_parameters[15];
         let force_on_u4_arm = moment4_z_arm + tau_4_arm;
         let t3 = torques[3] - force_on_u4_arm - tau1_minus_force_on_u1_arm * l_4_1
             - l_4_2 * t1 - l_4_3 * t2;
+        let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
+        let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1 - schur_2_4 * l_4_2
+            - schur_3_4 * l_4_3;
+        ::overact::guard::mass(pivot_4)?;
         let force3_z_by_5_arm = s4_arm * first4_z_arm;
         let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
         let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm + s4_arm * inertia5_zz_arm
@@ -3885,18 +3866,17 @@ impl Rx90 {
         let l_5_3 = schur_3_5 * inv_pivot_3;
         let schur_4_5 = moment4_z_by_5_arm - moment1_z_by_4_arm * l_5_1
             - schur_2_4 * l_5_2 - schur_3_4 * l_5_3;
-        let l_5_4 = schur_4_5 * inv_pivot_4;
-        let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
-        let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1 - schur_2_5 * l_5_2
-            - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
-        ::overact::guard::mass(pivot_5)?;
-        let inv_pivot_5 = 1.0 / pivot_5;
+        let l_5_4 = schur_4_5 / pivot_4;
         let tau_5_arm = joint_velocities[4] * base_parameters[17]
             + ::overact::math::signed(base_parameters[18], joint_velocities[4])
             + base_parameters[19];
         let force_on_u5_arm = moment5_z_arm + tau_5_arm;
         let t4 = torques[4] - force_on_u5_arm - tau1_minus_force_on_u1_arm * l_5_1
             - l_5_2 * t1 - l_5_3 * t2 - l_5_4 * t3;
+        let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
+        let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1 - schur_2_5 * l_5_2
+            - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
+        ::overact::guard::mass(pivot_5)?;
         let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
             - s5_arm * base_parameters[48];
         let minus_force4_x_by_6_arm = c5_arm * minus_first5_z_arm;
@@ -3929,10 +3909,10 @@ impl Rx90 {
         let l_6_3 = schur_3_6 * inv_pivot_3;
         let schur_4_6 = moment4_z_by_6_arm - moment1_z_by_4_arm * l_6_1
             - schur_2_4 * l_6_2 - schur_3_4 * l_6_3;
-        let l_6_4 = schur_4_6 * inv_pivot_4;
+        let l_6_4 = schur_4_6 / pivot_4;
         let minus_schur_5_6 = minus_moment5_z_by_6_arm + moment1_z_by_5_arm * l_6_1
             + schur_2_5 * l_6_2 + schur_3_5 * l_6_3 + schur_4_5 * l_6_4;
-        let minus_l_6_5 = minus_schur_5_6 * inv_pivot_5;
+        let minus_l_6_5 = minus_schur_5_6 / pivot_5;
         let tau_6_arm = joint_velocities[5] * base_parameters[21]
             + ::overact::math::signed(base_parameters[22], joint_velocities[5])
             + base_parameters[23];
@@ -3944,8 +3924,8 @@ impl Rx90 {
             - schur_3_6 * l_6_3 - schur_4_6 * l_6_4 - minus_schur_5_6 * minus_l_6_5;
         ::overact::guard::mass(pivot_6)?;
         let t6 = t5 / pivot_6;
-        let t7 = inv_pivot_5 * t4 + minus_l_6_5 * t6;
-        let t8 = inv_pivot_4 * t3 - l_5_4 * t7 - l_6_4 * t6;
+        let t7 = t4 / pivot_5 + minus_l_6_5 * t6;
+        let t8 = t3 / pivot_4 - l_5_4 * t7 - l_6_4 * t6;
         let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
         let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7 - l_6_2 * t6;
         let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10 - l_3_1 * t9

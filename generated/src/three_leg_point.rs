@@ -39,18 +39,18 @@
 /// | `idm_red_actuators_base_from_actuators` | 337, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
 /// | `project_platform` | 80, 3 √, 9 gd |  |
 /// | `project_actuators` | 88, 3 √, 11 gd |  |
-/// | `inverse_dynamics` | 339, 3 √, 6 sg, 11 gd |  |
-/// | `inverse_dynamics_from_joints` | 291, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_from_actuators` | 412, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
-/// | `inverse_dynamics_base` | 284, 3 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics` | 332, 3 √, 6 sg, 11 gd |  |
+/// | `inverse_dynamics_from_joints` | 290, 6 sc, 6 sg, 5 gd |  |
+/// | `inverse_dynamics_from_actuators` | 404, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_base` | 278, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_base_from_joints` | 237, 6 sc, 6 sg, 5 gd |  |
-/// | `inverse_dynamics_base_from_actuators` | 357, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
+/// | `inverse_dynamics_base_from_actuators` | 351, 4 √, 2 sc, 6 sg, 19 gd | 186, 6 √, 3 at, 17 gd |
 /// | `mass_matrix` | 195, 3 √, 9 gd |  |
 /// | `mass_matrix_base` | 174, 3 √, 9 gd |  |
-/// | `bias` | 263, 3 √, 6 sg, 9 gd |  |
+/// | `bias` | 261, 3 √, 6 sg, 9 gd |  |
 /// | `bias_base` | 221, 3 √, 6 sg, 9 gd |  |
-/// | `forward_dynamics` | 377, 3 √, 6 sg, 11 gd |  |
-/// | `forward_dynamics_base` | 316, 3 √, 6 sg, 11 gd |  |
+/// | `forward_dynamics` | 374, 3 √, 6 sg, 11 gd |  |
+/// | `forward_dynamics_base` | 306, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_preloaded` | 343, 4 √, 6 sg, 12 gd |  |
 /// | `project_torques` | 114, 3 √, 11 gd |  |
 /// | `null_space` | 89, 4 √, 12 gd |  |
@@ -84,7 +84,7 @@
 /// | `bias_a_on_f1_leg3` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
 /// | `a2_y_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
 /// | `v2_by_1_x_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
-/// | `force1_y_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
+/// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
 /// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
 /// | `tau_2_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
@@ -1119,25 +1119,6 @@ impl ThreeLegPoint {
         const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
         /// radius
         const RADIUS: ::core::primitive::f64 = 0.35;
-        // --- leg3
-        let t1_leg3 = pose[0] - 0.3031088913245535;
-        let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
-        // --- leg2
-        let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
-        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
-        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
-        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
-            + 2.0833333333333335 * l2_y_leg2;
-        let det_leg2 = rho_squared_leg2 * h_leg2;
-        let k_leg2 = L_1 / det_leg2;
-        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
@@ -1148,11 +1129,29 @@ impl ThreeLegPoint {
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
+        let t1_leg3 = pose[0] - 0.3031088913245535;
+        let y_plus_half_radius = pose[1] + HALF_RADIUS;
+        let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
+        let d_y_leg2 = pose[0] - d_y_leg3;
+        let t1_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
+            + t1_leg2;
+        let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
+        let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
+        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
+            + 2.0833333333333335 * l2_y_leg2;
+        let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
+        let k_leg2 = L_1 / det_leg2;
+        let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
@@ -1167,9 +1166,6 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
         ::overact::guard::platform(
@@ -1178,6 +1174,9 @@ impl ThreeLegPoint {
             ::overact::ActuatorGroup::All,
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
+            - minus_g1_vx_leg1 * actuator_velocities[0]
+            + g1_vx_leg3 * actuator_velocities[2];
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
@@ -1199,8 +1198,8 @@ impl ThreeLegPoint {
         )?;
         let t2 = (g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 + minus_l_2_1 * t2, t2])
+            - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
+        ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1236,16 +1235,31 @@ impl ThreeLegPoint {
         const RADIUS: ::core::primitive::f64 = 0.35;
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-        // --- leg2
+        // --- leg1
+        let d_x_leg1 = pose[1] - RADIUS;
+        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
+        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
+        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
+        ::overact::guard::reach(h_squared_leg1, "leg1")?;
+        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
+        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
+        let det_leg1 = rho_squared_leg1 * h_leg1;
+        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
+        let k_leg1 = 1.0 / det_leg1;
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t1_leg2 = 0.5 * y_plus_half_radius;
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let t1_leg3 = pose[0] - 0.3031088913245535;
         let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
+        // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
+        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
+        ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -1254,8 +1268,34 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
+        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        // --- leg3
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
+        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
+        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
+        ::overact::guard::reach(h_squared_leg3, "leg3")?;
+        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let det_leg3 = rho_squared_leg3 * h_leg3;
+        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
+        let k_leg3 = L_1 / det_leg3;
+        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(
+            s_1_1,
+            26.146658848896372,
+            ::overact::ActuatorGroup::All,
+        )?;
+        let inv_pivot_1 = 1.0 / s_1_1;
+        // --- leg2
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
@@ -1275,21 +1315,6 @@ impl ThreeLegPoint {
         let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
             - bias_rate_dot_1_leg2;
         // --- leg1
-        let d_x_leg1 = pose[1] - RADIUS;
-        let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.12249999999999998, "leg1")?;
-        let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
-        let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
-        let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748423696979895, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
-        let k_leg1 = 1.0 / det_leg1;
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
         let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
@@ -1307,21 +1332,6 @@ impl ThreeLegPoint {
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             - bias_rate_dot_1_leg1;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
-        let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
-        let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
-        let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
-        let k_leg3 = L_1 / det_leg3;
-        let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
@@ -1343,14 +1353,6 @@ impl ThreeLegPoint {
         let t1 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(
-            s_1_1,
-            26.146658848896372,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
@@ -1364,9 +1366,9 @@ impl ThreeLegPoint {
         )?;
         let t2 = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + t1 * minus_l_2_1)
+            - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t1)
             / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 + minus_l_2_1 * t2, t2])
+        ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1878,9 +1880,6 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -1891,6 +1890,9 @@ impl ThreeLegPoint {
             ::overact::ActuatorGroup::All,
         )?;
         let minus_l_2_1 = minus_s_1_2 / s_1_1;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
+            - minus_g1_vx_leg1 * actuator_velocities[0]
+            + g1_vx_leg3 * actuator_velocities[2];
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
@@ -1911,7 +1913,7 @@ impl ThreeLegPoint {
         )?;
         let vy = (g1_vy_leg1 * actuator_velocities[0]
             + g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
+            - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
         let t3_leg2 = t1_leg2 * INV_L_1;
         let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
@@ -2608,10 +2610,10 @@ impl ThreeLegPoint {
         let vy = inv_pivot_2
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1);
+                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
         let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let vx = t1 * inv_pivot_1 + minus_l_2_1 * vy;
+        let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
         // --- leg2
         let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
@@ -3242,9 +3244,6 @@ impl ThreeLegPoint {
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -3255,6 +3254,9 @@ impl ThreeLegPoint {
             ::overact::ActuatorGroup::All,
         )?;
         let minus_l_2_1 = minus_s_1_2 / s_1_1;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
+            - minus_g1_vx_leg1 * actuator_velocities[0]
+            + g1_vx_leg3 * actuator_velocities[2];
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
@@ -3275,7 +3277,7 @@ impl ThreeLegPoint {
         )?;
         let vy = (g1_vy_leg1 * actuator_velocities[0]
             + g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1) / pivot_2;
+            - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
         let t3_leg2 = t1_leg2 * INV_L_1;
         let fk2_x_leg2 = t3_leg2 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
@@ -3927,10 +3929,10 @@ impl ThreeLegPoint {
         let vy = inv_pivot_2
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1);
+                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
         let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let vx = t1 * inv_pivot_1 + minus_l_2_1 * vy;
+        let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
         // --- leg2
         let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
@@ -4248,7 +4250,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 339 operations (133 additions, 198 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 339 intermediates.
+    /// 332 operations (131 additions, 193 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 333 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4336,29 +4338,27 @@ impl ThreeLegPoint {
         let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
+        let t1_leg2 = pose[0] + 0.3031088913245535;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
+        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
+            - 2.0833333333333335 * minus_l2_x_leg2;
+        let t3_leg2 = y_plus_half_radius * INV_L_1;
+        let fk2_y_leg2 = fk1_y_leg2 + t3_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.05748423696979895, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
+        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
@@ -4366,23 +4366,24 @@ impl ThreeLegPoint {
         let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
         let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
             - minus_fk1_x_leg2 * acceleration[0];
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
+            + minus_g2_vx_leg2 * twist[0];
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
         let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
         let minus_rate_dot_1_leg2 = k_leg2
             * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
         let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
             - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
-            - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0] + fk2_y_leg2 * acceleration[1]
+            + L_1 * rate_1_squared_leg2;
         let minus_rate_dot_2_leg2 = k_leg2
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let moment2_z_leg2 = parameters[16] * a2_y_leg2
             - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], -minus_qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
         let tau_1_leg2 = parameters[12] * rate_1_leg2
             - parameters[11] * minus_rate_dot_1_leg2
@@ -4397,7 +4398,7 @@ impl ThreeLegPoint {
             + v2_by_1_x_leg2 * force2_x_leg2 + v2_by_1_y_leg2 * force2_y_leg2
             - tau_2_leg2;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
@@ -4410,16 +4411,14 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
+        let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
+        let fk1_y_leg3 = fk2_y_leg3 + t3_leg2;
+        let g1_vy_leg3 = fk1_y_leg3 * k_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * twist[0] + g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
             - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
@@ -4430,8 +4429,7 @@ impl ThreeLegPoint {
         let rate_dot_2_leg3 = k_leg3
             * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
         let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
-            - minus_fk1_y_leg3 * acceleration[1];
+        let atip_x_leg3 = fk1_x_leg3 * acceleration[0] + fk1_y_leg3 * acceleration[1];
         let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
         let rate_dot_1_leg3 = k_leg3
             * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
@@ -4453,8 +4451,8 @@ impl ThreeLegPoint {
             + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
             - tau_2_leg3;
         let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+            - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
+            + g2_vy_leg3 * force_on_u2_leg3 + g1_vy_leg3 * force_on_u1_leg3;
         let force_y_platform = acceleration[1] * parameters[30];
         let t2 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
@@ -4462,7 +4460,7 @@ impl ThreeLegPoint {
         let force_x_platform = acceleration[0] * parameters[30];
         let t3 = t2 + force_x_platform;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
+            - g1_vx_leg3 * g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
         ::overact::guard::platform(
@@ -4473,7 +4471,7 @@ impl ThreeLegPoint {
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+            + g1_vy_leg3 * g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
         ::overact::guard::platform(
             pivot_2,
@@ -4484,7 +4482,7 @@ impl ThreeLegPoint {
         let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
-            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
+            g1_vx_leg3 * t5 + g1_vy_leg3 * t4,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4498,7 +4496,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 291 operations (107 additions, 179 multiplications, 5 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 300 intermediates.
+    /// 290 operations (107 additions, 177 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 299 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -4676,8 +4674,7 @@ impl ThreeLegPoint {
             26.146658848631333,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_1 = 1.0 / s_1_1;
-        let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let minus_l_2_1 = minus_s_1_2 / s_1_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
@@ -4687,7 +4684,7 @@ impl ThreeLegPoint {
             ::overact::ActuatorGroup::All,
         )?;
         let t1 = (t1_leg3 + force_y_platform + t1_platform * minus_l_2_1) / pivot_2;
-        let t2 = t1_platform * inv_pivot_1 + minus_l_2_1 * t1;
+        let t2 = t1_platform / s_1_1 + minus_l_2_1 * t1;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
             g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
@@ -4704,7 +4701,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 412 operations (166 additions, 237 multiplications, 9 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 413 intermediates.
+    /// 404 operations (164 additions, 229 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 1 negation, 406 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -4754,18 +4751,16 @@ impl ThreeLegPoint {
         let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
+        let t1_leg2 = pose[0] + 0.3031088913245535;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         ::overact::guard::leg(rho_squared_leg2, 0.12249999999999998, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
-        let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
-        let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
-        let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
+        let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
+        let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
             - 2.0833333333333335 * minus_l2_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -4773,34 +4768,33 @@ impl ThreeLegPoint {
         let k_leg2 = L_1 / det_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
-            - 3.608439182435161 * l2_y_leg3;
+        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
+        let t3_leg2 = y_plus_half_radius * INV_L_1;
+        let fk1_y_leg3 = fk2_y_leg3 + t3_leg2;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
-        let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3;
+        let g1_vy_leg3 = fk1_y_leg3 * k_leg3;
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
+        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
+            - g1_vx_leg3 * g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
         ::overact::guard::platform(
@@ -4810,6 +4804,11 @@ impl ThreeLegPoint {
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let t1 = g1_vx_leg2 * actuator_velocities[1]
+            - minus_g1_vx_leg1 * actuator_velocities[0]
+            + g1_vx_leg3 * actuator_velocities[2];
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
         ::overact::guard::platform(
             pivot_2,
@@ -4836,24 +4835,18 @@ impl ThreeLegPoint {
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t1 = g1_vx_leg2 * actuator_velocities[1]
-            - minus_g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let vy = inv_pivot_2
-            * (g1_vy_leg1 * actuator_velocities[0]
-                - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1);
-        let vx = t1 * inv_pivot_1 + minus_l_2_1 * vy;
+        let vy = (g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            + g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
+        let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
         let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
         // --- leg2
-        let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
-            + 2.0833333333333335 * l1_x_leg2;
-        let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let fk2_y_leg2 = fk1_y_leg2 + t3_leg2;
+        let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
+        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
-        let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
-        let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * vy + minus_g2_vx_leg2 * vx;
+        let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
         let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
         let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
@@ -4877,15 +4870,13 @@ impl ThreeLegPoint {
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             - bias_rate_dot_1_leg1;
         // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
         let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
+        let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
         let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
         let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
+        let rate_1_leg3 = g1_vx_leg3 * vx + g1_vy_leg3 * vy;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let v2_by_1_y_leg3 = 2.0833333333333335 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
         let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -4896,10 +4887,9 @@ impl ThreeLegPoint {
         let t2 = g1_vx_leg2 * qdd1_minus_bias_rate_dot_1_leg2
             - minus_g1_vx_leg1 * qdd1_minus_bias_rate_dot_1_leg1
             + g1_vx_leg3 * qdd1_minus_bias_rate_dot_1_leg3;
-        let dvy = inv_pivot_2
-            * (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
-                - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
-                - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
+        let dvy = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
+            - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
+            + g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2) / pivot_2;
         let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
         let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
         let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
@@ -4939,13 +4929,13 @@ impl ThreeLegPoint {
         let a2_y_leg2 = rate_1_squared_leg2 * v2_by_1_x_leg2
             - v2_by_1_y_leg2 * minus_rate_dot_1_leg2;
         let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-        let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
+        let a_on_f2_leg2 = fk2_x_leg2 * dvx + fk2_y_leg2 * dvy + bias_a_on_f2_leg2;
         let minus_rate_dot_2_leg2 = k_leg2
             * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
         let moment2_z_leg2 = parameters[16] * a2_y_leg2
             - parameters[15] * minus_rate_dot_2_leg2 + parameters[17] * a_on_f1_leg2;
-        let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
+        let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
+        let tau_2_leg2 = ::overact::math::signed(parameters[19], -minus_qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
         let tau_1_leg2 = rate_1_leg2 * parameters[12]
             - parameters[11] * minus_rate_dot_1_leg2
@@ -4966,7 +4956,7 @@ impl ThreeLegPoint {
         let rate_dot_2_leg3 = k_leg3
             * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
         let v2_by_1_x_leg3 = INV_L_1 * det_leg3;
-        let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+        let atip_x_leg3 = fk1_x_leg3 * dvx + fk1_y_leg3 * dvy;
         let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
         let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
         let a2_y_leg3 = rate_1_squared_leg3 * v2_by_1_x_leg3
@@ -4987,19 +4977,19 @@ impl ThreeLegPoint {
             + v2_by_1_x_leg3 * force2_x_leg3 + v2_by_1_y_leg3 * force2_y_leg3
             - tau_2_leg3;
         let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
+            - (minus_g2_vy_leg2 * force_on_u2_leg2 + minus_g1_vy_leg2 * force_on_u1_leg2)
+            + g2_vy_leg3 * force_on_u2_leg3 + g1_vy_leg3 * force_on_u1_leg3;
         let force_y_platform = dvy * parameters[30];
         let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = dvx * parameters[30];
         let t5 = t4 + force_x_platform;
-        let t6 = inv_pivot_2 * (t3 + force_y_platform + minus_l_2_1 * t5);
+        let t6 = (t3 + force_y_platform + minus_l_2_1 * t5) / pivot_2;
         let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
-            g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
+            g1_vx_leg3 * t7 + g1_vy_leg3 * t6,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5012,7 +5002,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 284 operations (110 additions, 166 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 284 intermediates.
+    /// 278 operations (109 additions, 161 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 278 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -5057,40 +5047,33 @@ impl ThreeLegPoint {
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
         let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
         let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
-            - L_1_SQUARED * rate_2_squared_leg1;
-        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1
-            * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
-        let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
-        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
-            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-        let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let force2_x_leg1 = base_parameters[16] * minus_rate_dot_2_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
-        let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let minus_tau_2_leg1 = ::overact::math::signed(
             base_parameters[19],
             minus_qd_2_leg1,
         );
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 - v2_by_1_y_leg1 * minus_force2_y_leg1
-            + minus_tau_2_leg1;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let moment2_z_leg1 = base_parameters[16] * minus_a2_x_leg1
+        let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
+        let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
+            + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
+        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
+        let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let a_on_f1_leg1 = l2_y_leg1 * acceleration[0] - l2_x_leg1 * acceleration[1]
+            - L_1_SQUARED * rate_2_squared_leg1;
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let minus_rate_dot_1_leg1 = k_leg1
+            * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
+        let tau_1_leg1 = base_parameters[4] * rate_1_leg1
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        let force_on_u1_leg1 = minus_tau_2_leg1 + a_on_f2_leg1 * my_2_leg1_inv_l_1
+            - base_parameters[1] * minus_rate_dot_1_leg1 + tau_1_leg1;
+        let minus_rate_dot_2_leg1 = k_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
             - base_parameters[13] * minus_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -5141,14 +5124,13 @@ impl ThreeLegPoint {
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
         let tau_1_leg2 = base_parameters[5] * rate_1_leg2
             + ::overact::math::signed(base_parameters[8], rate_1_leg2)
             + base_parameters[11];
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
+        let force_on_u1_leg2 = base_parameters[17] * a_on_f2_leg2
+            - base_parameters[2] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
@@ -5192,21 +5174,20 @@ impl ThreeLegPoint {
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
         let rate_dot_1_leg3 = k_leg3
             * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
         let tau_1_leg3 = base_parameters[6] * rate_1_leg3
             + ::overact::math::signed(base_parameters[9], rate_1_leg3)
             + base_parameters[12];
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            - a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
-        let t1 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let force_on_u1_leg3 = base_parameters[3] * rate_dot_1_leg3
+            - a_on_f2_leg3 * base_parameters[18] + tau_1_leg3 - tau_2_leg3;
+        let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
         let force_y_platform = acceleration[1] * base_parameters[0];
-        let t2 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t3_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = acceleration[0] * base_parameters[0];
-        let t3 = t2 + force_x_platform;
+        let t1_platform = t3_leg3 + force_x_platform;
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -5226,11 +5207,11 @@ impl ThreeLegPoint {
             26.146658848896372,
             ::overact::ActuatorGroup::All,
         )?;
-        let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
-        let t5 = t3 * inv_pivot_1 + minus_l_2_1 * t4;
+        let t1 = (t2_leg3 + force_y_platform + t1_platform * minus_l_2_1) / pivot_2;
+        let t2 = t1_platform * inv_pivot_1 + minus_l_2_1 * t1;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
-            g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
+            g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
+            g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5425,7 +5406,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 357 operations (143 additions, 205 multiplications, 9 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 358 intermediates.
+    /// 351 operations (142 additions, 200 multiplications, 9 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 19 guards, 352 intermediates.
     /// And in each step of the iteration in `pose_from_actuators`: 186 operations (76 additions, 98 multiplications, 12 divisions), 6 square roots, 3 arc tangents, 17 guards, 6 negations, 140 intermediates.
     ///
     /// # Errors
@@ -5564,12 +5545,18 @@ impl ThreeLegPoint {
         let vy = inv_pivot_2
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t1 * minus_l_2_1);
-        let vx = t1 * inv_pivot_1 + minus_l_2_1 * vy;
+                - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1);
+        let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
+        // --- leg1
         let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-        let tau_1_leg1 = rate_1_leg1 * base_parameters[4]
-            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
-            + base_parameters[10];
+        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
+        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
+        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
+        let minus_tau_2_leg1 = ::overact::math::signed(
+            base_parameters[19],
+            minus_qd_2_leg1,
+        );
         // --- leg2
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
@@ -5588,16 +5575,12 @@ impl ThreeLegPoint {
         let qdd1_minus_bias_rate_dot_1_leg2 = actuator_accelerations[1]
             - bias_rate_dot_1_leg2;
         // --- leg1
-        let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
-        let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+        let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
         let qdd1_minus_bias_rate_dot_1_leg1 = actuator_accelerations[0]
             - bias_rate_dot_1_leg1;
         // --- leg3
@@ -5625,28 +5608,20 @@ impl ThreeLegPoint {
                 - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
                 - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3 + minus_l_2_1 * t2);
         let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
-        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
-        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t3_leg1);
-        let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
         // --- leg1
-        let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
         let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
         let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy + bias_a_on_f2_leg1;
+        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
+        let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy - minus_bias_a_on_f1_leg1;
+        let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
+        let tau_1_leg1 = rate_1_leg1 * base_parameters[4]
+            + ::overact::math::signed(base_parameters[7], rate_1_leg1)
+            + base_parameters[10];
+        let force_on_u1_leg1 = minus_tau_2_leg1 + a_on_f2_leg1 * my_2_leg1_inv_l_1
+            - base_parameters[1] * minus_rate_dot_1_leg1 + tau_1_leg1;
         let minus_rate_dot_2_leg1 = k_leg1
-            * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-        let force2_x_leg1 = base_parameters[16] * minus_rate_dot_2_leg1;
-        let v2_by_1_y_leg1 = 2.0833333333333335 * t1_leg1;
-        let minus_force2_y_leg1 = rate_2_squared_leg1 * base_parameters[16];
-        let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(
-            base_parameters[19],
-            minus_qd_2_leg1,
-        );
-        let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-            + v2_by_1_x_leg1 * force2_x_leg1 - v2_by_1_y_leg1 * minus_force2_y_leg1
-            + minus_tau_2_leg1;
-        let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-        let moment2_z_leg1 = base_parameters[16] * minus_a2_x_leg1
+            * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+        let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
             - base_parameters[13] * minus_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         // --- leg2
@@ -5661,14 +5636,13 @@ impl ThreeLegPoint {
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
         let tau_2_leg2 = ::overact::math::signed(base_parameters[20], qd_2_leg2);
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+        let minus_rate_dot_1_leg2 = k_leg2
+            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
         let tau_1_leg2 = rate_1_leg2 * base_parameters[5]
             + ::overact::math::signed(base_parameters[8], rate_1_leg2)
             + base_parameters[11];
-        let minus_rate_dot_1_leg2 = k_leg2
-            * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-        let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
-        let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-            + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
+        let force_on_u1_leg2 = base_parameters[17] * a_on_f2_leg2
+            - base_parameters[2] * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
         let a_on_f2_leg3 = fk2_y_leg3 * dvy - minus_fk2_x_leg3 * dvx
@@ -5683,26 +5657,25 @@ impl ThreeLegPoint {
         let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
         let rate_dot_1_leg3 = k_leg3 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-        let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
         let tau_1_leg3 = rate_1_leg3 * base_parameters[6]
             + ::overact::math::signed(base_parameters[9], rate_1_leg3)
             + base_parameters[12];
-        let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-            - a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
-        let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let force_on_u1_leg3 = base_parameters[3] * rate_dot_1_leg3
+            - a_on_f2_leg3 * base_parameters[18] + tau_1_leg3 - tau_2_leg3;
+        let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
         let force_y_platform = dvy * base_parameters[0];
-        let t4 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t3_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
         let force_x_platform = dvx * base_parameters[0];
-        let t5 = t4 + force_x_platform;
-        let t6 = inv_pivot_2 * (t3 + force_y_platform + minus_l_2_1 * t5);
-        let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
+        let t1_platform = t3_leg3 + force_x_platform;
+        let t3 = inv_pivot_2 * (t2_leg3 + force_y_platform + minus_l_2_1 * t1_platform);
+        let t4 = inv_pivot_1 * t1_platform + minus_l_2_1 * t3;
         ::core::result::Result::Ok([
-            g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
-            g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
+            g1_vy_leg1 * t3 - minus_g1_vx_leg1 * t4, g1_vx_leg2 * t4 - minus_g1_vy_leg2 * t3,
+            g1_vx_leg3 * t4 - minus_g1_vy_leg3 * t3,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6021,7 +5994,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 263 operations (101 additions, 156 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 264 intermediates.
+    /// 261 operations (101 additions, 154 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 262 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6078,20 +6051,18 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-        let t2_leg2 = rho_squared_leg2 - TWICE_L_1_SQUARED;
-        let v2_by_1_y_leg2 = 2.0833333333333335 * t2_leg2;
-        let bias_rate_dot_1_leg2 = k_leg2
-            * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
         let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+        let c2_leg2 = 8.680555555555555 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg2 = k_leg2
+            * (minus_bias_a_on_f1_leg2 + bias_a_on_f2_leg2 * c2_leg2);
+        let s2_leg2 = INV_L_1_SQUARED * det_leg2;
         let minus_bias_rate_dot_2_leg2 = k_leg2
-            * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            * (bias_a_on_f2_leg2 + minus_bias_a_on_f1_leg2 * c2_leg2);
         let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
             - parameters[16] * rate_2_squared_leg2;
-        let c2_leg2 = 8.680555555555555 * t2_leg2;
-        let t3_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
+        let t2_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
         let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
-        let minus_force2_y_leg2 = t3_leg2 + my_2_leg2_rate_2_squared_leg2;
+        let minus_force2_y_leg2 = t2_leg2 + my_2_leg2_rate_2_squared_leg2;
         let tau_1_leg2 = parameters[11] * bias_rate_dot_1_leg2
             + parameters[12] * rate_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14];
@@ -6101,7 +6072,7 @@ impl ThreeLegPoint {
             * (parameters[10] + L_1_SQUARED * parameters[18])
             + L_1 * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
             + tau_1_leg2 - tau_2_leg2;
-        let moment2_z_leg2 = L_1 * (t3_leg2 - my_2_leg2_rate_2_squared_leg2)
+        let moment2_z_leg2 = L_1 * (t2_leg2 - my_2_leg2_rate_2_squared_leg2)
             - parameters[15] * minus_bias_rate_dot_2_leg2;
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
         // --- leg1
@@ -6186,20 +6157,18 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-        let t2_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * t2_leg3;
-        let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
         let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+        let c2_leg3 = 8.680555555555555 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+        let bias_rate_dot_1_leg3 = k_leg3
+            * (bias_a_on_f1_leg3 + minus_bias_a_on_f2_leg3 * c2_leg3);
+        let s2_leg3 = INV_L_1_SQUARED * det_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
-            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            * (minus_bias_a_on_f2_leg3 + bias_a_on_f1_leg3 * c2_leg3);
         let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
             - parameters[26] * rate_2_squared_leg3;
-        let c2_leg3 = 8.680555555555555 * t2_leg3;
-        let t3_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
+        let t2_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
         let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
-        let minus_force2_y_leg3 = t3_leg3 + my_2_leg3_rate_2_squared_leg3;
+        let minus_force2_y_leg3 = t2_leg3 + my_2_leg3_rate_2_squared_leg3;
         let tau_1_leg3 = parameters[21] * bias_rate_dot_1_leg3
             + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24];
@@ -6209,16 +6178,16 @@ impl ThreeLegPoint {
             * (parameters[20] + L_1_SQUARED * parameters[28])
             + L_1 * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
             + tau_1_leg3 - tau_2_leg3;
-        let moment2_z_leg3 = L_1 * (t3_leg3 - my_2_leg3_rate_2_squared_leg3)
+        let moment2_z_leg3 = L_1 * (t2_leg3 - my_2_leg3_rate_2_squared_leg3)
             - parameters[25] * minus_bias_rate_dot_2_leg3;
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
+        let t3_leg3 = g1_vx_leg2 * force_on_u1_leg2 - minus_g2_vx_leg2 * force_on_u2_leg2
             - (minus_g1_vx_leg1 * force_on_u1_leg1 + minus_g2_vx_leg1 * force_on_u2_leg1)
             + g1_vx_leg3 * force_on_u1_leg3 - minus_g2_vx_leg3 * force_on_u2_leg3;
-        let t5_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+        let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        ::core::result::Result::Ok([t4_leg3, t5_leg3])
+        ::core::result::Result::Ok([t3_leg3, t4_leg3])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -6422,7 +6391,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 377 operations (145 additions, 224 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 378 intermediates.
+    /// 374 operations (145 additions, 220 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 375 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6555,28 +6524,27 @@ impl ThreeLegPoint {
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
-        let t2_leg1 = 0.5 * t1_leg1;
-        let bias_rate_dot_1_leg1 = k_leg1
-            * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-        let t3_leg1 = parameters[0] + L_1_SQUARED * parameters[8];
-        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
+        let t1_leg1 = rho_squared_leg1 - TWICE_L_1_SQUARED;
+        let c2_leg1 = 8.680555555555555 * t1_leg1;
+        let bias_rate_dot_1_leg1 = k_leg1
+            * (minus_bias_a_on_f1_leg1 + bias_a_on_f2_leg1 * c2_leg1);
+        let t2_leg1 = parameters[0] + L_1_SQUARED * parameters[8];
+        let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let minus_bias_rate_dot_2_leg1 = k_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            * (bias_a_on_f2_leg1 + minus_bias_a_on_f1_leg1 * c2_leg1);
         let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
             - parameters[6] * rate_2_squared_leg1;
-        let c2_leg1 = 8.680555555555555 * t1_leg1;
-        let t4_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1;
+        let t3_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1;
         let my_2_leg1_rate_2_squared_leg1 = parameters[7] * rate_2_squared_leg1;
-        let minus_force2_y_leg1 = t4_leg1 + my_2_leg1_rate_2_squared_leg1;
+        let minus_force2_y_leg1 = t3_leg1 + my_2_leg1_rate_2_squared_leg1;
         let tau_1_leg1 = parameters[1] * bias_rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4];
-        let force_on_u1_leg1 = minus_tau_2_leg1 + bias_rate_dot_1_leg1 * t3_leg1
+        let force_on_u1_leg1 = minus_tau_2_leg1 + bias_rate_dot_1_leg1 * t2_leg1
             + L_1 * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
             + tau_1_leg1;
-        let moment2_z_leg1 = L_1 * (t4_leg1 - my_2_leg1_rate_2_squared_leg1)
+        let moment2_z_leg1 = L_1 * (t3_leg1 - my_2_leg1_rate_2_squared_leg1)
             - parameters[5] * minus_bias_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         // --- leg3
@@ -6593,18 +6561,17 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
+        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
         let t2_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
-        let v2_by_1_y_leg3 = 2.0833333333333335 * t2_leg3;
+        let c2_leg3 = 8.680555555555555 * t2_leg3;
         let bias_rate_dot_1_leg3 = k_leg3
-            * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            * (bias_a_on_f1_leg3 + minus_bias_a_on_f2_leg3 * c2_leg3);
         let t3_leg3 = parameters[20] + L_1_SQUARED * parameters[28];
         let s2_leg3 = INV_L_1_SQUARED * det_leg3;
-        let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
-            * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            * (minus_bias_a_on_f2_leg3 + bias_a_on_f1_leg3 * c2_leg3);
         let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
             - parameters[26] * rate_2_squared_leg3;
-        let c2_leg3 = 8.680555555555555 * t2_leg3;
         let t4_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
         let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
         let minus_force2_y_leg3 = t4_leg3 + my_2_leg3_rate_2_squared_leg3;
@@ -6631,7 +6598,7 @@ impl ThreeLegPoint {
         let minus_masses_leg1_1_2 = 0.024464831804281346
             * (170.3125 * (det_leg1 * parameters[7])
                 - 85.15625 * (t1_leg1 * parameters[6]));
-        let masses_leg1_1_1 = t3_leg1 + parameters[1];
+        let masses_leg1_1_1 = t2_leg1 + parameters[1];
         let t5_leg2 = g1_vx_leg2
             * (g1_vx_leg2 * masses_leg2_1_1 + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
             + minus_g2_vx_leg2
@@ -6656,10 +6623,9 @@ impl ThreeLegPoint {
                     + minus_g2_vx_leg3 * parameters[25]);
         let mass_1_1 = t6_leg3 + parameters[30];
         ::overact::guard::mass(mass_1_1)?;
-        let inv_pivot_1 = 1.0 / mass_1_1;
-        let t5_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
+        let t4_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
             + minus_g2_vy_leg1 * parameters[5];
-        let t6_leg1 = g1_vy_leg1 * masses_leg1_1_1
+        let t5_leg1 = g1_vy_leg1 * masses_leg1_1_1
             + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
         let t6_leg2 = minus_g1_vy_leg2 * masses_leg2_1_1
             + g2_vy_leg2 * minus_masses_leg2_1_2;
@@ -6669,14 +6635,14 @@ impl ThreeLegPoint {
             + g2_vy_leg3 * minus_masses_leg3_1_2;
         let t8_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
             + g2_vy_leg3 * parameters[25];
-        let mass_1_2 = minus_g2_vx_leg1 * t5_leg1 - minus_g1_vx_leg1 * t6_leg1
+        let mass_1_2 = minus_g2_vx_leg1 * t4_leg1 - minus_g1_vx_leg1 * t5_leg1
             - (g1_vx_leg2 * t6_leg2 + minus_g2_vx_leg2 * t7_leg2)
             - (g1_vx_leg3 * t7_leg3 + minus_g2_vx_leg3 * t8_leg3);
-        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let l_2_1 = mass_1_2 / mass_1_1;
         let t9_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g2_vy_leg3 * force_on_u2_leg3 - minus_g1_vy_leg3 * force_on_u1_leg3;
-        let t10_leg3 = g1_vy_leg1 * t6_leg1 + minus_g2_vy_leg1 * t5_leg1
+        let t10_leg3 = g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t4_leg1
             + minus_g1_vy_leg2 * t6_leg2 + g2_vy_leg2 * t7_leg2
             + minus_g1_vy_leg3 * t7_leg3 + g2_vy_leg3 * t8_leg3;
         let mass_2_2 = t10_leg3 + parameters[30];
@@ -6684,7 +6650,7 @@ impl ThreeLegPoint {
         ::overact::guard::mass(pivot_2)?;
         let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
             - minus_g1_vy_leg3 * torques[2] - t9_leg3 - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
+        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t2, t2])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -6696,7 +6662,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 316 operations (121 additions, 187 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 317 intermediates.
+    /// 306 operations (119 additions, 179 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 308 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6725,10 +6691,10 @@ impl ThreeLegPoint {
         /// 2 l_1²
         const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
         // --- leg2
+        let t1_leg2 = pose[0] + 0.3031088913245535;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
-        let t1_leg2 = 0.5 * y_plus_half_radius;
-        let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
-            + t1_leg2;
+        let t2_leg2 = 0.5 * y_plus_half_radius;
+        let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
         let t1_leg3 = pose[0] - 0.3031088913245535;
         let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
         let d_y_leg2 = pose[0] - d_y_leg3;
@@ -6761,16 +6727,14 @@ impl ThreeLegPoint {
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
-        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
+        let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.12249999999999998, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
-        let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
-        let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
+        let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
+        let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
@@ -6791,38 +6755,37 @@ impl ThreeLegPoint {
         let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
         let minus_bias_rate_dot_2_leg1 = k_leg1
             * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-        let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
+        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
+        let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
         let minus_moment2_z_leg1 = base_parameters[13] * minus_bias_rate_dot_2_leg1
-            + L_1 * minus_force2_y_leg1;
+            + minus_bias_a_on_f1_leg1 * my_2_leg1_inv_l_1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         let minus_tau_2_leg1 = ::overact::math::signed(
             base_parameters[19],
             minus_qd_2_leg1,
         );
         let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
-        let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
         let bias_rate_dot_1_leg1 = k_leg1
             * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-        let force1_y_leg1 = rate_1_squared_leg1 * base_parameters[16];
         let tau_1_leg1 = base_parameters[4] * rate_1_leg1
             + ::overact::math::signed(base_parameters[7], rate_1_leg1)
             + base_parameters[10];
         let force_on_u1_leg1 = minus_tau_2_leg1
-            + base_parameters[1] * bias_rate_dot_1_leg1 + L_1 * force1_y_leg1
-            + tau_1_leg1;
+            + base_parameters[1] * bias_rate_dot_1_leg1
+            + bias_a_on_f2_leg1 * my_2_leg1_inv_l_1 + tau_1_leg1;
         // --- leg2
         let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
             + 2.0833333333333335 * l1_x_leg2;
         let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-        let fk2_x_leg2 = 2.0833333333333335 * l1_y_leg2 - 3.608439182435161 * l1_x_leg2;
+        let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
         let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
         let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
-        let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
-            - 2.0833333333333335 * minus_l2_x_leg2;
-        let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let t3_leg2 = y_plus_half_radius * INV_L_1;
+        let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
+        let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let v2_by_1_y_leg2 = 2.0833333333333335 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
         let bias_rate_dot_1_leg2 = k_leg2
@@ -6841,16 +6804,16 @@ impl ThreeLegPoint {
             + minus_bias_a_on_f1_leg2 * base_parameters[17];
         let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
         // --- leg3
-        let fk2_y_leg3 = 2.0833333333333335 * l1_x_leg3 - 3.608439182435161 * l1_y_leg3;
-        let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-        let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
-            + 2.0833333333333335 * l1_y_leg3;
-        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
         let minus_fk1_y_leg3 = 2.0833333333333335 * l2_x_leg3
             - 3.608439182435161 * l2_y_leg3;
+        let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg2;
+        let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
+        let minus_fk2_x_leg3 = t1_leg3 * INV_L_1 - fk1_x_leg3;
+        let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+            + minus_g2_vx_leg3 * twist[0];
+        let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
@@ -6861,8 +6824,8 @@ impl ThreeLegPoint {
         let tau_1_leg3 = base_parameters[6] * rate_1_leg3
             + ::overact::math::signed(base_parameters[9], rate_1_leg3)
             + base_parameters[12];
-        let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], qd_2_leg3);
+        let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
+        let tau_2_leg3 = ::overact::math::signed(base_parameters[21], -minus_qd_2_leg3);
         let force_on_u1_leg3 = base_parameters[3] * bias_rate_dot_1_leg3
             + base_parameters[18] * minus_bias_a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
@@ -6876,13 +6839,11 @@ impl ThreeLegPoint {
             - minus_g2_vx_leg3 * force_on_u2_leg3;
         let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
             + g1_vx_leg3 * torques[2] - t2_leg3;
-        let minus_masses_leg1_1_2 = INV_L_1 * (det_leg1 * base_parameters[16]);
         let minus_masses_leg2_1_2 = INV_L_1 * (det_leg2 * base_parameters[17]);
-        let t2_leg2 = minus_g2_vx_leg1
-            * (minus_g2_vx_leg1 * base_parameters[13]
-                - minus_g1_vx_leg1 * minus_masses_leg1_1_2)
+        let t4_leg2 = minus_g2_vx_leg1
+            * (minus_g2_vx_leg1 * base_parameters[13] - l2_y_leg1 * my_2_leg1_inv_l_1)
             - minus_g1_vx_leg1
-                * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
+                * (minus_l1_y_leg1 * my_2_leg1_inv_l_1
                     - minus_g1_vx_leg1 * base_parameters[1])
             + g1_vx_leg2
                 * (g1_vx_leg2 * base_parameters[2]
@@ -6891,7 +6852,7 @@ impl ThreeLegPoint {
                 * (g1_vx_leg2 * minus_masses_leg2_1_2
                     + minus_g2_vx_leg2 * base_parameters[14]);
         let minus_masses_leg3_1_2 = INV_L_1 * (det_leg3 * base_parameters[18]);
-        let t3_leg3 = t2_leg2
+        let t3_leg3 = t4_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[3]
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
@@ -6901,33 +6862,33 @@ impl ThreeLegPoint {
         let mass_1_1 = t3_leg3 + base_parameters[0];
         ::overact::guard::mass(mass_1_1)?;
         let inv_pivot_1 = 1.0 / mass_1_1;
-        let t2_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
+        let t2_leg1 = l2_x_leg1 * my_2_leg1_inv_l_1
             + minus_g2_vy_leg1 * base_parameters[13];
-        let t3_leg1 = g1_vy_leg1 * base_parameters[1]
-            + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
-        let t3_leg2 = minus_g1_vy_leg2 * base_parameters[2]
-            + g2_vy_leg2 * minus_masses_leg2_1_2;
-        let t4_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
-            + g2_vy_leg2 * base_parameters[14];
+        let t3_leg1 = g1_vy_leg1 * base_parameters[1] + l1_x_leg1 * my_2_leg1_inv_l_1;
+        let t5_leg2 = g2_vy_leg2 * minus_masses_leg2_1_2
+            - g1_vy_leg2 * base_parameters[2];
+        let t6_leg2 = g2_vy_leg2 * base_parameters[14]
+            - g1_vy_leg2 * minus_masses_leg2_1_2;
         let t4_leg3 = minus_g1_vy_leg3 * base_parameters[3]
-            + g2_vy_leg3 * minus_masses_leg3_1_2;
+            - minus_g2_vy_leg3 * minus_masses_leg3_1_2;
         let t5_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
-            + g2_vy_leg3 * base_parameters[15];
+            - minus_g2_vy_leg3 * base_parameters[15];
         let mass_1_2 = minus_g2_vx_leg1 * t2_leg1 - minus_g1_vx_leg1 * t3_leg1
-            - (g1_vx_leg2 * t3_leg2 + minus_g2_vx_leg2 * t4_leg2)
+            - (g1_vx_leg2 * t5_leg2 + minus_g2_vx_leg2 * t6_leg2)
             - (g1_vx_leg3 * t4_leg3 + minus_g2_vx_leg3 * t5_leg3);
         let l_2_1 = mass_1_2 * inv_pivot_1;
         let t6_leg3 = g1_vy_leg1 * force_on_u1_leg1
             + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
-            - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
-            - minus_g1_vy_leg3 * force_on_u1_leg3;
+            + g1_vy_leg2 * force_on_u1_leg2
+            - (minus_g2_vy_leg3 * force_on_u2_leg3
+                + minus_g1_vy_leg3 * force_on_u1_leg3);
         let t7_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
-            + minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg2 * t4_leg2
-            + minus_g1_vy_leg3 * t4_leg3 + g2_vy_leg3 * t5_leg3;
+            + g2_vy_leg2 * t6_leg2 - g1_vy_leg2 * t5_leg2 + minus_g1_vy_leg3 * t4_leg3
+            - minus_g2_vy_leg3 * t5_leg3;
         let mass_2_2 = t7_leg3 + base_parameters[0];
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
         ::overact::guard::mass(pivot_2)?;
-        let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+        let t2 = (g1_vy_leg1 * torques[0] + g1_vy_leg2 * torques[1]
             - minus_g1_vy_leg3 * torques[2] - t6_leg3 - t1 * l_2_1) / pivot_2;
         ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
     }
@@ -7271,15 +7232,13 @@ impl ThreeLegPoint {
         ::overact::guard::leg(det_leg3, 0.05748423696979895, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
+        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
+        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + 2.0833333333333335 * l2_y_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-        let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
-        let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + 2.0833333333333335 * l2_y_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-        let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
-            + g1_vx_leg3 * torques[2];
         let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
@@ -7291,6 +7250,8 @@ impl ThreeLegPoint {
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
+        let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
+            + g1_vx_leg3 * torques[2];
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
@@ -7300,8 +7261,8 @@ impl ThreeLegPoint {
             ::overact::ActuatorGroup::All,
         )?;
         let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] + t1 * minus_l_2_1) / pivot_2;
-        let t3 = t1 * inv_pivot_1 + minus_l_2_1 * t2;
+            - minus_g1_vy_leg3 * torques[2] + minus_l_2_1 * t1) / pivot_2;
+        let t3 = inv_pivot_1 * t1 + minus_l_2_1 * t2;
         ::core::result::Result::Ok([
             g1_vy_leg1 * t2 - minus_g1_vx_leg1 * t3, g1_vx_leg2 * t3 - minus_g1_vy_leg2 * t2,
             g1_vx_leg3 * t3 - minus_g1_vy_leg3 * t2,

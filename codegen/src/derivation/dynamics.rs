@@ -1,6 +1,7 @@
 //! Dynamics of the whole robot on a sheet: columns of identification models, projections of torques, and
 //! inverse dynamics with given parameters.
 
+use super::actuators::OwnForces;
 use super::elimination::{Rows, inverse};
 use super::linear::{apply, product, transposed};
 use super::null_space::null_space;
@@ -89,10 +90,9 @@ impl<'a> Sheet<'a, '_> {
         if n == self.robot.mechanism.dof() {
             return torques;
         }
-        let jacobian = self.robot.inverse_jacobian();
-        let inner = apply(&transposed(&jacobian), &torques);
-        let solved = self.factored(&jacobian).solve(&inner);
-        apply(&jacobian, &solved)
+        let system = self.actuator_system();
+        let inner = self.robot.projected_torques(&torques);
+        system.torques(&inner)
     }
 
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, with the kept actuators a and the others b.
@@ -141,26 +141,38 @@ impl<'a> Sheet<'a, '_> {
         twist: &[Expr<'a>],
         acceleration: &[Expr<'a>],
     ) -> Vec<Expr<'a>> {
+        self.dynamics_of(of, twist, acceleration, &mut OwnForces::default())
+    }
+
+    /// Γ¹ of given parameters, without what goes to `actuators`.
+    fn dynamics_of(
+        &mut self,
+        of: Columns,
+        twist: &[Expr<'a>],
+        acceleration: &[Expr<'a>],
+        actuators: &mut OwnForces<'a>,
+    ) -> Vec<Expr<'a>> {
         let values = self.parameter_values(of);
         self.guards.extend(self.robot.spring_guards());
         let Some(motion) = self.robot.motion(twist, acceleration) else {
             return Vec::new();
         };
         if self.selection.dynamics == DynamicsBy::Bodies {
-            let forces = self.robot.summed_forces(&motion, &values);
+            let forces = self.robot.summed_forces(&motion, &values, actuators);
             return forces.unwrap_or_default();
         }
         let projection = self.robot.project_on_platform();
-        self.robot.generalised_forces(&motion, &projection, &values)
+        self.robot
+            .generalised_forces(&motion, &projection, &values, actuators)
     }
 
-    /// τ = J (JᵀJ)⁻¹ Γ¹, the torque of least norm.
+    /// τ = J (JᵀJ)⁻¹ Γ¹, the torque of least norm; J⁻ᵀ Γ¹ where J is square.
     pub(super) fn least_norm_torques(&mut self, of: Columns) -> Vec<Expr<'a>> {
         let (twist, acceleration) = (self.twist(), self.acceleration());
-        let forces = self.projected_dynamics(of, &twist, &acceleration);
-        let jacobian = self.robot.inverse_jacobian();
-        let solved = self.factored(&jacobian).solve(&forces);
-        apply(&jacobian, &solved)
+        let mut own = OwnForces::of(&self.robot);
+        let forces = self.dynamics_of(of, &twist, &acceleration, &mut own);
+        let torques = self.actuator_system().torques(&forces);
+        own.with(torques)
     }
 
     /// τ = J (JᵀJ)⁻¹ Γ¹ + N c, with a basis N of the torques that move nothing: of the torques p = J_a^-T Γ¹

@@ -42,6 +42,8 @@ pub struct Inverse<'a> {
     pub determinants: Vec<Expr<'a>>,
     /// The determinant of the whole matrix.
     pub determinant: Expr<'a>,
+    /// Rows of the largest block.
+    pub largest_block: usize,
 }
 
 /// Inverts a square matrix; `home` gives an expression's value at the home configuration.
@@ -106,6 +108,7 @@ pub fn inverse<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<
         scaled,
         determinants,
         determinant,
+        largest_block: blocks.iter().map(Vec::len).max().unwrap_or(0),
     })
 }
 

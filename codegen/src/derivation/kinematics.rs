@@ -3,13 +3,11 @@
 
 use super::configuration::angle_near;
 use super::elimination::Rows;
-use super::linear::{Factored, apply, pseudo_inverse, transposed};
 use super::motion_input::MotionInput;
 use super::names::coordinate_label;
 use super::sheet::Sheet;
 use crate::cas::Expr;
 use crate::mechanism::{JointIndex, JointKind};
-use overact_core::ActuatorGroup;
 
 impl<'a> Sheet<'a, '_> {
     /// Twist and acceleration under the names that the robot's kind calls for; from actuators, those
@@ -91,25 +89,14 @@ impl<'a> Sheet<'a, '_> {
         actuated.iter().map(|&i| all[i]).collect()
     }
 
-    /// JᵀJ of J = J_p^inv, factored; its pivots are guarded.
-    pub(super) fn factored(&mut self, jacobian: &Rows<'a>) -> Factored<'a> {
-        let factored = Factored::normal(jacobian);
-        self.guard_platform(&factored.pivots.clone(), ActuatorGroup::All);
-        factored
-    }
-
     /// (J_p^inv)^+, which is J_p where there are as many actuators as coordinates.
     pub(super) fn pseudo_inverse(&mut self) -> Rows<'a> {
-        let (inverse, pivots) = pseudo_inverse(&self.robot.inverse_jacobian());
-        self.guard_platform(&pivots, ActuatorGroup::All);
-        inverse
+        self.actuator_system().pseudo_inverse()
     }
 
     /// The v that fits J_p^inv v to the actuators' rates best.
     pub(super) fn least_squares(&mut self, rates: &[Expr<'a>]) -> Vec<Expr<'a>> {
-        let jacobian = self.robot.inverse_jacobian();
-        let inner = apply(&transposed(&jacobian), rates);
-        self.factored(&jacobian).solve(&inner)
+        self.actuator_system().velocities(rates)
     }
 
     /// v̇ of least squares: J_p^inv v̇ = q̈ - J̇_p^inv v, where the last term is q̈ at v̇ = 0.

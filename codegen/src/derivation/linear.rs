@@ -118,11 +118,3 @@ impl<'a> Factored<'a> {
         x
     }
 }
-
-/// J⁺ = (JᵀJ)⁻¹ Jᵀ, r x n, and the pivots of the factorisation.
-#[must_use]
-pub fn pseudo_inverse<'a>(jacobian: &Rows<'a>) -> (Rows<'a>, Vec<Expr<'a>>) {
-    let factored = Factored::normal(jacobian);
-    let columns: Rows<'a> = jacobian.iter().map(|row| factored.solve(row)).collect();
-    (transposed(&columns), factored.pivots)
-}

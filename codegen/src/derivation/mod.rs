@@ -13,6 +13,7 @@
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
 
+mod actuators;
 mod bias;
 mod blocked;
 mod body;

@@ -5,6 +5,7 @@
 //! revolute joint mass, first moment along its axis and the inertia of a rod along it, a prismatic one the
 //! inertia. Which torques the robot needs does not change, and the bodies behind have fewer parameters.
 
+use super::actuators::OwnForces;
 use super::body::BodyMotion;
 use super::composite::Chain;
 use super::inertia::Inertia;
@@ -17,11 +18,12 @@ use crate::cas::{Expr, Vector3};
 use crate::mechanism::JointKind;
 
 impl<'a> Robot<'a> {
-    /// Γ¹ of given parameters. `None` if a sine or cosine does not follow from the configuration.
+    /// Γ¹ of given parameters; what acts on actuated joints alone goes to `actuators`. `None` if a sine or cosine does not follow from the configuration.
     pub(super) fn summed_forces(
         &self,
         motion: &RobotMotion<'a>,
         values: &[(BodyParameter, Expr<'a>)],
+        actuators: &mut OwnForces<'a>,
     ) -> Option<Vec<Expr<'a>>> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
         // Of a platform that moves aside: what all put on its six components, which goes to the others at once.
@@ -29,7 +31,7 @@ impl<'a> Robot<'a> {
         for (index, leg) in self.mechanism.legs.iter().enumerate() {
             self.arena.enter(&leg.name);
             // What a chain hands down to a body that moves is projected body by body.
-            let forces = match leg.base_body {
+            let mut forces = match leg.base_body {
                 Some(_) => self.leg_forces(motion, values, index, &mut []),
                 None => self.summed_leg_forces(motion, values, index)?,
             };
@@ -37,6 +39,7 @@ impl<'a> Robot<'a> {
                 let what = format!("force_on_u{}", leg.joints[joint].name);
                 let _ = force.named(&joined(&[&what, &leg.name]));
             }
+            actuators.take(index, &mut forces);
             let state = &self.legs[index];
             let at_end = state.closure.as_ref().filter(|c| c.feels_no_moment());
             match at_end.filter(|_| self.platform.is_some()) {

@@ -5,6 +5,7 @@
 //! joint parameter a scalar times the reduced Jacobian of that joint. Case 2 is the same with the rows
 //! ∂u_i/∂v J_a⁻¹, J_a being the kept rows of J_p^inv: rows are transformed once, never columns.
 
+use super::actuators::OwnForces;
 use super::carried::CarriedBody;
 use super::elimination::{Rows, inverse};
 use super::linear::{dot, product, transposed};
@@ -214,23 +215,26 @@ impl<'a> Robot<'a> {
         (0..width).map(entry).collect()
     }
 
-    /// Γ of all parameters at once, r numbers: body wrenches are added before they are projected.
+    /// Γ of all parameters at once, r numbers: body wrenches are added before they are projected. What acts on
+    /// actuated joints alone goes to `actuators`.
     #[must_use]
     pub(crate) fn generalised_forces(
         &self,
         motion: &RobotMotion<'a>,
         projection: &Projection<'a>,
         values: &[(BodyParameter, Expr<'a>)],
+        actuators: &mut OwnForces<'a>,
     ) -> Vec<Expr<'a>> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
         // Forces on the twist coordinates, of all that moves with the platform.
         let mut on_twist = vec![self.arena.zero(); self.free.len()];
         for (l, leg) in self.mechanism.legs.iter().enumerate() {
-            let forces = self.leg_forces(motion, values, l, &mut on_twist);
+            let mut forces = self.leg_forces(motion, values, l, &mut on_twist);
             for (joint, force) in leg.independent().zip(&forces) {
                 let what = format!("force_on_u{}", leg.joints[joint].name);
                 let _ = force.named(&joined(&[&what, &leg.name]));
             }
+            actuators.take(l, &mut forces);
             add(&mut total, self.combine(&projection.legs[l], &forces));
         }
         if let Some(body) = &motion.platform {

@@ -100,6 +100,22 @@ impl SearchLimits {
         }
     }
 
+    /// The limits of a function that a controller calls: what is quick where the search is thorough.
+    #[must_use]
+    pub(crate) const fn of_control(self) -> Self {
+        if self.is_thorough() {
+            Self::QUICK
+        } else {
+            self.of_lesser_functions()
+        }
+    }
+
+    /// Whether they are beyond those of a quick search.
+    #[must_use]
+    pub(crate) const fn is_thorough(&self) -> bool {
+        self.pair_rounds > Self::QUICK.pair_rounds
+    }
+
     /// The limits of a function that matters less: of these no more than single replacements.
     #[must_use]
     pub(crate) const fn of_lesser_functions(self) -> Self {

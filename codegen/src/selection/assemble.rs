@@ -1,5 +1,6 @@
 //! One function from mechanism to program: derivation in a graph of its own, then lowering.
 
+use super::formulation;
 use super::search::Search;
 use crate::cas::Arena;
 use crate::derivation::{DynamicsBy, JointsBy, MotionInput, Selection, Underivable, derive};
@@ -18,6 +19,16 @@ pub struct Assembler<'m> {
     pub search: &'m Search,
 }
 
+/// A way to write a function.
+#[derive(Debug, Clone)]
+struct Form {
+    selection: Selection,
+    /// Before a search.
+    operations: usize,
+    /// Whether it is the cheapest one in the formulation that was chosen for the robot.
+    is_robots_best: bool,
+}
+
 impl Assembler<'_> {
     /// Derives and lowers one function.
     ///
@@ -33,35 +44,80 @@ impl Assembler<'_> {
     }
 
     /// The function in that of its equal forms that needs the fewest operations: with or without combined
-    /// columns, and with forces by parameters or by bodies. Both are counted as they are derived; searched
-    /// are those that a search could still make the better one.
+    /// columns, with forces by parameters or by bodies, and in the axes that suit it. All are counted as they
+    /// are derived; searched are those that a search could still make the better one.
     ///
     /// # Errors
     /// See [`Underivable`].
     pub fn cheapest(&self, function: Function, from: MotionInput) -> Result<Program, Underivable> {
-        let Some(other) = self.other_form(function) else {
-            return self.program(function, from);
-        };
-        let arenas = [Arena::new(), Arena::new()];
-        let mut forms = Vec::new();
-        for (arena, selection) in arenas.iter().zip([self.selection, &other]) {
-            let derived = derive(arena, self.mechanism, selection, function, from)?;
-            let unsearched = Search::none().lower(arena, self.mechanism, function, &derived)?;
-            forms.push((unsearched.cost().operations(), arena, derived));
-        }
-        let least = forms.iter().map(|&(operations, ..)| operations).min();
+        let forms = self.forms(function, from)?;
+        let least = forms.iter().map(|form| form.operations).min();
         let most = least.unwrap_or_default() * worth_a_search(function) / 100;
-        forms.retain(|&(operations, ..)| operations <= most);
+        let worth = |form: &&Form| form.is_robots_best || form.operations <= most;
         let mut best: Option<Program> = None;
-        for (_, arena, derived) in &forms {
-            let form = self
-                .search
-                .lower(arena, self.mechanism, function, derived)?;
+        for Form { selection, .. } in forms.iter().filter(worth) {
+            let form = Assembler { selection, ..*self }.program(function, from)?;
             if best.as_ref().is_none_or(|best| is_cheaper(&form, best)) {
                 best = Some(form);
             }
         }
         best.map_or_else(|| self.program(function, from), Ok)
+    }
+
+    /// The forms of a function with their operations before a search: those of the robot's formulation, and of
+    /// the best of them in the formulation that is the cheapest for this function, where the search is thorough.
+    fn forms(&self, function: Function, from: MotionInput) -> Result<Vec<Form>, Underivable> {
+        let count = |selection: Selection| -> Result<Form, Underivable> {
+            Ok(Form {
+                operations: self.operations(&selection, function, from)?,
+                selection,
+                is_robots_best: false,
+            })
+        };
+        let mut forms = vec![count(self.selection.clone())?];
+        if let Some(other) = self.other_form(function) {
+            forms.push(count(other)?);
+        }
+        let Some(start) = forms.iter_mut().min_by_key(|form| form.operations) else {
+            return Ok(forms);
+        };
+        start.is_robots_best = true;
+        if !self.search.is_thorough() {
+            return Ok(forms);
+        }
+        let (least, mut best) = (start.operations, start.clone());
+        for change in formulation::choices(self.mechanism).iter().flatten() {
+            let Some(formulation) = change.of(&best.selection.formulation) else {
+                continue;
+            };
+            let trial = count(Selection {
+                formulation,
+                ..best.selection.clone()
+            });
+            // A form in which a leg cannot be written is none to choose.
+            if let Ok(trial) = trial
+                && trial.operations < best.operations
+            {
+                best = trial;
+            }
+        }
+        if best.operations < least {
+            forms.push(best);
+        }
+        Ok(forms)
+    }
+
+    /// The operations of a function as it is derived.
+    fn operations(
+        &self,
+        selection: &Selection,
+        function: Function,
+        from: MotionInput,
+    ) -> Result<usize, Underivable> {
+        let arena = Arena::new();
+        let derived = derive(&arena, self.mechanism, selection, function, from)?;
+        let program = Search::none().lower(&arena, self.mechanism, function, &derived)?;
+        Ok(program.cost().operations())
     }
 
     /// The selection beside the own one in which a function is written otherwise.

@@ -32,26 +32,9 @@ pub(super) fn cheapest_formulation(
         regressor,
         formulation: plain,
     };
-    let mut shapes = BTreeSet::new();
-    if !mechanism.is_tree() {
-        let closed = mechanism.legs.iter().filter(|leg| leg.end.is_some());
-        shapes.extend(closed.map(|leg| leg.shape));
+    for choice in choices(mechanism) {
+        best.choose(&choice);
     }
-    for shape in shapes {
-        let of_shape = |l: &usize| mechanism.legs[*l].shape == shape;
-        let legs: Vec<usize> = (0..mechanism.legs.len()).filter(of_shape).collect();
-        let count = legs.iter().map(|&l| station_count(mechanism, l)).min();
-        let trials = (1..count.unwrap_or(0)).map(|station| {
-            let mut trial = best.formulation.clone();
-            legs.iter().for_each(|&l| trial.stations[l] = station);
-            trial
-        });
-        best.choose(trials.collect());
-    }
-    best.choose(vec![Formulation {
-        meeting: true,
-        ..best.formulation.clone()
-    }]);
     Ok((best.formulation, best.regressor))
 }
 
@@ -64,8 +47,12 @@ struct Best<'m> {
 }
 
 impl Best<'_> {
-    /// Takes the best of the trials if it is better.
-    fn choose(&mut self, trials: Vec<Formulation>) {
+    /// Takes the best of the changes if one is better.
+    fn choose(&mut self, changes: &[Change]) {
+        let trials = changes
+            .iter()
+            .filter_map(|change| change.of(&self.formulation));
+        let trials: Vec<Formulation> = trials.collect();
         let of = |trial: &Formulation| regressor(self.mechanism, self.selection, trial);
         let regressors = parallel::map(&trials, of);
         for (formulation, regressor) in trials.into_iter().zip(regressors) {
@@ -76,6 +63,50 @@ impl Best<'_> {
             }
         }
     }
+}
+
+/// What of a formulation may be written otherwise.
+#[derive(Debug, Clone)]
+pub(super) enum Change {
+    /// The axes of the closure of legs of one shape.
+    Station(Vec<usize>, usize),
+    /// Whether axes that meet share a moment.
+    Meeting(bool),
+}
+
+impl Change {
+    /// The formulation with the change; `None` where it is written so already.
+    pub(super) fn of(&self, formulation: &Formulation) -> Option<Formulation> {
+        let mut changed = formulation.clone();
+        match self {
+            Self::Station(legs, station) => {
+                legs.iter().for_each(|&l| changed.stations[l] = *station);
+            }
+            Self::Meeting(meeting) => changed.meeting = *meeting,
+        }
+        (changed != *formulation).then_some(changed)
+    }
+}
+
+/// The changes among which one is chosen after the other: for each shape of legs the axes of its closure, then
+/// whether axes that meet share a moment.
+pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
+    let mut shapes = BTreeSet::new();
+    if !mechanism.is_tree() {
+        let closed = mechanism.legs.iter().filter(|leg| leg.end.is_some());
+        shapes.extend(closed.map(|leg| leg.shape));
+    }
+    let of_shape = |shape| {
+        let legs = (0..mechanism.legs.len()).filter(|&l| mechanism.legs[l].shape == shape);
+        let legs: Vec<usize> = legs.collect();
+        let count = legs.iter().map(|&l| station_count(mechanism, l)).min();
+        let stations = 0..count.unwrap_or(0);
+        let change = |station| Change::Station(legs.clone(), station);
+        stations.map(change).collect()
+    };
+    let mut choices: Vec<Vec<Change>> = shapes.into_iter().map(of_shape).collect();
+    choices.push(vec![Change::Meeting(false), Change::Meeting(true)]);
+    choices
 }
 
 /// The regressor in a formulation.

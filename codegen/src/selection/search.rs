@@ -57,6 +57,12 @@ impl Search {
         }
     }
 
+    /// Whether fewer operations are worth the time to try other forms of every function.
+    #[must_use]
+    pub(super) const fn is_thorough(&self) -> bool {
+        self.limits.is_thorough()
+    }
+
     /// The program of a derived function.
     pub(super) fn lower<'a>(
         &self,
@@ -89,10 +95,15 @@ impl Search {
     }
 
     /// How far the search of a function goes: the identification models, which run at every sample of
-    /// every log, are searched as far as asked; of the others only the nodes one by one.
+    /// every log, are searched as far as asked, those that run in a controller a step less far; of the others
+    /// only the nodes one by one.
     const fn limits_of(&self, function: Function) -> SearchLimits {
         match function {
             Function::IdmRedPlatform(_) => self.limits,
+            Function::InverseDynamics(_)
+            | Function::MassMatrix(_)
+            | Function::Bias(_)
+            | Function::ForwardDynamics(_) => self.limits.of_control(),
             _ => self.limits.of_lesser_functions(),
         }
     }

@@ -11,7 +11,7 @@
 ///
 /// | function | once | each step |
 /// |---|---|---|
-/// | `inverse_dynamics` | 484, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics` | 481, 4 √, 1 sc, 12 sg, 15 gd |  |
 ///
 /// # Names
 ///
@@ -155,7 +155,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 484 operations (213 additions, 260 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 486 intermediates.
+    /// 481 operations (213 additions, 251 multiplications, 17 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 483 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -179,7 +179,10 @@ impl DualV {
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
+        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -195,8 +198,7 @@ impl DualV {
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
@@ -248,7 +250,7 @@ impl DualV {
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
@@ -286,7 +288,6 @@ impl DualV {
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -300,7 +301,6 @@ impl DualV {
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -352,15 +352,14 @@ impl DualV {
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let k1_leg4 = 1.0 / det_leg4;
-        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 / det_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 / det_leg4;
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
-        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let g2_vx_leg4 = l1_x_leg4 / det_leg4;
+        let g2_vy_leg4 = l1_y_leg4 / det_leg4;
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let tau_2_leg4 = 0.0000000955728788284811 * qd_2_leg4
@@ -371,8 +370,8 @@ impl DualV {
             + L_AB_SQUARED * rate_2_squared_leg4;
         let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
         let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
-        let minus_rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let minus_rate_dot_1_leg4 = (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4)
+            / det_leg4;
         let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
             + L_AB_SQUARED * rate_1_squared_leg4;
         let minus_tau_1_leg4 = 0.030194364496588865 * minus_rate_1_leg4
@@ -381,7 +380,7 @@ impl DualV {
         let minus_force_on_u1_leg4 = tau_2_leg4
             + 0.050666830508230606 * minus_rate_dot_1_leg4
             + 0.000013210750116729909 * a_on_f2_leg4 + minus_tau_1_leg4;
-        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let rate_dot_2_leg4 = (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4) / det_leg4;
         let moment2_z_leg4 = 0.000013210750116729909 * minus_a_on_f1_leg4
             - 0.000029825765005556115 * rate_dot_2_leg4;
         let qd_3_leg4 = twist[2] - rate_2_leg4;
@@ -403,6 +402,13 @@ impl DualV {
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 * inv_pivot_1;
+        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
+            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
+            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
+        let force_y_platform = 7.340451512286127 * acceleration[1]
+            + 1.1545155579924413 * a_arm_x_leg1 + 0.001579372714053284 * a_arm_y_leg3;
+        let t1 = t3_leg3 + minus_g1_vy_leg4 * minus_force_on_u1_leg4
+            + g2_vy_leg4 * force_on_u2_leg4 + force_y_platform - t1_platform * l_2_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
@@ -411,14 +417,6 @@ impl DualV {
             25.592368899353342,
             ::overact::ActuatorGroup::All,
         )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
-        let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
-            + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
-            + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
-        let force_y_platform = 7.340451512286127 * acceleration[1]
-            + 1.1545155579924413 * a_arm_x_leg1 + 0.001579372714053284 * a_arm_y_leg3;
-        let t1 = t3_leg3 + minus_g1_vy_leg4 * minus_force_on_u1_leg4
-            + g2_vy_leg4 * force_on_u2_leg4 + force_y_platform - t1_platform * l_2_1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -431,7 +429,7 @@ impl DualV {
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
         let l_3_1 = s_1_3 * inv_pivot_1;
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let l_3_2 = schur_2_3 / pivot_2;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
@@ -442,9 +440,9 @@ impl DualV {
             + tau_3_leg3;
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let moment_z_platform = acceleration[1]
-            * (0.00017373099854586124 * s_phi - 0.12699671137916854 * c_phi)
+            * (0.00017373099854586124 * s_phi - p_y_leg1 * 1.1545155579924413)
             + acceleration[0]
-                * (0.12699671137916854 * s_phi + 0.00017373099854586124 * c_phi)
+                * (p_x_leg3 * 1.1545155579924413 + 0.00017373099854586124 * c_phi)
             + 0.036704916033894294 * acceleration[2];
         let t2 = t4_leg3 + minus_g1_wz_leg4 * minus_force_on_u1_leg4
             + g2_wz_leg4 * force_on_u2_leg4 + tau_3_leg4 + moment_z_platform
@@ -458,7 +456,7 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let t3 = t2 / pivot_3;
-        let t4 = inv_pivot_2 * t1 - l_3_2 * t3;
+        let t4 = t1 / pivot_2 - l_3_2 * t3;
         let t5 = t1_platform * inv_pivot_1 - l_2_1 * t4 - l_3_1 * t3;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,

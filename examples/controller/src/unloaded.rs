@@ -12,7 +12,7 @@
 /// | function | once | each step |
 /// |---|---|---|
 /// | `actuator_positions` | 80, 4 √, 1 sc, 4 at, 8 gd |  |
-/// | `inverse_dynamics` | 484, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `inverse_dynamics` | 481, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
 ///
 /// # Names
@@ -242,7 +242,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 484 operations (213 additions, 260 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 486 intermediates.
+    /// 481 operations (213 additions, 251 multiplications, 17 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 1 negation, 483 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -266,7 +266,10 @@ impl DualV {
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
+        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
+        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
@@ -282,8 +285,7 @@ impl DualV {
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
         let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
-        let half_d_y_leg1 = 0.5 * d_y_leg1;
-        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
+        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
@@ -336,7 +338,7 @@ impl DualV {
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
+        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
@@ -374,7 +376,6 @@ impl DualV {
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
@@ -388,7 +389,6 @@ impl DualV {
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -441,23 +441,22 @@ impl DualV {
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
-        let k1_leg4 = 1.0 / det_leg4;
-        let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
+        let minus_g1_vx_leg4 = l2_x_leg4 / det_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
-        let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
-        let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
+        let g2_vx_leg4 = l1_x_leg4 / det_leg4;
+        let g2_vy_leg4 = l1_y_leg4 / det_leg4;
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
         let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3 + l2_y_leg4 * a_end_y_leg3
             + L_AB_SQUARED * rate_2_squared_leg4;
-        let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
+        let minus_g1_vy_leg4 = l2_y_leg4 / det_leg4;
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
         let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
         let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
-        let minus_rate_dot_1_leg4 = k1_leg4
-            * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4);
+        let minus_rate_dot_1_leg4 = (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t1_leg4)
+            / det_leg4;
         let minus_moment1_z_leg4 = 0.050666830508230606 * minus_rate_dot_1_leg4;
         let minus_tau_1_leg4 = 0.030194364496588865 * minus_rate_1_leg4
             + ::overact::math::signed(0.10986887003468548, minus_rate_1_leg4)
@@ -470,7 +469,7 @@ impl DualV {
             + 0.003040155469275262;
         let minus_force_on_u1_leg4 = minus_moment1_z_leg4 + minus_tau_1_leg4
             + 0.000013210750116729909 * a_on_f2_leg4 + tau_2_leg4;
-        let rate_dot_2_leg4 = k1_leg4 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+        let rate_dot_2_leg4 = (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4) / det_leg4;
         let moment2_z_leg4 = 0.000013210750116729909 * minus_a_on_f1_leg4
             - 0.000029825765005556115 * rate_dot_2_leg4;
         let qd_3_leg4 = twist[2] - rate_2_leg4;
@@ -493,15 +492,6 @@ impl DualV {
         let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
         let l_2_1 = s_1_2 * inv_pivot_1;
-        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
-        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(
-            pivot_2,
-            25.592368899353342,
-            ::overact::ActuatorGroup::All,
-        )?;
-        let inv_pivot_2 = 1.0 / pivot_2;
         let t3 = g1_vy_leg1 * force_on_u1_leg1 - minus_g2_vy_leg1 * force_on_u2_leg1
             + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
             + g1_vy_leg3 * force_on_u1_leg3 - minus_g2_vy_leg3 * force_on_u2_leg3;
@@ -510,6 +500,14 @@ impl DualV {
             + 1.920521204934164 * acceleration[1];
         let t4 = t3 + minus_g1_vy_leg4 * minus_force_on_u1_leg4
             + g2_vy_leg4 * force_on_u2_leg4 + force_y_platform - t2 * l_2_1;
+        let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
+        let pivot_2 = s_2_2 - s_1_2 * l_2_1;
+        ::overact::guard::platform(
+            pivot_2,
+            25.592368899353342,
+            ::overact::ActuatorGroup::All,
+        )?;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -522,7 +520,7 @@ impl DualV {
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
         let l_3_1 = s_1_3 * inv_pivot_1;
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
-        let l_3_2 = schur_2_3 * inv_pivot_2;
+        let l_3_2 = schur_2_3 / pivot_2;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
@@ -549,7 +547,7 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let t7 = t6 / pivot_3;
-        let t8 = inv_pivot_2 * t4 - l_3_2 * t7;
+        let t8 = t4 / pivot_2 - l_3_2 * t7;
         let t9 = t2 * inv_pivot_1 - l_2_1 * t8 - l_3_1 * t7;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t9 + g1_vy_leg1 * t8 - minus_g1_wz_leg1 * t7,
@@ -636,8 +634,6 @@ impl DualV {
         ::overact::guard::leg(det_leg4, 0.07839913810297301, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
-        let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
-            + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
         ::overact::guard::platform(
@@ -646,6 +642,8 @@ impl DualV {
             ::overact::ActuatorGroup::All,
         )?;
         let inv_pivot_1 = 1.0 / s_1_1;
+        let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+            + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
@@ -669,7 +667,7 @@ impl DualV {
         )?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - t1 * l_2_1;
+            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - l_2_1 * t1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
@@ -684,7 +682,7 @@ impl DualV {
         let schur_2_3 = s_2_3 - s_1_2 * l_3_1;
         let l_3_2 = schur_2_3 * inv_pivot_2;
         let t3 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
-            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - t1 * l_3_1
+            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - l_3_1 * t1
             - l_3_2 * t2;
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
@@ -696,7 +694,7 @@ impl DualV {
         )?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
-        let t6 = t1 * inv_pivot_1 - l_2_1 * t5 - l_3_1 * t4;
+        let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
         ::core::result::Result::Ok([
             g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
             g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
