@@ -48,7 +48,7 @@ pub fn summary(identification: &Identification, page: Option<&str>, extent: Exte
         above.push('\n');
         above.push_str(&model(identification, estimate, extent));
     }
-    let below = consistent(identification) + &next(identification, page);
+    let below = consistent(identification) + &unseen(identification) + &next(identification, page);
     let rows = parameters::rows(identification);
     let motors = motors::motors(&identification.motors);
     let whole = rows.table(rows.count()) + &motors;
@@ -102,6 +102,22 @@ fn consistent(identification: &Identification) -> String {
         );
         text.push('\n');
         paragraph(&mut text, "", &words);
+    }
+    text
+}
+
+/// What is taken as right: the faults that spoil most without being seen.
+fn unseen(identification: &Identification) -> String {
+    let mut text = String::new();
+    if !identification.unseen.is_empty() {
+        text.push('\n');
+        line(
+            &mut text,
+            "Errors that these data would just not have shown (--report: all that the result rests on):",
+        );
+        for one in &identification.unseen {
+            paragraph(&mut text, "  - ", one);
+        }
     }
     text
 }

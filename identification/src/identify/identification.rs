@@ -54,6 +54,8 @@ pub struct Identification {
     pub checks: Vec<Check>,
     /// What the result rests on, since no data can show it.
     pub assumptions: Vec<String>,
+    /// Faults that spoil parameters in a size that these data would not have shown: of each kind the worst.
+    pub unseen: Vec<String>,
     /// What may be done with the estimates, and why: one for each case.
     pub verdicts: Vec<Verdict>,
     /// The thresholds of the second opinion and of the conditioning.

@@ -34,7 +34,7 @@ use prepare::{check_runs, prepared_warnings};
 use crate::{
     assessment::{
         self, Context, Watched,
-        assumptions::{assumptions, hidden},
+        assumptions::{Found, assumptions, unseen},
         check::Check,
         suspects::{Reach, scores},
         verdict::verdicts,
@@ -91,6 +91,10 @@ pub fn identify_after(
     check_runs(model, dataset.validation, settings)?;
     let projections = Projection::usual(&info, &settings.kept_actuators);
     let mut prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
+    let found = Found {
+        gains: matches!(before, Before::Gains(_)),
+        gravity: matches!(before, Before::Gravity(_)),
+    };
     match before {
         Before::Nothing => {}
         Before::Gains(gains) => {
@@ -162,9 +166,8 @@ pub fn identify_after(
         without_effect: prepared.without_effect(),
         runs: prepared.runs,
         warnings,
-        assumptions: { assumptions(model, &prepared.columns, &models).into_iter() }
-            .chain(hidden(&checks))
-            .collect(),
+        assumptions: assumptions(model, &prepared.columns, &models, found),
+        unseen: unseen(&checks),
         verdicts: verdicts(&estimates, &checks),
         checks,
         thresholds: Thresholds::default(),

@@ -415,6 +415,7 @@ fn an_identification_without_anything_still_has_a_page() {
         warnings: Vec::new(),
         checks: Vec::new(),
         assumptions: Vec::new(),
+        unseen: Vec::new(),
         verdicts: Vec::new(),
         thresholds: Thresholds::default(),
         calibration: None,

@@ -159,16 +159,25 @@ fn warnings(identification: &Identification) -> String {
 
 /// What every result rests on.
 fn assumptions(identification: &Identification) -> String {
-    if identification.assumptions.is_empty() {
-        return String::new();
-    }
-    let items: String = identification
-        .assumptions
-        .iter()
-        .map(|one| format!("<li>{}</li>\n", prose(&capital(one))))
-        .collect();
-    format!(
-        "<h3 id=\"assumptions\">What no data can show</h3>\n{}<ul class=\"plain\">\n{items}</ul>\n",
-        paragraph("Whatever the checks say, the result rests on this:")
+    let list = |id: &str, title: &str, words: &str, all: &[String]| {
+        if all.is_empty() {
+            return String::new();
+        }
+        let items = all.iter();
+        let items = items.map(|one| format!("<li>{}</li>\n", prose(&capital(one))));
+        let items: String = items.collect();
+        let words = paragraph(words);
+        format!("<h3 id=\"{id}\">{title}</h3>\n{words}<ul class=\"plain\">\n{items}</ul>\n")
+    };
+    list(
+        "unseen",
+        "What these data would not have shown",
+        "Of each kind the error that does most harm, in the size from which on nine of ten such data show it; a smaller one moves parameters in proportion:",
+        &identification.unseen,
+    ) + &list(
+        "assumptions",
+        "What no data can show",
+        "Whatever the checks say, the result rests on this:",
+        &identification.assumptions,
     )
 }

@@ -80,7 +80,7 @@ fn length(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
     };
     if pace.periods >= FEWEST_PERIODS {
         return Some(check(format!(
-            "the motion is long enough: at least {periods} periods of each actuator"
+            "the motion is long enough: each actuator goes forth and back at least {periods} times"
         )));
     }
     Some(

@@ -119,7 +119,7 @@ fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
         .collect();
     if spoiled.is_empty() {
         return format!(
-            "least squares and instruments ({}) differ by more than chance ({test}), but no parameter by more than its standard deviation: the bias is harmless",
+            "errors of the positions bias no parameter by more than its standard deviation, though least squares and instruments ({}) differ by more than chance ({test})",
             source(told)
         );
     }

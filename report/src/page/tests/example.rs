@@ -297,6 +297,7 @@ pub(super) fn identification() -> Identification {
         motors: Vec::new(),
         functions_base: Vec::new(),
         assumptions: vec![String::from("the gains are right")],
+        unseen: Vec::new(),
         verdicts: vec![
             verdict(ModelKind::Platform, Grade::UseListed, &["m_platformR"]),
             verdict(ModelKind::Actuators, Grade::DoNotUse, &[]),
