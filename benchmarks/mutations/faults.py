@@ -20,22 +20,23 @@ class Run:
         self.words, self.files, self.folder = words, files, folder
         for name, content in files.items():
             (folder / name).write_bytes(content)
-        (folder / "kept").write_bytes(KEPT)
+        named = [word for word in map(str, words) if word.startswith("kept")]
+        self.output = folder / (named[0] if named else "kept")
+        self.output.write_bytes(KEPT)
         begin = time.monotonic()
         self.code, self.result, self.complaint = run(words, folder)
         self.took = time.monotonic() - begin
 
     @property
     def kept(self) -> bytes:
-        file = self.folder / "kept"
-        return file.read_bytes() if file.exists() else b""
+        return self.output.read_bytes() if self.output.exists() else b""
 
     def faults(self) -> list[str]:
         """All that is wrong with how it went."""
         is_right = self.code == 0
         is_python = "-c" in self.words
         said = self.result + self.complaint
-        left = [file.name for file in self.folder.iterdir() if file.name not in {*self.files, "kept"}]
+        left = [file.name for file in self.folder.iterdir() if file.name not in {*self.files, self.output.name}]
         owned = [name for name in left if name == "c" or name.startswith("kept")]
         wrong = {
             "the time is up": self.code is None,
@@ -44,7 +45,7 @@ class Run:
             "an input is touched": any((self.folder / name).read_bytes() != content for name, content in self.files.items()),
             "an output is touched": not is_right and (self.kept != KEPT or bool(owned)),
             "files are left": left != owned,
-            "an output is empty": is_right and any((self.folder / name).stat().st_size == 0 for name in ["kept", *owned]),
+            "an output is empty": is_right and any((self.folder / name).stat().st_size == 0 for name in [self.output.name, *owned]),
             "an error has no code": self.code in (1, 2) and not is_python and not re.search(r"OA\d{3}", said),
             "a result is no document": is_right and "--json" in self.words and not is_document(self.result),
             "an error is no document": self.code in (1, 2) and "--json" in self.words and not is_document(self.complaint.splitlines()[-1]),

@@ -61,7 +61,7 @@ def description(whole: Whole, draw: random.Random, only: str | None) -> Case:
     evaluate, files["states.csv"] = evaluated(whole, draw)
     every = [
         ["inspect", "robot.toml", *QUICK, "--json"],
-        ["inspect", "robot.toml", *QUICK, "--svg", "kept"],
+        ["inspect", "robot.toml", *QUICK, "--svg", "kept.svg"],
         ["generate", "robot.toml", *QUICK, "--functions", "identification", *OUT],
         ["generate", "robot.toml", *QUICK, "--float", "f32", "--functions", "control", *OUT],
         ["generate", "robot.toml", *QUICK, "--parameters", "parameters.toml", *OUT],
@@ -69,11 +69,11 @@ def description(whole: Whole, draw: random.Random, only: str | None) -> Case:
         evaluate,
         ["simulate", "robot.toml", *OUT],
         ["simulate", "robot.toml", "--parameters", "parameters.toml", *OUT],
-        ["identify", "robot.toml", "--parameters", "kept", "--json"],
+        ["identify", "robot.toml", "--parameters", "kept.toml", "--json"],
         ["partitions", "robot.toml", "--json"],
         ["excite", "robot.toml", "--runs", "1", "--time", "2", *OUT],
         ["factor", "robot.toml", "log.csv", *OUT],
-        ["identify", "robot.toml", "--data", "log.csv", "--report", "kept"],
+        ["identify", "robot.toml", "--data", "log.csv", "--report", "kept.html"],
     ]
     if b"[data]" in whole.files["robot.toml"]:
         # Its columns are those of a measured log.
@@ -87,7 +87,7 @@ def description(whole: Whole, draw: random.Random, only: str | None) -> Case:
 def log(whole: Whole, draw: random.Random) -> Case:
     """A damaged log, as text or as another library wrote it."""
     is_text = "factors.parquet" in whole.files
-    options = draw.choice([["--report", "kept"], ["--json"], ["--tables", *OUT], ["--gains"], ["--calibrate", "--json"]])
+    options = draw.choice([["--report", "kept.html"], ["--json"], ["--tables", *OUT], ["--gains"], ["--calibrate", "--json"]])
     data = draw.choice(["--data", "--payload-data"]) if is_text else "--data"
     tasks = [["identify", "robot.toml", data, "log.csv", *options], ["factor", "robot.toml", "log.csv", *OUT]]
     files = changed(whole, "log.csv", draw, is_text)
@@ -124,7 +124,7 @@ def factors(whole: Whole, draw: random.Random) -> Case:
         ["merge", "factors.parquet", *skip, *OUT],
         ["merge", "factors.parquet", "whole.parquet", *skip, *OUT],
         ["identify", "robot.toml", "--factors", "factors.parquet", *skip, "--json"],
-        ["identify", "robot.toml", "--factors", "whole.parquet", "factors.parquet", *skip, "--report", "kept"],
+        ["identify", "robot.toml", "--factors", "whole.parquet", "factors.parquet", *skip, *OUT],
     ]
     files = {**changed(whole, "factors.parquet", draw, False), "whole.parquet": whole.files["factors.parquet"]}
     return Case(files, [draw.choice(tasks)])
