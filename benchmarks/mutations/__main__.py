@@ -120,7 +120,7 @@ class Trial:
         faults = ", ".join(f"{what} ({count})" for what, count in collections.Counter(self.faults).most_common())
         return (
             f"{self.damaged.total()} damaged files of seed {self.given.seed} ({files}) in {self.codes.total()} runs; generated modules "
-            f"that were compiled: {compiled or 'none'}; the longest run took {self.longest[0]:.1f} s (`{self.longest[1]}`). Faults: {faults or 'none'}."
+            f"that were compiled: {compiled or 'none'}; the longest run took {self.longest[0]:.1f} s of processor time (`{self.longest[1]}`). Faults: {faults or 'none'}."
         )
 
     def table(self) -> str:
@@ -134,7 +134,7 @@ class Trial:
 def document(trial: Trial) -> str:
     return f"""# Damaged files
 
-Written by `python3 benchmarks/mutations --write`: descriptions, logs, states, parameters, factor files and models of other programs with one to four faults each (lines, characters and bytes that are lost, doubled, moved or replaced, numbers that are none or of another size), beside files that are right and belong to them, through the commands that read them and, every fifth description and log, through Python in a process of its own. A fault is a panic, a signal, a run of more than {LONGEST} s or {MEMORY >> 30} GB, an input that is written to, an output that is touched by a run that fails or left empty by one that does not, a file that is left behind, an error without its code, a document that is none, an imported description that does not pass its check, and a generated module that does not compile.
+Written by `python3 benchmarks/mutations --write`: descriptions, logs, states, parameters, factor files and models of other programs with one to four faults each (lines, characters and bytes that are lost, doubled, moved or replaced, numbers that are none or of another size), beside files that are right and belong to them, through the commands that read them and, every fifth description and log, through Python in a process of its own. A fault is a panic, a signal, a run of more than {LONGEST} s of processor time or {MEMORY >> 30} GB, an input that is written to, an output that is touched by a run that fails or left empty by one that does not, a file that is left behind, an error without its code, a document that is none, an imported description that does not pass its check, and a generated module that does not compile.
 
 {trial.summary()}
 
