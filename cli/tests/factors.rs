@@ -207,3 +207,21 @@ fn a_file_in_which_any_byte_is_wrong_gives_no_other_numbers() {
     }
     assert!(refused > 0);
 }
+
+#[test]
+fn what_factors_can_not_give_is_refused_and_not_left_out_in_silence() {
+    let bench = five_bar();
+    bench.good(&["factor", "my.toml", "log_1.csv", "-o", "1.parquet"]);
+    for option in [
+        &["--report", "report.html"][..],
+        &["--strict"],
+        &["--tables"],
+        &["--all"],
+    ] {
+        let identify = ["identify", "my.toml", "--factors", "1.parquet"];
+        let run = bench.run(&[&identify[..], option].concat());
+        assert_eq!(run.code, Some(2), "{option:?}: {}", run.err);
+        assert!(run.err.contains(option[0]), "{}", run.err);
+    }
+    assert!(!bench.path("report.html").exists());
+}

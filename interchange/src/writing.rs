@@ -1,5 +1,6 @@
 //! The description as TOML, with a comment at each choice.
 
+mod believable;
 mod experiment;
 
 use crate::{
@@ -237,9 +238,17 @@ fn place(text: &mut String, leg: &Leg) {
 /// Values of the file's masses, inertias and friction: those of the virtual robot, and the prior.
 fn values(text: &mut String, plan: &Plan) {
     let single = plan.legs.len() == 1;
-    let mut lines = Vec::new();
+    let (mut lines, mut impossible) = (Vec::new(), Vec::new());
     for leg in &plan.legs {
         for joint in &leg.joints {
+            let of = if single {
+                String::new()
+            } else {
+                format!("_{}", leg.name)
+            };
+            if believable::is_impossible(joint) {
+                impossible.push(format!("`{}{of}`", joint.name));
+            }
             let mass = joint
                 .values
                 .iter()
@@ -261,12 +270,7 @@ fn values(text: &mut String, plan: &Plan) {
                     _ => value.abs(),
                 };
                 let shown = fine(*value, scale);
-                let of = if single {
-                    String::new()
-                } else {
-                    format!("_{}", leg.name)
-                };
-                let is_prior = is_believable(joint, symbol);
+                let is_prior = believable::is_believable(joint, symbol);
                 lines.push((is_prior, format!("{symbol}_{}{of} = {shown}", joint.name)));
             }
         }
@@ -278,30 +282,18 @@ fn values(text: &mut String, plan: &Plan) {
     for (_, line) in lines.iter().filter(|(_, line)| !line.ends_with(" = 0")) {
         let _ = writeln!(text, "{line}");
     }
-    text.push_str("\n# and what is believed before data speak.\n[prior.values]\n");
+    text.push_str("\n# and what is believed before data speak.\n");
+    if !impossible.is_empty() {
+        let list = impossible.join(", ");
+        let note = format!(
+            "LEFT OUT here are the moments of inertia of {list}: no body has them, as its pseudo-inertia would not be \
+             positive definite."
+        );
+        comment(text, &note);
+    }
+    text.push_str("[prior.values]\n");
     for (_, line) in lines.into_iter().filter(|(is_prior, _)| *is_prior) {
         let _ = writeln!(text, "{line}");
-    }
-}
-
-/// Whether a value may be believed before data speak: masses and moments of bodies that can be. A file may give a body
-/// in a plane nothing but the moment about its normal; what is left out follows from its mass.
-fn is_believable(joint: &Joint, symbol: &str) -> bool {
-    let own = |of: &str| {
-        joint
-            .values
-            .iter()
-            .find(|(s, _)| *s == of)
-            .map_or(0.0, |(_, v)| *v)
-    };
-    let moments = ["xx", "yy", "zz"].map(own);
-    let largest = moments.iter().copied().fold(0.0, f64::max);
-    match symbol {
-        "xx" | "xy" | "xz" | "yy" | "yz" | "zz" => {
-            own("m") > 0.0 && moments.iter().all(|moment| *moment > 1e-12 * largest)
-        }
-        "mx" | "my" | "mz" | "m" => own("m") > 0.0,
-        _ => own(symbol) >= 0.0,
     }
 }
 

@@ -33,6 +33,8 @@ def inputs_of(robot, function, samples=SAMPLES):
     poses = home + random.uniform(-0.02, 0.02, (samples, len(home)))
     if len(home) > robot.r:
         poses[:, -4:] /= np.linalg.norm(poses[:, -4:], axis=1, keepdims=True)
+    if "blocked_error" in robot.functions:
+        poses = allowed(robot, poses)
     inputs = {}
     for name, length in function.inputs.items():
         if name == "pose" or (name == "joints" and "pose" not in function.inputs):
@@ -46,6 +48,22 @@ def inputs_of(robot, function, samples=SAMPLES):
         else:
             inputs[name] = random.normal(size=(samples, length))
     return inputs
+
+
+def allowed(robot, poses):
+    """The poses near these that the legs of a platform which moves aside allow, by Newton's steps."""
+    for _ in range(5):
+        errors, jacobians = robot.blocked_error(poses), robot.blocked_jacobian(poses)
+        for pose, error, jacobian in zip(poses, errors, jacobians):
+            step = -np.linalg.pinv(jacobian) @ error
+            pose[:3] += step[:3]
+            # The turn by half a small rotation vector, from the left: it is told in the base's frame.
+            w, v, turn = pose[3], pose[4:].copy(), step[3:] / 2
+            pose[3] = w - turn @ v
+            pose[4:] = v + w * turn + np.cross(turn, v)
+            pose[3:] /= np.linalg.norm(pose[3:])
+    assert np.abs(robot.blocked_error(poses)).max() < 1e-13
+    return poses
 
 
 def agree(found, expected, tolerance, what):

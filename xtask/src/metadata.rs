@@ -3,7 +3,7 @@
 use crate::Failure;
 use crate::files::repository;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// A package of the workspace or below it.
@@ -35,6 +35,14 @@ pub(crate) fn cargo(arguments: &[&str]) -> Result<String, Failure> {
         return Err(format!("`cargo {}` failed", arguments.join(" ")).into());
     }
     Ok(String::from_utf8(output.stdout)?)
+}
+
+/// The folder that cargo builds into.
+pub(crate) fn target() -> Result<PathBuf, Failure> {
+    let text = cargo(&["metadata", "--format-version", "1", "--no-deps"])?;
+    let document: Value = serde_json::from_str(&text)?;
+    let folder = document["target_directory"].as_str();
+    Ok(folder.ok_or("cargo names no target folder")?.into())
 }
 
 /// All packages, each once.

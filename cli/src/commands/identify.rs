@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     runs: runs::Arguments,
     /// Factor files (`overact factor`) in the place of logs
-    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "parameters"])]
+    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "parameters", "strict", "all", "tables", "reports", "published"])]
     factors: Vec<PathBuf>,
     /// Leave out what can't be used of factor files, and say so
     #[arg(long, requires = "factors")]

@@ -8,7 +8,7 @@
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::{
     fs::File,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
 };
 
 use super::samples::Samples;
@@ -62,7 +62,10 @@ impl Spill {
                 }
             }
         }
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut file = self
+            .file
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         file.seek(SeekFrom::End(0)).is_ok() && file.write_all(&bytes).is_ok()
     }
 
@@ -95,7 +98,10 @@ impl Spill {
     #[cfg(not(target_family = "wasm"))]
     fn fill(&self, first: usize, bytes: &mut [u8]) -> std::io::Result<()> {
         let place = (first * self.width() * BYTES) as u64;
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut file = self
+            .file
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         file.seek(SeekFrom::Start(place))?;
         file.read_exact(bytes)
     }

@@ -1,0 +1,58 @@
+//! What a file says of a body may be what no body has: it is then nothing to believe before data speak.
+
+use crate::plan::Joint;
+use nalgebra::{Matrix3, Vector3};
+
+/// Below this part of the whole a moment is what rounding left of zero.
+const ROUNDING: f64 = 1e-12;
+
+/// The moments of second order.
+const SECOND: [&str; 6] = ["xx", "xy", "xz", "yy", "yz", "zz"];
+
+/// Whether a value may be believed before data speak: masses and moments of bodies that can be. What is left out
+/// follows from the mass.
+pub(super) fn is_believable(joint: &Joint, symbol: &str) -> bool {
+    match symbol {
+        "mx" | "my" | "mz" | "m" => value(joint, "m") > 0.0,
+        _ if SECOND.contains(&symbol) => is_body(joint),
+        _ => value(joint, symbol) >= 0.0,
+    }
+}
+
+/// Whether moments are given that no body has. Of a body in a plane a file may tell the moment about its normal
+/// alone, which has to be enough for where its centre is.
+pub(super) fn is_impossible(joint: &Joint) -> bool {
+    let moments = ["xx", "yy", "zz"].map(|symbol| value(joint, symbol));
+    let first = ["mx", "my", "mz"].map(|symbol| value(joint, symbol));
+    let largest = moments
+        .iter()
+        .fold(0.0, |most: f64, own| most.max(own.abs()));
+    let given = (0..3).filter(|axis| moments[*axis].abs() > ROUNDING * largest);
+    match given.collect::<Vec<_>>()[..] {
+        [] => false,
+        [axis] => {
+            let others = (0..3).filter(|other| *other != axis);
+            let square: f64 = others.map(|other| first[other].powi(2)).sum();
+            moments[axis] * value(joint, "m") <= square
+        }
+        _ => !is_body(joint),
+    }
+}
+
+/// Whether there is a body of this mass and these moments: its pseudo-inertia is positive definite.
+fn is_body(joint: &Joint) -> bool {
+    let [xx, xy, xz, yy, yz, zz] = SECOND.map(|symbol| value(joint, symbol));
+    let [x, y, z, mass] = ["mx", "my", "mz", "m"].map(|symbol| value(joint, symbol));
+    let about = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let second = Matrix3::identity() * (0.5 * about.trace()) - about;
+    let first = Vector3::new(x, y, z);
+    // Without a mass there are infinities here, and no eigenvalue is above them.
+    let central = second - first * first.transpose() / mass;
+    let is_finite = central.iter().all(|one| one.is_finite());
+    mass > 0.0 && is_finite && central.symmetric_eigenvalues().min() > ROUNDING * second.trace()
+}
+
+fn value(joint: &Joint, symbol: &str) -> f64 {
+    let found = joint.values.iter().find(|(own, _)| *own == symbol);
+    found.map_or(0.0, |(_, value)| *value)
+}
