@@ -26,6 +26,11 @@ fn failed(error: impl std::fmt::Display) -> DataFusionError {
     DataFusionError::Execution(error.to_string())
 }
 
+/// The planner that changes a query while it runs. Where a task can't fetch what a lost executor had, it runs the stage
+/// before again and then has no place for its results: the query never ends. What it saves, in joins of large tables,
+/// is not what a fleet is asked for.
+const ADAPTIVE_PLANNER: &str = "ballista.planner.adaptive.enabled";
+
 /// The client of a scheduler.
 ///
 /// # Errors
@@ -33,7 +38,8 @@ fn failed(error: impl std::fmt::Display) -> DataFusionError {
 pub async fn client(url: &str, config: SessionConfig) -> Result<SessionContext> {
     let config = config
         .upgrade_for_ballista()
-        .with_ballista_grpc_client_max_message_size(LARGEST_MESSAGE as usize);
+        .with_ballista_grpc_client_max_message_size(LARGEST_MESSAGE as usize)
+        .set_bool(ADAPTIVE_PLANNER, false);
     let state = SessionStateBuilder::new()
         .with_config(config)
         .with_default_features()

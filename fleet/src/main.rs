@@ -15,7 +15,7 @@ use std::{
     io::Write,
     path::{Path, PathBuf},
     process::ExitCode,
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 /// Parameters of many robots by SQL over their factor files and logs.
@@ -66,7 +66,13 @@ struct Data {
     /// Read all of every file before the query
     #[arg(long)]
     whole: bool,
+    /// Seconds that a query may take [default: 3600 of a cluster, any of this machine]
+    #[arg(long, value_name = "SECONDS")]
+    limit: Option<f64>,
 }
+
+/// Seconds that a query of a cluster may take where nothing is said.
+const LIMIT_S: f64 = 3600.0;
 
 #[derive(Debug, Args)]
 struct Sql {
@@ -222,6 +228,8 @@ async fn run(arguments: Arguments) -> Result<(), String> {
 }
 
 async fn open(data: &Data) -> Result<Fleet, String> {
+    let usual = data.scheduler.as_ref().map(|_| LIMIT_S);
+    let limit = data.limit.or(usual).map(Duration::try_from_secs_f64);
     let options = Options {
         factors: data.factors.clone(),
         logs: data.logs.clone(),
@@ -230,6 +238,9 @@ async fn open(data: &Data) -> Result<Fleet, String> {
         partitions: data.partitions,
         memory: data.memory << 20,
         whole: data.whole,
+        limit: limit
+            .transpose()
+            .map_err(|error| format!("--limit is a number of seconds: {error}"))?,
     };
     let fleet = Fleet::open(options).await;
     fleet.map_err(|error| error.strip_backtrace())
