@@ -28,6 +28,8 @@ pub mod chart;
 pub mod distributed;
 pub mod functions;
 pub mod logging;
+#[cfg(feature = "distributed")]
+mod lost;
 pub mod power;
 pub mod report;
 pub mod robots;

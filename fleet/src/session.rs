@@ -48,12 +48,17 @@ pub struct Options {
     pub limit: Option<Duration>,
 }
 
-/// How often a cluster is asked a query of which an executor was lost with what it had: the engine makes up for one
-/// that is lost while a query runs, but not for one that is lost between its end and the client.
-const ATTEMPTS: usize = 3;
+/// How often a cluster is asked a query while executors are lost: the scheduler ends a query then. An executor that is
+/// killed may end two, one that can't fetch from it and one that is to begin with it.
+const ATTEMPTS: usize = 5;
+
+/// Time between two attempts.
+const PAUSE: Duration = Duration::from_millis(500);
 
 /// What the engine says of executors that are not there, in errors that carry nothing but a text.
-const LOST: [&str; 5] = [
+const LOST: [&str; 7] = [
+    "failed: Cancelled",
+    "has failed 1 times",
     "GrpcConnectionError",
     "Shuffle fetch partition error",
     "executors were lost",
@@ -147,7 +152,10 @@ impl Fleet {
             for _ in 0..attempts {
                 let rows = async { self.context.sql(query).await?.collect().await };
                 match rows.await {
-                    Err(error) if lost(&error) => last = Some(error),
+                    Err(error) if lost(&error) => {
+                        last = Some(error);
+                        tokio::time::sleep(PAUSE).await;
+                    }
                     other => return other,
                 }
             }
