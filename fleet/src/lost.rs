@@ -9,7 +9,8 @@ use ballista_core::{
     error::Result,
     serde::{
         protobuf::{
-            CancelJobParams, ExecutorHeartbeat, scheduler_grpc_client::SchedulerGrpcClient,
+            CancelJobParams, ExecutorHeartbeat, job_status,
+            scheduler_grpc_client::SchedulerGrpcClient,
         },
         scheduler::{ExecutorData, ExecutorMetadata},
     },
@@ -48,14 +49,15 @@ impl Executors {
     /// Ends all queries that run. The scheduler takes orders one after the other, so this one comes before that to
     /// make up for what was lost.
     async fn end_all(&self) -> Result<()> {
-        let jobs = self.jobs.get_jobs().await?;
-        if jobs.is_empty() {
-            return Ok(());
-        }
-        let mut scheduler = SchedulerGrpcClient::connect(self.scheduler.clone()).await?;
-        for job in jobs {
+        for job in self.jobs.get_all_jobs().await? {
+            let status = self.jobs.get_job_status(&job).await?;
+            let running = status.and_then(|own| own.status);
+            if !matches!(running, Some(job_status::Status::Running(_))) {
+                continue;
+            }
             let job_id = job.into_inner();
             log::warn!("query {job_id} ends, for an executor was lost");
+            let mut scheduler = SchedulerGrpcClient::connect(self.scheduler.clone()).await?;
             scheduler.cancel_job(CancelJobParams { job_id }).await?;
         }
         Ok(())
