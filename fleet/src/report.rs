@@ -185,7 +185,7 @@ fn drifts(html: &mut String, alarms: &[&Chart], rule: &Rule, link: Option<&str>)
     }
     html.push_str(
         "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>robot<th>parameter<th>change<th>alarm on day<th>probability \
-         without drift<th>days</tr>",
+         without drift<th class=\"days\">days</tr>",
     );
     for (place, own) in alarms.iter().enumerate() {
         let plot = match place < MOST_PLOTS {
@@ -194,7 +194,7 @@ fn drifts(html: &mut String, alarms: &[&Chart], rule: &Rule, link: Option<&str>)
         };
         let _ = write!(
             html,
-            "<tr><td>{}<td>{}<td class=\"n\">{:+.1} %<td class=\"n\">{:.0}<td class=\"n\">{:.1e}<td>{plot}</tr>",
+            "<tr><td>{}<td>{}<td class=\"n\">{:+.1} %<td class=\"n\">{:.0}<td class=\"n\">{:.1e}<td class=\"days\">{plot}</tr>",
             robot(&own.serial, link),
             safe(&own.parameter),
             own.change_percent,
@@ -364,6 +364,6 @@ border-bottom:1px solid #8888;white-space:normal}.n{text-align:right}.long td{wh
 vertical-align:top}.plots{display:flex;flex-wrap:wrap;gap:1em 1.5em}figure{margin:0;width:300px;max-width:100%;\
 break-inside:avoid}figure small{display:block}svg{display:block;overflow:visible}.line{width:160px;height:28px}.plot{\
 width:100%;height:auto}polyline{fill:none;stroke-width:1.5;vector-effect:non-scaling-stroke}.band{fill:var(--band)}\
-.middle{stroke:#888}.own{stroke:var(--own)}@media(max-width:40em){body{font-size:13px}td,th{padding-right:.5em}.line{\
-width:56px;height:20px}}@media print{:root{color-scheme:light;--own:#b22;--band:#ccc}body{font-size:10pt;margin:0;\
+.middle{stroke:#888}.own{stroke:var(--own)}@media(max-width:40em){body{font-size:13px}td,th{padding-right:.5em}.days{\
+display:none}}@media print{:root{color-scheme:light;--own:#b22;--band:#ccc}body{font-size:10pt;margin:0;\
 max-width:none}.scroll{overflow:visible}tr{break-inside:avoid}h2{break-after:avoid}a{color:inherit}}</style></head><body>";
