@@ -211,7 +211,15 @@ fn a_file_in_which_any_byte_is_wrong_gives_no_other_numbers() {
 /// Values by the name of the parameter, each with its deviation.
 fn by_name(document: &Value) -> Vec<(String, f64, f64)> {
     let estimates = document["estimates"].as_array().expect("estimates");
-    let own = estimates.iter().filter(|one| one["stage"] == "base");
+    let squares = |one: &&Value| {
+        one["estimator"]
+            .as_str()
+            .is_some_and(|own| own.starts_with("least"))
+    };
+    let own = estimates
+        .iter()
+        .filter(|one| one["stage"] == "base")
+        .filter(squares);
     own.flat_map(|one| one["parameters"].as_array().expect("parameters"))
         .map(|one| {
             let name = one["name"].as_str().expect("a name").to_owned();
