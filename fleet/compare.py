@@ -1,24 +1,39 @@
-"""The estimates of a fleet by pandas and NumPy from the same factor files, beside those of `overact-fleet`.
+"""The estimates of a fleet by `overact-fleet` and by pandas and NumPy, from the same factor files, one after the other.
 
-    python fleet/compare.py FOLDER ESTIMATES.csv
+    python fleet/compare.py FOLDER PROGRAM
 
-FOLDER has factor files; ESTIMATES.csv is what this query gives with --csv:
-
-    SELECT serial, p['name'] AS name, p['value'] AS value
-    FROM (SELECT serial, unnest(e['parameters']) AS p
-          FROM (SELECT serial, estimate(factor) AS e FROM factors GROUP BY serial))
-
-Every robot is fitted twice: by QR of its stacked factors, and by normal equations, which are what sums of products
-in SQL (and aggregates as regr_slope, for one regressor) come to. Weights of lines are those of the first.
+FOLDER has factor files, PROGRAM is `overact-fleet`. It is asked for the parameters of each robot; then every robot is
+fitted twice here: by QR of its stacked factors, and by normal equations, which are what sums of products in SQL (and
+aggregates as regr_slope, for one regressor) come to. Weights of lines are those of the first. Differences are told
+relative to the larger of a value and its deviation.
 """
 
+import io
 import resource
+import subprocess
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+
+QUERY = """
+    SELECT serial, p['name'] AS name, p['value'] AS value, p['deviation'] AS deviation
+    FROM (SELECT serial, unnest(e['parameters']) AS p
+          FROM (SELECT serial, estimate(factor) AS e FROM factors GROUP BY serial))
+"""
+
+
+def asked(program, folder):
+    """What the query gives, its seconds by the clock and of processors, and the largest memory in MB."""
+    start = time.perf_counter()
+    command = [program, "sql", QUERY, "--factors", folder, "--csv"]
+    text = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+    clock = time.perf_counter() - start
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    rows = pd.read_csv(io.StringIO(text)).set_index(["serial", "name"])
+    return rows, clock, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
 
 
 def decoded(record):
@@ -74,29 +89,30 @@ def fitted(group):
     return [names[i] for i in kept], by_qr, by_sums
 
 
-def main(folder, estimates):
-    start = time.perf_counter()
+def main(folder, program):
+    own, clock, processor, memory = asked(program, folder)
+    robots = own.index.get_level_values(0).nunique()
+    print(f"overact-fleet: {robots} robots in {clock:.1f} s ({processor:.1f} s of processors), {memory:.0f} MB")
+    start, of_start = time.perf_counter(), time.process_time()
     columns = ["serial", "kind", "content", "part", "line", "equations", "factor"]
     files = sorted(Path(folder).rglob("*.parquet"))
     rows = pd.concat(pd.read_parquet(file, columns=columns) for file in files)
     rows = rows[rows.kind == "factor"].drop_duplicates(["content", "part", "line"])
     read = time.perf_counter() - start
-    own = pd.read_csv(estimates).set_index(["serial", "name"]).value
-    by_qr, by_sums, count = 0.0, 0.0, 0
-    fit = 0.0
-    for serial, group in rows.groupby("serial"):
-        begin = time.perf_counter()
-        names, first, second = fitted(group)
-        fit += time.perf_counter() - begin
-        if serial not in own.index.get_level_values(0):
-            continue
-        ours = own.loc[serial].reindex(names).to_numpy()
-        by_qr = max(by_qr, np.max(np.abs(ours / first - 1)))
-        by_sums = max(by_sums, np.max(np.abs(ours / second - 1)))
-        count += 1
+    found = [(serial, *fitted(group)) for serial, group in rows.groupby("serial")]
+    clock, processor = time.perf_counter() - start, time.process_time() - of_start
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(f"{len(rows)} rows of {count} robots: read in {read:.1f} s, fitted in {fit:.1f} s, {memory:.0f} MB")
-    print(f"largest relative difference: QR {by_qr:.1e}, normal equations {by_sums:.1e}")
+    print(
+        f"pandas and NumPy: {len(found)} robots, {len(rows)} rows in {clock:.1f} s ({processor:.1f} s of processors), "
+        f"{read:.1f} s of them to read, {memory:.0f} MB"
+    )
+    by_qr, by_sums = 0.0, 0.0
+    for serial, names, first, second in found:
+        ours = own.loc[serial].reindex(names)
+        size = np.maximum(np.abs(first), ours.deviation.to_numpy())
+        by_qr = max(by_qr, np.max(np.abs(ours.value.to_numpy() - first) / size))
+        by_sums = max(by_sums, np.max(np.abs(ours.value.to_numpy() - second) / size))
+    print(f"largest difference: QR {by_qr:.1e}, normal equations {by_sums:.1e}")
 
 
 if __name__ == "__main__":

@@ -225,3 +225,119 @@ fn what_factors_can_not_give_is_refused_and_not_left_out_in_silence() {
     }
     assert!(!bench.path("report.html").exists());
 }
+
+/// Values by the name of the parameter, each with its deviation.
+fn by_name(document: &Value) -> Vec<(String, f64, f64)> {
+    let estimates = document["estimates"].as_array().expect("estimates");
+    let squares = |one: &&Value| {
+        one["estimator"]
+            .as_str()
+            .is_some_and(|own| own.starts_with("least"))
+    };
+    let own = estimates
+        .iter()
+        .filter(|one| one["stage"] == "base")
+        .filter(squares);
+    own.flat_map(|one| one["parameters"].as_array().expect("parameters"))
+        .map(|one| {
+            let name = one["name"].as_str().expect("a name").to_owned();
+            (
+                name,
+                number(&one["value"]),
+                number(&one["standard_deviation"]),
+            )
+        })
+        .collect()
+}
+
+#[test]
+fn runs_with_payload_are_factored_and_tell_the_payload() {
+    let bench = Bench::with("planar_3rrr.toml", |text| {
+        text.replace("duration = \"10 s\"", "duration = \"2 s\"")
+    });
+    bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
+    let empty = "log_unloaded__fast.csv";
+    let logs = bench.json(&[
+        "identify",
+        "my.toml",
+        "--data",
+        empty,
+        "--payload-data",
+        "log_loaded.csv",
+    ]);
+    bench.good(&["factor", "my.toml", empty, "-o", "empty.parquet"]);
+    let loaded = ["--payload-data", "log_loaded.csv", "-o", "loaded.parquet"];
+    bench.good(&[&["factor", "my.toml"][..], &loaded].concat());
+    bench.good(&[
+        "merge",
+        "empty.parquet",
+        "loaded.parquet",
+        "-o",
+        "both.parquet",
+    ]);
+    let both = bench.json(&["identify", "my.toml", "--factors", "both.parquet"]);
+    let runs = both["runs"].as_array().expect("runs");
+    let carried: Vec<bool> = runs
+        .iter()
+        .filter_map(|run| run["payload"].as_bool())
+        .collect();
+    assert_eq!(carried, [false, true]);
+    let (logs, both) = (by_name(&logs), by_name(&both));
+    assert!(logs.iter().any(|(name, ..)| name == "m_payload") && logs.len() == both.len());
+    for ((name, value, deviation), (other, factored, _)) in logs.iter().zip(&both) {
+        let size = value.abs().max(*deviation);
+        assert!(
+            name == other && (value - factored).abs() <= 1e-11 * size,
+            "{name} {value} and {other} {factored}"
+        );
+    }
+    // What is called unloaded and is not is another payload's estimate, so the word counts.
+    bench.good(&["factor", "my.toml", "log_loaded.csv", "-o", "wrong.parquet"]);
+    let wrong = bench.json(&[
+        "identify",
+        "my.toml",
+        "--factors",
+        "empty.parquet",
+        "wrong.parquet",
+    ]);
+    assert!(by_name(&wrong).iter().all(|(name, ..)| name != "m_payload"));
+}
+
+#[test]
+fn a_run_of_another_description_is_told_with_what_differs() {
+    let bench = five_bar();
+    bench.good(&["factor", "my.toml", "log_1.csv", "-o", "1.parquet"]);
+    let text = bench.read("my.toml");
+    bench.write("commented.toml", &format!("{text}# Looked through.\n"));
+    bench.good(&["factor", "commented.toml", "log_2.csv", "-o", "2.parquet"]);
+    let told = bench.bad(&["identify", "my.toml", "--factors", "1.parquet", "2.parquet"]);
+    assert!(told.contains("a comment is enough"), "{told}");
+    bench.write(
+        "renamed.toml",
+        &text.replace("name = \"FiveBar\"", "name = \"Other\""),
+    );
+    bench.good(&["factor", "renamed.toml", "log_2.csv", "-o", "3.parquet"]);
+    let told = bench.bad(&["identify", "my.toml", "--factors", "1.parquet", "3.parquet"]);
+    assert!(
+        told.contains("the robot `Other`, the others of `FiveBar`"),
+        "{told}"
+    );
+    bench.write(
+        "slower.toml",
+        &text.replace("sampling = \"2 kHz\"", "sampling = \"1 kHz\""),
+    );
+    bench.good(&[
+        "simulate",
+        "slower.toml",
+        "--run",
+        "fast",
+        "-o",
+        "slower.csv",
+    ]);
+    bench.good(&["factor", "my.toml", "slower.csv", "-o", "4.parquet"]);
+    let told = bench.bad(&["merge", "1.parquet", "4.parquet", "-o", "both.parquet"]);
+    assert!(
+        told.contains("sampled at 1000 Hz, the others at 2000 Hz"),
+        "{told}"
+    );
+}

@@ -43,6 +43,18 @@ impl Default for Rule {
     }
 }
 
+impl Rule {
+    /// The ends of the days of all looks.
+    #[must_use]
+    pub fn looks(&self, points: &[Point]) -> Vec<f64> {
+        let last = points.iter().map(|own| own.day).fold(0.0, f64::max);
+        let looks = (0..).map(|look| f64::from(look + 1) * self.every - 0.5);
+        let mut looks: Vec<f64> = looks.take_while(|look| *look < last).collect();
+        looks.push(last);
+        looks
+    }
+}
+
 /// A parameter of a robot over the days.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Chart {
@@ -95,12 +107,9 @@ pub fn charts(points: &[Point], rule: &Rule) -> Vec<Chart> {
             }
         }
     }
-    let last = points.iter().map(|own| own.day).fold(0.0, f64::max);
     let parameters = series.keys().map(|(_, name)| *name);
     let parameters = parameters.collect::<std::collections::BTreeSet<_>>().len();
-    let looks = (0..).map(|look| f64::from(look + 1) * rule.every - 0.5);
-    let mut looks: Vec<f64> = looks.take_while(|look| *look < last).collect();
-    looks.push(last);
+    let looks = rule.looks(points);
     let limit = rule.false_alarms / (looks.len() * parameters.max(1)) as f64;
     let mut charts: Vec<Chart> = { series.into_iter() }
         .map(|((serial, parameter), days)| chart((serial, parameter), days, (&looks, limit)))

@@ -1,7 +1,7 @@
 //! Many machines: a scheduler, executors that know the functions of a fleet, and their client. They are Ballista's own,
 //! with the functions registered in each process, since a plan names functions and does not carry them.
 
-use crate::{functions, robots::Robots};
+use crate::{functions, lost, robots::Robots};
 use ballista::prelude::{SessionConfigExt, SessionContextExt};
 use ballista_core::{registry::BallistaFunctionRegistry, utils::default_session_builder};
 use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
@@ -13,7 +13,11 @@ use datafusion::{
     execution::SessionStateBuilder,
     prelude::{SessionConfig, SessionContext},
 };
-use std::{net::SocketAddr, path::PathBuf, sync::Arc};
+use std::{
+    net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr},
+    path::PathBuf,
+    sync::Arc,
+};
 
 /// Bytes of a message between processes, at most: a partition of estimates in one piece.
 const LARGEST_MESSAGE: u32 = 256 << 20;
@@ -26,6 +30,11 @@ fn failed(error: impl std::fmt::Display) -> DataFusionError {
     DataFusionError::Execution(error.to_string())
 }
 
+/// The planner that changes a query while it runs. Where a task can't fetch what a lost executor had, it runs the stage
+/// before again and then has no place for its results: the query never ends. What it saves, in joins of large tables,
+/// is not what a fleet is asked for.
+const ADAPTIVE_PLANNER: &str = "ballista.planner.adaptive.enabled";
+
 /// The client of a scheduler.
 ///
 /// # Errors
@@ -33,12 +42,23 @@ fn failed(error: impl std::fmt::Display) -> DataFusionError {
 pub async fn client(url: &str, config: SessionConfig) -> Result<SessionContext> {
     let config = config
         .upgrade_for_ballista()
-        .with_ballista_grpc_client_max_message_size(LARGEST_MESSAGE as usize);
+        .with_ballista_grpc_client_max_message_size(LARGEST_MESSAGE as usize)
+        .set_bool(ADAPTIVE_PLANNER, false);
     let state = SessionStateBuilder::new()
         .with_config(config)
         .with_default_features()
         .build();
     SessionContext::remote_with_state(url, state).await
+}
+
+/// Where what listens at an address is reached from its own machine: one that listens everywhere listens here, too.
+fn reached(address: SocketAddr) -> SocketAddr {
+    let ip = match address.ip() {
+        IpAddr::V4(ip) if ip.is_unspecified() => Ipv4Addr::LOCALHOST.into(),
+        IpAddr::V6(ip) if ip.is_unspecified() => Ipv6Addr::LOCALHOST.into(),
+        ip => ip,
+    };
+    SocketAddr::new(ip, address.port())
 }
 
 /// Runs a scheduler until it is stopped.
@@ -59,11 +79,15 @@ pub async fn scheduler(address: SocketAddr, robots: Robots) -> Result<()> {
         grpc_server_max_encoding_message_size: LARGEST_MESSAGE,
         executor_timeout_seconds: SILENCE_S,
         expire_dead_executor_interval_seconds: SIGN_OF_LIFE_S,
+        // The first task that can't fetch what an executor had ends the query, `lost`.
+        stage_max_failures: 1,
+        task_max_failures: 1,
         ..SchedulerConfig::default()
     };
     let cluster = BallistaCluster::new_from_config(&config)
         .await
         .map_err(failed)?;
+    let cluster = lost::ending(&cluster, format!("http://{}", reached(address)));
     start_server(cluster, address, Arc::new(config))
         .await
         .map_err(failed)

@@ -17,14 +17,20 @@
 //!
 //! - [`functions`]: these; [`robots`]: the descriptions that `factor` knows by name.
 //! - [`catalog`]: which files can be read, and what is there twice.
-//! - [`session`]: a query on one machine or on many; `distributed`: scheduler and executors.
-//! - [`chart`]: control charts with a stated rate of false alarms; [`report`]: the page of a fleet.
+//! - [`session`]: a query on one machine or on many; `distributed`: scheduler and executors,
+//!   [`logging`]: what they tell.
+//! - [`chart`]: control charts with a stated rate of false alarms; [`report`]: the page of a fleet;
+//!   [`power`]: which drifts are found when.
 
 pub mod catalog;
 pub mod chart;
 #[cfg(feature = "distributed")]
 pub mod distributed;
 pub mod functions;
+pub mod logging;
+#[cfg(feature = "distributed")]
+mod lost;
+pub mod power;
 pub mod report;
 pub mod robots;
 pub mod session;

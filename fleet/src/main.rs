@@ -6,6 +6,7 @@ use datafusion::arrow::{
 };
 use overact_fleet::{
     chart::{Rule, charts, outliers},
+    power::Plan,
     report,
     robots::Robots,
     session::{Fleet, Options},
@@ -14,7 +15,7 @@ use std::{
     io::Write,
     path::{Path, PathBuf},
     process::ExitCode,
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 /// Parameters of many robots by SQL over their factor files and logs.
@@ -31,6 +32,8 @@ enum Command {
     Sql(Sql),
     /// Write the page of a fleet: drifts and outliers first, each robot with its plots
     Report(Report),
+    /// Tell which drifts of virtual robots would be found when
+    Power(Power),
     /// Run the scheduler of a cluster
     #[cfg(feature = "distributed")]
     Scheduler(Scheduler),
@@ -63,7 +66,13 @@ struct Data {
     /// Read all of every file before the query
     #[arg(long)]
     whole: bool,
+    /// Seconds that a query may take [default: 3600 of a cluster, any of this machine]
+    #[arg(long, value_name = "SECONDS")]
+    limit: Option<f64>,
 }
+
+/// Seconds that a query of a cluster may take where nothing is said.
+const LIMIT_S: f64 = 3600.0;
 
 #[derive(Debug, Args)]
 struct Sql {
@@ -94,6 +103,37 @@ struct Report {
     output: PathBuf,
 }
 
+#[derive(Debug, Args)]
+struct Power {
+    /// Description with a virtual experiment
+    #[arg(value_name = "TOML")]
+    robot: PathBuf,
+    /// Robots with each drift
+    #[arg(long, default_value_t = 200)]
+    robots: usize,
+    /// Robots without drift, of which false alarms are counted
+    #[arg(long, default_value_t = 1000)]
+    healthy: usize,
+    /// Days, of which each robot makes a run
+    #[arg(long, default_value_t = 30)]
+    days: usize,
+    /// Drifts of a first moment of mass, with commas
+    #[arg(long, value_name = "PERCENT", value_delimiter = ',', default_values_t = [0.25, 0.5, 1.0, 2.0, 4.0])]
+    moments: Vec<f64>,
+    /// Drifts of viscous friction, with commas
+    #[arg(long, value_name = "PERCENT", value_delimiter = ',', default_values_t = [2.5, 5.0, 10.0, 20.0])]
+    frictions: Vec<f64>,
+    /// Parameters that are watched, with commas [default: all]
+    #[arg(long, value_delimiter = ',')]
+    watch: Vec<String>,
+    /// Probability of an alarm of a robot without drift
+    #[arg(long, default_value_t = 0.01)]
+    false_alarms: f64,
+    /// Seed of everything
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
 #[cfg(feature = "distributed")]
 #[derive(Debug, Args)]
 struct Scheduler {
@@ -103,6 +143,9 @@ struct Scheduler {
     /// Description of robots in the logs (again for others)
     #[arg(long = "robot", value_name = "TOML")]
     robots: Vec<PathBuf>,
+    /// What is told on stderr: `off`, `error`, `warn`, `info`, `debug`
+    #[arg(long, value_name = "LEVEL", default_value = "warn")]
+    log: log::LevelFilter,
 }
 
 #[cfg(feature = "distributed")]
@@ -129,6 +172,9 @@ struct Executor {
     /// Description of robots in the logs (again for others)
     #[arg(long = "robot", value_name = "TOML")]
     robots: Vec<PathBuf>,
+    /// What is told on stderr: `off`, `error`, `warn`, `info`, `debug`
+    #[arg(long, value_name = "LEVEL", default_value = "warn")]
+    log: log::LevelFilter,
 }
 
 fn main() -> ExitCode {
@@ -156,14 +202,17 @@ async fn run(arguments: Arguments) -> Result<(), String> {
     match arguments.command {
         Command::Sql(own) => sql(own).await,
         Command::Report(own) => page(own).await,
+        Command::Power(own) => power(own),
         #[cfg(feature = "distributed")]
         Command::Scheduler(own) => {
+            overact_fleet::logging::on_stderr(own.log);
             let robots = Robots::read(&own.robots)?;
             let done = overact_fleet::distributed::scheduler(own.bind, robots).await;
             done.map_err(|error| error.strip_backtrace())
         }
         #[cfg(feature = "distributed")]
         Command::Executor(own) => {
+            overact_fleet::logging::on_stderr(own.log);
             let robots = Robots::read(&own.robots)?;
             let executor = overact_fleet::distributed::Executor {
                 address: own.bind,
@@ -179,6 +228,8 @@ async fn run(arguments: Arguments) -> Result<(), String> {
 }
 
 async fn open(data: &Data) -> Result<Fleet, String> {
+    let usual = data.scheduler.as_ref().map(|_| LIMIT_S);
+    let limit = data.limit.or(usual).map(Duration::try_from_secs_f64);
     let options = Options {
         factors: data.factors.clone(),
         logs: data.logs.clone(),
@@ -187,6 +238,9 @@ async fn open(data: &Data) -> Result<Fleet, String> {
         partitions: data.partitions,
         memory: data.memory << 20,
         whole: data.whole,
+        limit: limit
+            .transpose()
+            .map_err(|error| format!("--limit is a number of seconds: {error}"))?,
     };
     let fleet = Fleet::open(options).await;
     fleet.map_err(|error| error.strip_backtrace())
@@ -233,10 +287,7 @@ async fn sql(own: Sql) -> Result<(), String> {
         rows.iter().map(RecordBatch::num_rows).sum(),
         [opened, took],
     );
-    match std::io::stdout().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
-        _ => Ok(()),
-    }
+    print(&text)
 }
 
 fn csv(rows: &[RecordBatch]) -> Result<String, String> {
@@ -251,19 +302,64 @@ fn csv(rows: &[RecordBatch]) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| error.to_string())
 }
 
-async fn page(own: Report) -> Result<(), String> {
-    if !(own.false_alarms > 0.0 && own.false_alarms < 1.0) {
+/// What is watched, and how often a robot without drift may be accused.
+fn rule(watch: Vec<String>, false_alarms: f64) -> Result<Rule, String> {
+    if !(false_alarms > 0.0 && false_alarms < 1.0) {
         return Err("--false-alarms is a probability between 0 and 1".to_owned());
     }
+    Ok(Rule {
+        false_alarms,
+        parameters: watch,
+        ..Rule::default()
+    })
+}
+
+fn power(own: Power) -> Result<(), String> {
+    let rule = rule(own.watch, own.false_alarms)?;
+    let sizes = own.moments.iter().chain(&own.frictions);
+    if own.robots == 0 || own.healthy == 0 || own.days < 4 {
+        return Err("a trial has robots of both kinds, and at least 4 days".to_owned());
+    }
+    if sizes.clone().any(|size| !(size.abs() < 100.0)) {
+        return Err("a drift is less than 100 percent".to_owned());
+    }
+    let robot = overact_robot::Robot::from_toml(&own.robot).map_err(|error| error.to_string())?;
+    let plan = Plan {
+        robots: own.robots,
+        healthy: own.healthy,
+        days: own.days,
+        seed: own.seed,
+        moments: own.moments,
+        frictions: own.frictions,
+    };
+    let start = Instant::now();
+    let tell = |fault: overact_simulation::Fault, percent: f64| {
+        let seconds = start.elapsed().as_secs();
+        let text = format!(
+            "{seconds} s: robots with a drift of {} {percent} %\n",
+            fault.name()
+        );
+        let _ = std::io::stderr().write_all(text.as_bytes());
+    };
+    let found = overact_fleet::power::power(&robot, &plan, &rule, &tell);
+    let found = found.map_err(|error| error.to_string())?;
+    print(&overact_fleet::power::table(&found))
+}
+
+/// Writes to stdout; that nobody reads any more is no failure.
+fn print(text: &str) -> Result<(), String> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
+        _ => Ok(()),
+    }
+}
+
+async fn page(own: Report) -> Result<(), String> {
+    let rule = rule(own.watch, own.false_alarms)?;
     let mut fleet = open(&own.data).await?;
     let days = report::days(&mut fleet)
         .await
         .map_err(|error| error.strip_backtrace())?;
-    let rule = Rule {
-        false_alarms: own.false_alarms,
-        parameters: own.watch,
-        ..Rule::default()
-    };
     let charts = charts(&days.points, &rule);
     let outliers = outliers(&charts, report::BEYOND);
     let html = report::page(

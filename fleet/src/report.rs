@@ -183,7 +183,10 @@ fn drifts(html: &mut String, alarms: &[&Chart], rule: &Rule, link: Option<&str>)
         html.push_str("<p>None.</p>");
         return;
     }
-    html.push_str("<table><tr><th>robot<th>parameter<th>change<th>alarm on day<th>probability without drift<th></tr>");
+    html.push_str(
+        "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>robot<th>parameter<th>change<th>alarm on day<th>probability \
+         without drift<th class=\"days\">days</tr>",
+    );
     for (place, own) in alarms.iter().enumerate() {
         let plot = match place < MOST_PLOTS {
             true => line(own),
@@ -191,15 +194,15 @@ fn drifts(html: &mut String, alarms: &[&Chart], rule: &Rule, link: Option<&str>)
         };
         let _ = write!(
             html,
-            "<tr><td>{}<td>{}<td>{:+.1} %<td>{:.0}<td>{:.1e}<td>{plot}</tr>",
+            "<tr><td>{}<td>{}<td class=\"n\">{:+.1} %<td class=\"n\">{:.0}<td class=\"n\">{:.1e}<td class=\"days\">{plot}</tr>",
             robot(&own.serial, link),
             safe(&own.parameter),
             own.change_percent,
-            own.alarm.unwrap_or(0.0) + 1.0,
+            own.alarm.unwrap_or(0.0).floor() + 1.0,
             own.probability,
         );
     }
-    html.push_str("</table>");
+    html.push_str("</table></div>");
 }
 
 fn unlike_others(html: &mut String, outliers: &[Outlier], link: Option<&str>) {
@@ -211,11 +214,13 @@ fn unlike_others(html: &mut String, outliers: &[Outlier], link: Option<&str>) {
         html.push_str("<p>None.</p>");
         return;
     }
-    html.push_str("<table><tr><th>robot<th>parameter<th>value<th>fleet<th>deviations</tr>");
+    html.push_str(
+        "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>robot<th>parameter<th>value<th>fleet<th>deviations</tr>",
+    );
     for own in outliers {
         let _ = write!(
             html,
-            "<tr><td>{}<td>{}<td>{}<td>{}<td>{:+.1}</tr>",
+            "<tr><td>{}<td>{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{:+.1}</tr>",
             robot(&own.serial, link),
             safe(&own.parameter),
             short(own.value),
@@ -223,14 +228,14 @@ fn unlike_others(html: &mut String, outliers: &[Outlier], link: Option<&str>) {
             own.deviations,
         );
     }
-    html.push_str("</table>");
+    html.push_str("</table></div>");
 }
 
 fn troubles(html: &mut String, days: &Days, left_out: &[LeftOut], link: Option<&str>) {
     if days.problems.is_empty() && left_out.is_empty() {
         return;
     }
-    html.push_str("<h2>Left out</h2><details><summary>All of it</summary><table>");
+    html.push_str("<h2>Left out</h2><details><summary>All of it</summary><table class=\"long\">");
     for own in left_out {
         let runs = match own.runs.len() {
             0 => String::new(),
@@ -297,7 +302,7 @@ impl Scale {
 fn line(own: &Chart) -> String {
     let scale = Scale::new(own.days.iter(), (160.0, 28.0));
     format!(
-        "<svg width=\"160\" height=\"28\"><polyline class=\"own\" points=\"{}\"/></svg>",
+        "<svg viewBox=\"0 0 160 28\" preserveAspectRatio=\"none\" class=\"line\"><polyline class=\"own\" points=\"{}\"/></svg>",
         scale.path(&own.days)
     )
 }
@@ -324,7 +329,7 @@ fn plot(name: &str, all: &[&Chart], accused: &[&Chart]) -> String {
     let scale = Scale::new(low.iter().chain(&high).chain(lines), (300.0, 120.0));
     let back: Vec<(f64, f64)> = high.iter().rev().copied().collect();
     let mut svg = format!(
-        "<figure><figcaption>{}</figcaption><svg width=\"300\" height=\"120\"><polygon class=\"band\" points=\"{}{}\"/>\
+        "<figure><figcaption>{}</figcaption><svg viewBox=\"0 0 300 120\" class=\"plot\"><polygon class=\"band\" points=\"{}{}\"/>\
          <polyline class=\"middle\" points=\"{}\"/>",
         safe(name),
         scale.path(&low),
@@ -341,17 +346,24 @@ fn plot(name: &str, all: &[&Chart], accused: &[&Chart]) -> String {
     }
     let _ = write!(
         svg,
-        "</svg><small>{} to {}</small></figure>",
+        "</svg><small>{} to {}, days 1 to {:.0}</small></figure>",
         short(scale.low),
-        short(scale.high)
+        short(scale.high),
+        scale.days.floor() + 1.0
     );
     svg
 }
 
 /// What comes before the body's content.
 const HEAD: &str = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
-content=\"width=device-width\"><title>Fleet</title><style>:root{color-scheme:light dark}body{font:15px/1.5 \
-system-ui,sans-serif;margin:2em auto;max-width:70em;padding:0 1em}table{border-collapse:collapse;display:block;\
-overflow-x:auto}td,th{padding:.15em .8em .15em 0;text-align:left;white-space:nowrap}.plots{display:flex;flex-wrap:wrap;\
-gap:1em}figure{margin:0}svg{overflow:visible}polyline{fill:none;stroke-width:1.5}.band{fill:#8884}.middle{stroke:#888}\
-.own{stroke:#c33}</style></head><body>";
+content=\"width=device-width\"><title>Fleet</title><style>:root{color-scheme:light dark;--own:#b22;--band:#8884}\
+@media(prefers-color-scheme:dark){:root{--own:#f77}}body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;\
+max-width:70em;padding:0 1em}.scroll{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums}\
+td,th{padding:.15em .8em .15em 0;text-align:left;white-space:nowrap;vertical-align:middle}th{vertical-align:bottom;\
+border-bottom:1px solid #8888;white-space:normal}.n{text-align:right}.long td{white-space:normal;overflow-wrap:anywhere;\
+vertical-align:top}.plots{display:flex;flex-wrap:wrap;gap:1em 1.5em}figure{margin:0;width:300px;max-width:100%;\
+break-inside:avoid}figure small{display:block}svg{display:block;overflow:visible}.line{width:160px;height:28px}.plot{\
+width:100%;height:auto}polyline{fill:none;stroke-width:1.5;vector-effect:non-scaling-stroke}.band{fill:var(--band)}\
+.middle{stroke:#888}.own{stroke:var(--own)}@media(max-width:40em){body{font-size:13px}td,th{padding-right:.5em}.days{\
+display:none}}@media print{:root{color-scheme:light;--own:#b22;--band:#ccc}body{font-size:10pt;margin:0;\
+max-width:none}.scroll{overflow:visible}tr{break-inside:avoid}h2{break-after:avoid}a{color:inherit}}</style></head><body>";

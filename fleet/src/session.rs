@@ -23,6 +23,7 @@ use datafusion::{
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
+    time::Duration,
 };
 use tempfile::TempDir;
 
@@ -43,6 +44,34 @@ pub struct Options {
     pub memory: usize,
     /// Read all of every file before the first query, and not only after one has failed.
     pub whole: bool,
+    /// How long a query may take; as long as it takes if none.
+    pub limit: Option<Duration>,
+}
+
+/// How often a cluster is asked a query while executors are lost: the scheduler ends a query then. An executor that is
+/// killed may end two, one that can't fetch from it and one that is to begin with it.
+const ATTEMPTS: usize = 5;
+
+/// Time between two attempts.
+const PAUSE: Duration = Duration::from_millis(500);
+
+/// What the engine says of executors that are not there, in errors that carry nothing but a text.
+const LOST: [&str; 7] = [
+    "failed: Cancelled",
+    "has failed 1 times",
+    "GrpcConnectionError",
+    "Shuffle fetch partition error",
+    "executors were lost",
+    "transport error",
+    "h2 protocol error",
+];
+
+/// What is said of a query that takes too long.
+const LATE: &str = "the query did not end within";
+
+fn lost(error: &DataFusionError) -> bool {
+    let text = error.to_string();
+    LOST.iter().any(|own| text.contains(own))
 }
 
 /// A fleet that is asked.
@@ -92,6 +121,9 @@ impl Fleet {
         let first = self.answer(query).await;
         if first.is_ok()
             || self.options.whole
+            || first
+                .as_ref()
+                .is_err_and(|error| lost(error) || error.to_string().contains(LATE))
             || matches!(
                 first,
                 Err(DataFusionError::Plan(_)
@@ -109,8 +141,42 @@ impl Fleet {
         }
     }
 
+    /// Answers a query within the limit, again where an executor of a cluster was lost.
     async fn answer(&self, query: &str) -> Result<Vec<RecordBatch>> {
-        self.context.sql(query).await?.collect().await
+        let attempts = match self.options.scheduler {
+            Some(_) => ATTEMPTS,
+            None => 1,
+        };
+        let asked = async {
+            let mut last = None;
+            for _ in 0..attempts {
+                let rows = async { self.context.sql(query).await?.collect().await };
+                match rows.await {
+                    Err(error) if lost(&error) => {
+                        last = Some(error);
+                        tokio::time::sleep(PAUSE).await;
+                    }
+                    other => return other,
+                }
+            }
+            let why = last.map_or_else(String::new, |error| error.strip_backtrace());
+            Err(DataFusionError::Execution(format!(
+                "executors were lost in each of {attempts} attempts at the query: see whether scheduler and executors \
+                 run and can reach each other (`--log info` makes them tell), then ask again\n  {why}"
+            )))
+        };
+        let Some(limit) = self.options.limit else {
+            return asked.await;
+        };
+        let late = |_| {
+            DataFusionError::Execution(format!(
+                "{LATE} {} s: give it more time with `--limit SECONDS`, or more partitions and \
+                 executors; if it always takes that long, see whether all executors run (`--log info` makes \
+                 scheduler and executors tell)",
+                limit.as_secs_f64()
+            ))
+        };
+        tokio::time::timeout(limit, asked).await.map_err(late)?
     }
 
     async fn register(&mut self, whole: bool) -> Result<()> {

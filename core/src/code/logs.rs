@@ -44,6 +44,6 @@ super::codes! {
         cause "The run has another number of actuators than the robot."
         cure "Check that the description and the log belong together, and `positions` of [data]."
     FACTORS 315 "a factor file that can't be used"
-        cause "The file is not whole, is of a newer version, holds runs of another description or of other settings, or lacks a model, or nothing is left of it."
-        cure "Copy the file again, or factor its logs anew with this description and program; `--skip-bad` goes on without what can't be used, and says what was left out."
+        cause "The file is not whole, is of a newer version, lacks a model, or nothing is left of it; or its runs were factored with another description or other settings, and factors only go together where their equations are the same. A file says so by a hash of the description's text, comments too, and of the settings of filters and model, which follow from the sampling rate."
+        cure "Copy the file again. Of runs of another description keep the log and factor it anew with the one that all others have; after a change of the description factor all logs anew. `--skip-bad` goes on without what can't be used, and says what was left out."
 }

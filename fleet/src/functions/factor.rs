@@ -1,11 +1,13 @@
-//! `factor(robot, columns)`: the rows of a log as its factor.
+//! `factor(robot, columns [, carried])`: the rows of a log as its factor.
+//!
+//! What the platform carried is `false`, `true`, or the name of a payload where the description names several.
 //!
 //! A run is filtered as a whole, so all its rows are kept until the last has come: 80 kB of 10 s at 200 Hz. They come
 //! in any order, and are put in that of their time. A row that is there twice counts once.
 
 use crate::robots::Robots;
 use arrow::{
-    array::{Array, ArrayRef, AsArray, BinaryArray, StringArray, StructArray, UInt64Array},
+    array::{Array, ArrayRef, AsArray, LargeBinaryArray, StringArray, StructArray, UInt64Array},
     compute::cast,
     datatypes::{DataType, Field, FieldRef, Fields, Float64Type},
 };
@@ -17,7 +19,12 @@ use datafusion::{
     },
     scalar::ScalarValue,
 };
-use overact_identification::data::{Array as Column, Time};
+use overact::Model;
+use overact_identification::{
+    Log,
+    data::{Array as Column, Time},
+};
+use overact_robot::Robot;
 use std::sync::Arc;
 
 /// Numbers of a run, at most: 512 MB.
@@ -41,7 +48,7 @@ impl FactorOfLog {
 
 fn of_result() -> Fields {
     [
-        Field::new("factor", DataType::Binary, true),
+        Field::new("factor", DataType::LargeBinary, true),
         Field::new("samples", DataType::UInt64, true),
         Field::new("problem", DataType::Utf8, true),
     ]
@@ -59,18 +66,26 @@ impl AggregateUDFImpl for FactorOfLog {
     }
 
     fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
+        use DataType::{Boolean, LargeUtf8, Null, Utf8, Utf8View};
+        let numbers = |fields: &Fields| {
+            let all = fields.iter();
+            DataType::Struct(
+                all.map(|own| Field::new(own.name(), DataType::Float64, true))
+                    .collect(),
+            )
+        };
         match given {
-            [
-                DataType::Utf8 | DataType::Utf8View | DataType::LargeUtf8,
-                DataType::Struct(fields),
-            ] => {
-                let numbers = fields
-                    .iter()
-                    .map(|own| Field::new(own.name(), DataType::Float64, true));
-                Ok(vec![DataType::Utf8, DataType::Struct(numbers.collect())])
+            [Utf8 | Utf8View | LargeUtf8, DataType::Struct(fields)] => {
+                Ok(vec![Utf8, numbers(fields)])
             }
+            [
+                Utf8 | Utf8View | LargeUtf8,
+                DataType::Struct(fields),
+                Boolean | Utf8 | Utf8View | LargeUtf8 | Null,
+            ] => Ok(vec![Utf8, numbers(fields), Utf8]),
             _ => Err(DataFusionError::Plan(
-                "`factor` takes the name of a robot and the columns of its logs: \
+                "`factor` takes the name of a robot, the columns of its logs, and what the platform carried if it \
+                 carried something (`true`, or the name of the payload): \
                  `factor('FiveBar', named_struct('time', time, 'q_left', q_left, …))`"
                     .to_owned(),
             )),
@@ -87,7 +102,8 @@ impl AggregateUDFImpl for FactorOfLog {
         Ok(vec![
             state("robot", DataType::Utf8),
             state("columns", DataType::Utf8),
-            state("rows", DataType::Binary),
+            state("carried", DataType::Utf8),
+            state("rows", DataType::LargeBinary),
         ])
     }
 
@@ -96,6 +112,7 @@ impl AggregateUDFImpl for FactorOfLog {
             robots: self.robots.clone(),
             robot: String::new(),
             columns: Vec::new(),
+            carried: String::new(),
             values: Vec::new(),
         }))
     }
@@ -107,24 +124,56 @@ struct Rows {
     robots: Robots,
     robot: String,
     columns: Vec<String>,
+    /// `true`, or the name of a payload; empty where the platform carried nothing.
+    carried: String,
     /// Row after row.
     values: Vec<f64>,
 }
 
 impl Rows {
-    fn check(&mut self, robot: &str, columns: &[String]) -> Result<()> {
+    fn check(&mut self, robot: &str, columns: &[String], carried: &str) -> Result<()> {
         if self.columns.is_empty() {
             robot.clone_into(&mut self.robot);
             self.columns = columns.to_vec();
+            carried.clone_into(&mut self.carried);
         }
         let message = if robot != self.robot || columns != self.columns {
-            "`factor` has rows of several robots in a group: group by them"
+            SEVERAL_ROBOTS
+        } else if carried != self.carried {
+            SEVERAL_PAYLOADS
         } else if self.values.len() > MOST {
             "`factor` has more than 67 million numbers in a group: group by run"
         } else {
             return Ok(());
         };
-        Err(DataFusionError::Execution(message.to_owned()))
+        Err(refused(message))
+    }
+
+    /// The log with what the platform carried.
+    fn carrying(&self, robot: &Robot, log: Log) -> Result<Log, String> {
+        let names = robot.payloads();
+        match self.carried.as_str() {
+            "" => Ok(log),
+            own if names.contains(&own) => Ok(log.with_payload_name(own)),
+            "true" if names.is_empty() => {
+                match robot.model().info().payload_parameters.is_empty() {
+                    true => {
+                        Err("the run carries a payload, but the description has none".to_owned())
+                    }
+                    false => Ok(log.with_payload(true)),
+                }
+            }
+            "true" => Err(format!(
+                "the robot has several payloads: say by its name which one the run carries, of {}",
+                names.join(", ")
+            )),
+            own => Err(match names.is_empty() {
+                true => format!(
+                    "there is no payload `{own}`: the description names none, so write `true` or `false`"
+                ),
+                false => format!("there is no payload `{own}`, but {}", names.join(", ")),
+            }),
+        }
     }
 
     /// The factors, or why there are none.
@@ -165,6 +214,7 @@ impl Rows {
         let log = robot
             .log_of_arrays("the run", &named, false)
             .map_err(|error| told(&error))?;
+        let log = self.carrying(robot, log)?;
         let settings = robot.settings(log.sampling_frequency());
         let factory = robot.factory(&settings).map_err(|error| told(&error))?;
         let run = factory.run(&log, "", None).map_err(|error| told(&error))?;
@@ -174,6 +224,24 @@ impl Rows {
             .flat_map(overact_identification::factors::Record::to_bytes)
             .collect())
     }
+}
+
+/// What is said of groups that hold more than a run.
+const SEVERAL_ROBOTS: &str = "`factor` has rows of several robots in a group: group by them";
+const SEVERAL_PAYLOADS: &str = "`factor` has rows with and without payload, or with several payloads, in a group: group by run";
+
+fn refused(message: &str) -> DataFusionError {
+    DataFusionError::Execution(message.to_owned())
+}
+
+/// The text that all rows have, empty where it is null; none where they differ.
+fn the_only(column: &ArrayRef) -> Option<&str> {
+    let mut all = column
+        .as_string::<i32>()
+        .iter()
+        .map(Option::unwrap_or_default);
+    let first = all.next()?;
+    all.all(|own| own == first).then_some(first)
 }
 
 impl Accumulator for Rows {
@@ -187,12 +255,15 @@ impl Accumulator for Rows {
             .iter()
             .map(|name| (*name).to_owned())
             .collect();
-        let robots = values[0].as_string::<i32>();
-        let first = robots.value(0).to_owned();
-        if robots.iter().any(|own| own != Some(first.as_str())) {
-            self.check("", &columns)?;
-        }
-        self.check(&first, &columns)?;
+        let robot = the_only(&values[0]).ok_or_else(|| refused(SEVERAL_ROBOTS))?;
+        let carried = match values.get(2) {
+            Some(own) => the_only(own).ok_or_else(|| refused(SEVERAL_PAYLOADS))?,
+            None => "",
+        };
+        let carried = Some(carried)
+            .filter(|own| *own != "false")
+            .unwrap_or_default();
+        self.check(robot, &columns, carried)?;
         let numbers = rows
             .columns()
             .iter()
@@ -214,11 +285,12 @@ impl Accumulator for Rows {
     }
 
     fn merge_batch(&mut self, states: &[ArrayRef]) -> Result<()> {
-        let (robots, names) = (states[0].as_string::<i32>(), states[1].as_string::<i32>());
-        let rows = states[2].as_binary::<i32>();
+        let [robots, names, carried] =
+            [0, 1, 2].map(|place: usize| states[place].as_string::<i32>());
+        let rows = states[3].as_binary::<i64>();
         for at in (0..rows.len()).filter(|at| !rows.value(*at).is_empty()) {
             let columns: Vec<String> = names.value(at).split('\n').map(str::to_owned).collect();
-            self.check(robots.value(at), &columns)?;
+            self.check(robots.value(at), &columns, carried.value(at))?;
             let (numbers, _) = rows.value(at).as_chunks::<8>();
             self.values
                 .extend(numbers.iter().map(|own| f64::from_le_bytes(*own)));
@@ -235,7 +307,8 @@ impl Accumulator for Rows {
         Ok(vec![
             ScalarValue::Utf8(Some(self.robot.clone())),
             ScalarValue::Utf8(Some(self.columns.join("\n"))),
-            ScalarValue::Binary(Some(rows)),
+            ScalarValue::Utf8(Some(self.carried.clone())),
+            ScalarValue::LargeBinary(Some(rows)),
         ])
     }
 
@@ -243,7 +316,7 @@ impl Accumulator for Rows {
         let made = self.factors();
         let samples = (self.values.len() / self.columns.len().max(1)) as u64;
         let columns: Vec<ArrayRef> = vec![
-            Arc::new(BinaryArray::from(vec![made.as_deref().ok()])),
+            Arc::new(LargeBinaryArray::from(vec![made.as_deref().ok()])),
             Arc::new(UInt64Array::from(vec![samples])),
             Arc::new(StringArray::from(vec![
                 made.as_ref().err().map(String::as_str),

@@ -1,4 +1,7 @@
 //! `estimate(factor)` and `merge_r(factor)`: factors gathered in bounded memory, whatever the order of the rows.
+//!
+//! Pools go from place to place as large binaries: the engine hands on all groups of rows at once, and those of some
+//! 40 000 robots have more bytes than 32 bits count.
 
 use super::arrays;
 use arrow::{
@@ -15,10 +18,6 @@ use datafusion::{
 };
 use overact_identification::factors::{Pool, PoolError};
 use std::sync::Arc;
-
-/// Groups of parts that are kept apart where nothing is said: about as many degrees of freedom of the deviations,
-/// and as many factors in memory for each group of rows.
-const GROUPS: usize = 16;
 
 /// Either of the aggregates.
 #[derive(Debug, PartialEq, Eq, Hash)]
@@ -66,9 +65,9 @@ impl AggregateUDFImpl for Gather {
             )
         };
         match given {
-            [factor] if binary(factor) => Ok(vec![DataType::Binary]),
+            [factor] if binary(factor) => Ok(vec![DataType::LargeBinary]),
             [factor, groups] if binary(factor) && groups.is_integer() => {
-                Ok(vec![DataType::Binary, DataType::Int64])
+                Ok(vec![DataType::LargeBinary, DataType::Int64])
             }
             _ => Err(DataFusionError::Plan(format!(
                 "`{0}` takes a column of factors, and how many independent groups of runs it keeps apart: \
@@ -81,18 +80,22 @@ impl AggregateUDFImpl for Gather {
     fn return_type(&self, _: &[DataType]) -> Result<DataType> {
         Ok(match self.estimates {
             true => DataType::Struct(arrays::of_estimate()),
-            false => DataType::Binary,
+            false => DataType::LargeBinary,
         })
     }
 
     fn state_fields(&self, args: StateFieldsArgs<'_>) -> Result<Vec<FieldRef>> {
         let name = format!("{}[pool]", args.name);
-        Ok(vec![Arc::new(Field::new(name, DataType::Binary, true))])
+        Ok(vec![Arc::new(Field::new(
+            name,
+            DataType::LargeBinary,
+            true,
+        ))])
     }
 
     fn accumulator(&self, _: AccumulatorArgs<'_>) -> Result<Box<dyn Accumulator>> {
         Ok(Box::new(Gathered {
-            pool: Pool::new(GROUPS),
+            pool: Pool::default(),
             fed: false,
             estimates: self.estimates,
         }))
@@ -109,7 +112,7 @@ struct Gathered {
 
 impl Gathered {
     fn take(&mut self, column: &ArrayRef) -> Result<()> {
-        for bytes in column.as_binary::<i32>().iter().flatten() {
+        for bytes in column.as_binary::<i64>().iter().flatten() {
             self.fed = true;
             self.pool.take(bytes).map_err(|error| told(&error))?;
         }
@@ -134,9 +137,9 @@ impl Accumulator for Gathered {
     fn update_batch(&mut self, values: &[ArrayRef]) -> Result<()> {
         if let Some(groups) = values.get(1) {
             let groups = groups.as_primitive::<Int64Type>();
-            let first = groups.iter().flatten().next();
-            self.pool
-                .limit(first.map_or(GROUPS, |own| own.max(0) as usize));
+            if let Some(first) = groups.iter().flatten().next() {
+                self.pool.limit(first.max(0) as usize);
+            }
         }
         self.take(&values[0])
     }
@@ -148,13 +151,13 @@ impl Accumulator for Gathered {
     fn state(&mut self) -> Result<Vec<ScalarValue>> {
         // A place without rows has not been told how many groups are wanted, and has nothing to say.
         let pool = self.fed.then(|| self.pool.to_bytes());
-        Ok(vec![ScalarValue::Binary(pool)])
+        Ok(vec![ScalarValue::LargeBinary(pool)])
     }
 
     fn evaluate(&mut self) -> Result<ScalarValue> {
         Ok(match self.estimates {
             true => arrays::value(&self.pool.estimate()),
-            false => ScalarValue::Binary(Some(self.pool.to_bytes())),
+            false => ScalarValue::LargeBinary(Some(self.pool.to_bytes())),
         })
     }
 

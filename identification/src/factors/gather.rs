@@ -36,14 +36,14 @@ pub fn gather(files: &[PathBuf], like: Option<&str>, skip_bad: bool) -> Result<G
         read_into(path, &mut found, &mut left_out);
     }
     let like = like.map(str::to_owned).or_else(|| most(&found));
+    let alike = |(_, run): &&(String, RunFactors)| Some(&run.like) == like.as_ref();
+    let model = found.iter().find(alike).map(|(_, run)| run.clone());
     let mut seen: BTreeMap<String, String> = BTreeMap::new();
     let mut runs = Vec::new();
     for (file, run) in found {
         let name = Some(run.summary.name.clone());
         if like.as_ref().is_some_and(|like| *like != run.like) {
-            let message =
-                "it was made with another description, or with other settings of filters and model";
-            let (reason, message) = (Reason::Unlike, message.to_owned());
+            let (reason, message) = (Reason::Unlike, unlike(&run, model.as_ref()));
             left_out.push(LeftOut {
                 file,
                 run: name,
@@ -96,6 +96,30 @@ fn read_into(path: &Path, found: &mut Vec<(String, RunFactors)>, left_out: &mut 
         reason: one.reason,
         message: one.message,
     }));
+}
+
+/// In what a run differs from one that is as it should be, as far as the files tell.
+fn unlike(run: &RunFactors, other: Option<&RunFactors>) -> String {
+    let made = "it was made with another description, or with other settings of filters and model";
+    let rate = run.summary.sampling_frequency;
+    let why = match other {
+        Some(other) if other.robot != run.robot => {
+            format!(
+                "it is of the robot `{}`, the others of `{}`",
+                run.robot, other.robot
+            )
+        }
+        Some(other) if other.summary.sampling_frequency != rate => format!(
+            "it was sampled at {rate} Hz, the others at {} Hz, and settings follow from the rate",
+            other.summary.sampling_frequency
+        ),
+        _ => format!(
+            "it is of a robot `{}`, but the text of the description differs somewhere, and a comment is enough, or \
+             other actuators were kept",
+            run.robot
+        ),
+    };
+    format!("{made}: {why}")
 }
 
 /// What most runs are like; of equally many what comes first.

@@ -52,7 +52,9 @@ impl LeftOut {
                 "use the program that wrote it, or factor the logs again; `--skip-bad` goes on without it"
             }
             Reason::Damaged => "factor the log again; `--skip-bad` goes on without the run",
-            _ => "factor the log with this description; `--skip-bad` goes on without the run",
+            _ => {
+                "factor its log again with the description of the other runs, as it is now; `--skip-bad` goes on without the run"
+            }
         };
         Problem::new(Code::FACTORS, message)
             .file(self.file.as_str())

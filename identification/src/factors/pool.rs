@@ -30,11 +30,18 @@ pub enum PoolError {
     Damaged,
 }
 
+/// Groups of parts that are kept apart where nobody has said how many: about as many degrees of freedom of the
+/// deviations, and as many factors in memory.
+const GROUPS: usize = 16;
+
+/// Groups that are kept apart at least.
+const FEWEST_GROUPS: usize = 4;
+
 /// Factors of many runs.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Pool {
-    /// Groups of parts, at most.
-    pub(super) limit: usize,
+    /// Groups of parts, at most; none where nobody has said so.
+    pub(super) limit: Option<usize>,
     /// By [`Record::kind`].
     pub(super) kinds: BTreeMap<u128, Kind>,
     /// Records that had been counted already.
@@ -179,15 +186,13 @@ fn place(record: &Record) -> (u64, u64) {
 }
 
 impl Pool {
-    /// A pool that keeps at most so many groups of parts apart; at least four.
+    /// A pool that keeps at most so many groups of parts apart; at least four. [`Pool::default`] has not been told:
+    /// it keeps 16, or what the pools are told that are merged into it.
     #[must_use]
     pub fn new(limit: usize) -> Self {
         Self {
-            limit: limit.max(4),
-            kinds: BTreeMap::new(),
-            twice: 0,
-            damaged: 0,
-            others: 0,
+            limit: Some(limit.max(FEWEST_GROUPS)),
+            ..Self::default()
         }
     }
 
@@ -201,9 +206,24 @@ impl Pool {
         }
     }
 
-    /// How many groups of parts are kept apart from now on, at most; at least four.
+    /// How many groups of parts are kept apart, at most; at least four. Groups that have been taken together can't
+    /// be told apart any more, so of several numbers the smallest holds.
     pub fn limit(&mut self, limit: usize) {
-        self.limit = limit.max(4);
+        self.at_most(Some(limit.max(FEWEST_GROUPS)));
+    }
+
+    /// The number of groups that it holds to, if it was told one or has anything.
+    fn held_to(&self) -> Option<usize> {
+        let usual = (!self.kinds.is_empty()).then_some(GROUPS);
+        self.limit.or(usual)
+    }
+
+    fn at_most(&mut self, limit: Option<usize>) {
+        let before = self.held_to();
+        self.limit = [before, limit].into_iter().flatten().min();
+        if let (Some(limit), true) = (self.limit, self.limit != before) {
+            self.kinds.values_mut().for_each(|kind| kind.shrink(limit));
+        }
     }
 
     /// Adds a record.
@@ -215,7 +235,7 @@ impl Pool {
             return;
         }
         let kind = self.kinds.entry(key).or_insert_with(|| Kind::of(&record));
-        if !kind.add(self.limit, record) {
+        if !kind.add(self.limit.unwrap_or(GROUPS), record) {
             self.twice += 1;
         }
     }
@@ -225,22 +245,18 @@ impl Pool {
     /// # Errors
     /// A run that both have.
     pub fn merge(&mut self, other: Self) -> Result<(), PoolError> {
-        // An empty pool has not been told yet how many groups are wanted.
-        self.limit = match self.kinds.is_empty() {
-            true => other.limit,
-            false => self.limit.min(other.limit),
-        };
+        // An empty pool that was told no number has no say in it.
+        self.at_most(other.held_to());
+        let limit = self.limit.unwrap_or(GROUPS);
         self.twice += other.twice;
         self.damaged += other.damaged;
         self.others += other.others;
         for (key, own) in other.kinds {
             let full = self.kinds.len() >= MOST_KINDS;
             match self.kinds.get_mut(&key) {
-                Some(kind) => kind.merge(self.limit, own)?,
+                Some(kind) => kind.merge(limit, own)?,
                 None if full => self.others += own.runs() as u64,
-                None => {
-                    self.kinds.insert(key, own);
-                }
+                None => self.kinds.entry(key).or_insert(own).shrink(limit),
             }
         }
         Ok(())

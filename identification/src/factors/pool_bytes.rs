@@ -31,7 +31,9 @@ impl Pool {
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut own = MAGIC.to_vec();
-        let counts = [self.limit as u64, self.twice, self.damaged, self.others];
+        // No pool is told zero, so that stands for none.
+        let limit = self.limit.unwrap_or(0) as u64;
+        let counts = [limit, self.twice, self.damaged, self.others];
         counts.iter().for_each(|count| whole(&mut own, *count));
         whole(&mut own, self.kinds.len() as u64);
         for (key, kind) in &self.kinds {
@@ -82,7 +84,10 @@ impl Pool {
 }
 
 fn read(rest: &mut Rest<'_>) -> Option<Pool> {
-    let mut own = Pool::new(usize::try_from(count(rest)?).ok()?);
+    let mut own = match usize::try_from(count(rest)?).ok()? {
+        0 => Pool::default(),
+        limit => Pool::new(limit),
+    };
     own.twice = count(rest)?;
     own.damaged = count(rest)?;
     own.others = count(rest)?;

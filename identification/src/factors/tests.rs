@@ -96,6 +96,63 @@ fn order_and_place_do_not_matter() {
 }
 
 #[test]
+fn a_pool_without_records_says_no_more_than_it_was_told() {
+    let all = records(6, 40);
+    let (first, second) = all.split_at(200);
+    let groups = |pool: &Pool| pool.estimate().groups;
+    let wanted = pooled(&all, 64);
+    assert!(groups(&wanted) > 16);
+
+    // A place without rows that nobody has told a number, on either side.
+    let mut left = Pool::default();
+    left.merge(wanted.clone()).expect("other runs");
+    let mut right = wanted.clone();
+    right
+        .merge(Pool::from_bytes(&Pool::default().to_bytes()).expect("a pool"))
+        .expect("other runs");
+    for own in [&left, &right] {
+        same(&wanted.estimate(), &own.estimate());
+    }
+    // What comes later has as much room as if the empty pool had not been.
+    let mut later = pooled(first, 64);
+    later.merge(Pool::default()).expect("other runs");
+    later.merge(pooled(second, 64)).expect("other runs");
+    same(&wanted.estimate(), &later.estimate());
+}
+
+#[test]
+fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
+    let all = records(7, 40);
+    let few = pooled(&all, 8).estimate();
+    assert!(few.groups <= 8);
+    // A pool that was told 8 before it has anything, and gets what was gathered with 64.
+    let mut told = Pool::new(8);
+    told.merge(pooled(&all, 64)).expect("other runs");
+    same(&few, &told.estimate());
+    let mut told = Pool::default();
+    told.limit(8);
+    told.merge(pooled(&all, 64)).expect("other runs");
+    same(&few, &told.estimate());
+    // One that was told 8 and is empty comes to what was gathered with 64, or is told 8 afterwards.
+    let mut late = pooled(&all, 64);
+    late.merge(Pool::new(8)).expect("other runs");
+    same(&few, &late.estimate());
+    let mut late = pooled(&all, 64);
+    late.limit(8);
+    late.limit(64);
+    same(&few, &late.estimate());
+    // Pools of two kinds share none of their groups, and both obey.
+    let mut other = records(8, 40);
+    other.iter_mut().for_each(|record| record.like = 2);
+    let mut both = pooled(&all, 64);
+    both.merge(pooled(&other[..100], 8)).expect("other runs");
+    same(&few, &both.estimate());
+    let mut both = pooled(&other[..100], 8);
+    both.merge(pooled(&all, 64)).expect("other runs");
+    same(&few, &both.estimate());
+}
+
+#[test]
 fn it_is_the_weighted_least_squares_estimate_of_all_equations() {
     let all = records(2, 3);
     let told = pooled(&all, 100).estimate();
