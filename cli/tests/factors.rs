@@ -252,7 +252,7 @@ fn by_name(document: &Value) -> Vec<(String, f64, f64)> {
 
 #[test]
 fn runs_with_payload_are_factored_and_tell_the_payload() {
-    let bench = Bench::with("planar_3rrr.toml", |text| {
+    let bench = Bench::with("planar-3rrr", |text| {
         text.replace("duration = \"10 s\"", "duration = \"2 s\"")
     });
     bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
