@@ -396,7 +396,7 @@ impl Contract<'_> {
         let Some((first, wanted)) = answers.next() else {
             panic!("no backend");
         };
-        let tolerance = match case.starts_with(&format!("a pose off by {FAR}")) {
+        let tolerance = match case.contains(&format!("a pose off by {FAR}")) {
             true => FAR_TOLERANCE,
             false => TOLERANCE,
         };
