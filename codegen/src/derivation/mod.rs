@@ -8,7 +8,8 @@
 //! `parasitic` and `blocked` have platforms whose legs block directions that change with the pose. `regressor` projects what each standard parameter produces on the platform, eq. (30), or on kept
 //! actuators, eq. (36). `robot` holds one derivation together. `inverse_kinematics` finds joints from a pose
 //! and `forward_kinematics` a pose from actuators, in closed form where there is one. `functions` says what
-//! each function is made of, on a `sheet`: its `kinematics`, its `dynamics`, and the `matrices` of the
+//! each function is made of, on a `sheet`: its `kinematics`, its `dynamics`, the systems between platform and
+//! `actuators`, and the `matrices` of the
 //! closure equations.
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]

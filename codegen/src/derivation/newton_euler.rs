@@ -18,7 +18,8 @@ use crate::cas::{Expr, Vector3};
 use crate::mechanism::JointKind;
 
 impl<'a> Robot<'a> {
-    /// Γ¹ of given parameters; what acts on actuated joints alone goes to `actuators`. `None` if a sine or cosine does not follow from the configuration.
+    /// Γ¹ of given parameters; what acts on actuated joints alone goes to `actuators`. `None` if a sine or cosine
+    /// does not follow from the configuration.
     pub(super) fn summed_forces(
         &self,
         motion: &RobotMotion<'a>,

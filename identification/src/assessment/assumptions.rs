@@ -110,3 +110,49 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
     });
     told.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{HARMFUL, unseen};
+    use crate::assessment::check::{About, Check, CheckKind, Detectable};
+
+    fn check(kind: CheckKind, faults: &[(&str, &'static str, f64, f64)]) -> Check {
+        let fault = |&(name, unit, size, moves): &(&str, &'static str, f64, f64)| Detectable {
+            name: name.to_owned(),
+            unit,
+            deviation: size / 5.0,
+            size,
+            parameter: String::from("zz_1"),
+            moves,
+        };
+        let all = faults.iter().map(fault).collect();
+        Check::new(kind, About::Model, "nothing").detecting(all)
+    }
+
+    #[test]
+    fn of_each_kind_the_worst_is_told_with_its_unit() {
+        let gains = [("left", "", 0.03, 7.0), ("right", "", 0.1, 86.0)];
+        let told = unseen(&[
+            check(CheckKind::WrongGain, &gains),
+            check(CheckKind::Delay, &[("", "s", 2.8e-4, 5.0)]),
+            check(CheckKind::EncoderOffset, &[("left", "rad", 0.0091, 13.0)]),
+        ]);
+        let expected = [
+            "zeros and lengths: 0.0091 rad of `left` would move `zz_1` by 13 deviations",
+            "single gains: 10 % of `right` would move `zz_1` by 86 deviations",
+            "delay of the torques: 0.28 ms would move `zz_1` by 5 deviations",
+        ];
+        assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn what_is_harmless_or_was_found_is_not_told() {
+        let harmless = check(CheckKind::WrongGain, &[("left", "", 0.1, HARMFUL)]);
+        let found = Check {
+            passed: false,
+            ..check(CheckKind::Delay, &[("", "s", 1e-3, 50.0)])
+        };
+        let endless = check(CheckKind::Length, &[("d", "m", 1e-3, f64::INFINITY)]);
+        assert!(unseen(&[harmless, found, endless]).is_empty());
+    }
+}
