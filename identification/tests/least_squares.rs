@@ -49,14 +49,11 @@ fn system(lines: &[(DMatrix<f64>, DVector<f64>)]) -> System {
         }
         factor
     });
+    let empty = System::new(Projection::Platform, &common::PAIR.info(), TRUTH.len());
     System {
-        projection: Projection::Platform,
         line_names: ["x", "y", "phi"].map(String::from).to_vec(),
         lines: factors.collect(),
-        parts: Vec::new(),
-        stretches: Vec::new(),
-        partition: None,
-        instruments: Vec::new(),
+        ..empty
     }
 }
 

@@ -75,7 +75,7 @@ pub(crate) fn assumptions(
 const KINDS: [(&[CheckKind], &str); 3] = [
     (
         &[CheckKind::EncoderOffset, CheckKind::Length],
-        "zeros and lengths",
+        "zeros, scales and lengths",
     ),
     (&[CheckKind::WrongGain], "single gains"),
     (&[CheckKind::Delay], "delay of the torques"),
@@ -138,7 +138,7 @@ mod tests {
             check(CheckKind::EncoderOffset, &[("left", "rad", 0.0091, 13.0)]),
         ]);
         let expected = [
-            "zeros and lengths: 0.0091 rad of `left` would move `zz_1` by 13 deviations",
+            "zeros, scales and lengths: 0.0091 rad of `left` would move `zz_1` by 13 deviations",
             "single gains: 10 % of `right` would move `zz_1` by 86 deviations",
             "delay of the torques: 0.28 ms would move `zz_1` by 5 deviations",
         ];

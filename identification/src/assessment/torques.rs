@@ -1,6 +1,6 @@
 //! Torques that contradict the model, and which single fault would explain them: a drive of the wrong
 //! sign or gain, two that are swapped, a run that is labelled with the wrong payload; or two joints that are
-//! swapped as a whole, gravity that points the other way.
+//! swapped as a whole, gravity that points the other way or does not act.
 //!
 //! Any linear change of the torques changes Γ¹ = Σ_i J_iᵀ τ_i into a combination of the products
 //! J_iᵀ τ_j, and what the model can't explain of a combination follows from the R factor of
@@ -91,7 +91,8 @@ pub(crate) fn explanation(
         let runs: Result<Vec<Log>, Error> = runs.iter().map(repaired).collect();
         // A change that leads out of the workspace explains nothing.
         let way = match fault {
-            Whole::Gravity => Way::TOGETHER_UPSIDE_DOWN,
+            Whole::Gravity => Way::TOGETHER.without_gravity(2.0),
+            Whole::Weightless => Way::TOGETHER.without_gravity(1.0),
             _ => Way::TOGETHER,
         };
         let doubt = columns.doubt((model, &runs.ok()?), settings, way);
@@ -323,23 +324,27 @@ enum Drives {
 #[derive(Debug, Clone, Copy)]
 struct Way {
     drives: Drives,
-    /// Whether gravity is turned round.
-    upside_down: bool,
+    /// How many times what gravity does is taken away: once where it does not act, twice where it is turned round.
+    without_gravity: f64,
 }
 
 impl Way {
     const ONE_BY_ONE: Self = Self {
         drives: Drives::OneByOne,
-        upside_down: false,
+        without_gravity: 0.0,
     };
     const TOGETHER: Self = Self {
         drives: Drives::Together,
-        upside_down: false,
+        without_gravity: 0.0,
     };
-    const TOGETHER_UPSIDE_DOWN: Self = Self {
-        drives: Drives::Together,
-        upside_down: true,
-    };
+
+    /// The same, with what gravity does taken away so many times.
+    const fn without_gravity(self, times: f64) -> Self {
+        Self {
+            without_gravity: times,
+            ..self
+        }
+    }
 }
 
 /// The factor of each line of a run: W, then what the drives add.
@@ -350,7 +355,7 @@ fn run_factors(
     Columns { columns, base, .. }: &Columns,
     Way {
         drives,
-        upside_down,
+        without_gravity,
     }: Way,
 ) -> Result<Vec<Factor>, Error> {
     let info = model.info();
@@ -362,6 +367,11 @@ fn run_factors(
         Drives::Together => 1,
     };
     let (p, width) = (base.columns.len(), base.columns.len() + more);
+    let is_heavy = |place: &usize| {
+        let column = columns.as_slice().get(base.columns[*place]);
+        column.is_some_and(|column| column.symbol.is_inertial())
+    };
+    let heavy: Vec<usize> = (0..p).filter(is_heavy).collect();
     let mut streams = (0..r)
         .map(|_| decimator.stream(width, motions.samples()))
         .collect::<Result<Vec<_>, _>>()?;
@@ -386,12 +396,18 @@ fn run_factors(
                 lines.map_err(at)
             };
             let mut lines = evaluate(&states)?;
-            if upside_down {
-                // At rest there is what gravity does, and what is constant, whose sign does not matter.
+            if without_gravity > 0.0 {
+                // At rest there is of the columns of masses what gravity does.
                 let rest = vec![0.0; r * count];
                 let at_rest = evaluate(&[pose, &rest, &rest])?;
-                let pairs = lines.iter_mut().flatten().zip(at_rest.iter().flatten());
-                pairs.for_each(|(own, rest)| *own -= 2.0 * rest);
+                for (own, rest) in lines.iter_mut().zip(&at_rest) {
+                    let rows = own.chunks_exact_mut(width).zip(rest.chunks_exact(width));
+                    for (own, rest) in rows {
+                        for place in heavy.iter().copied() {
+                            own[place] -= without_gravity * rest[place];
+                        }
+                    }
+                }
             }
             let mut jacobians = vec![0.0; count * n * r];
             model

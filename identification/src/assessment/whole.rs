@@ -9,8 +9,8 @@ use super::{
 };
 use crate::{data::Log, error::Error, kinematics::conditioning::couples};
 
-/// The part of the error that gravity of the other sign leaves, at most: it has no size that could be fitted to
-/// something else.
+/// The part of the error that gravity of the other sign, or none, leaves, at most: it has no size that could be fitted
+/// to something else.
 const EXPLAINED_BY_GRAVITY: f64 = 0.75;
 
 /// The part of the error that exchanged actuators leave, at most, where loops couple them: the wrong motion passes
@@ -26,6 +26,8 @@ pub(super) enum Whole {
     Exchanged(usize, usize),
     /// Gravity points the other way.
     Gravity,
+    /// The torques are without those of gravity.
+    Weightless,
 }
 
 impl Whole {
@@ -36,7 +38,7 @@ impl Whole {
             .map(Self::Positions)
             .collect();
         all.extend((0..n).flat_map(|i| (i + 1..n).map(move |j| Self::Exchanged(i, j))));
-        all.push(Self::Gravity);
+        all.extend([Self::Gravity, Self::Weightless]);
         all
     }
 
@@ -47,7 +49,7 @@ impl Whole {
             // A robot with a symmetry is nearly the same when actuators are exchanged: anything else that is wrong
             // may then be a little smaller.
             Self::Positions(_) | Self::Exchanged(..) => of_one,
-            Self::Gravity => EXPLAINED_BY_GRAVITY,
+            Self::Gravity | Self::Weightless => EXPLAINED_BY_GRAVITY,
         }
     }
 
@@ -62,7 +64,7 @@ impl Whole {
                 let rows = both.into_iter().flat_map(|all| all.chunks_exact_mut(n));
                 rows.for_each(|row| row.swap(i, j));
             }
-            Self::Gravity => return Ok(log.clone()),
+            Self::Gravity | Self::Weightless => return Ok(log.clone()),
         }
         let (name, frequency) = (log.name(), log.sampling_frequency());
         Log::new(name, frequency, n, positions, torques, log.payload())
@@ -88,6 +90,12 @@ impl Whole {
                 );
                 told(CheckKind::SwappedColumns, message).of_actuator(name(i))
             }
+            Self::Weightless => told(
+                CheckKind::WrongSign,
+                String::from(
+                    "the torques look as if gravity did not act: log them with what the drive adds as a compensation of gravity, or describe `gravity` as it is, zero for a robot that moves in a horizontal plane",
+                ),
+            ),
             Self::Gravity => told(
                 CheckKind::WrongSign,
                 String::from(

@@ -38,6 +38,47 @@ impl Fourier {
         }
     }
 
+    /// A transform of signals that return after `size` values, a power of two.
+    pub(crate) fn circular(size: usize) -> Self {
+        debug_assert!(size.is_power_of_two() && size > 1);
+        Self::for_correlation(size / 2)
+    }
+
+    /// Real and imaginary parts of the spectra of whole periods, which are not padded: values x signals in,
+    /// frequencies x signals out.
+    pub(crate) fn whole(&self, signals: &DMatrix<f64>) -> [DMatrix<f64>; 2] {
+        let (last, count) = (self.size / 2, signals.ncols());
+        let mut parts = [
+            DMatrix::zeros(last + 1, count),
+            DMatrix::zeros(last + 1, count),
+        ];
+        for first in (0..count).step_by(2) {
+            // Two signals are the real and the imaginary part of one: even and odd parts of its spectrum.
+            let column = |index: usize| match index < count {
+                true => signals.column(index).iter().copied().collect(),
+                false => vec![0.0; self.size],
+            };
+            let (mut real, mut imaginary) = (column(first), column(first + 1));
+            self.transform(&mut real, &mut imaginary);
+            for k in 0..=last {
+                let mirrored = (self.size - k) % self.size;
+                let (a, b) = (real[k], imaginary[k]);
+                let (c, d) = (real[mirrored], imaginary[mirrored]);
+                let own = [
+                    [0.5 * (a + c), 0.5 * (b - d)],
+                    [0.5 * (b + d), 0.5 * (c - a)],
+                ];
+                for (index, [re, im]) in own.into_iter().enumerate() {
+                    if first + index < count {
+                        parts[0][(k, first + index)] = re;
+                        parts[1][(k, first + index)] = im;
+                    }
+                }
+            }
+        }
+        parts
+    }
+
     /// Length of the padded signals.
     pub(crate) const fn size(&self) -> usize {
         self.size
@@ -285,7 +326,24 @@ impl Spectrum {
 #[cfg(test)]
 mod tests {
     use super::{Fourier, Spectrum};
+    use nalgebra::DMatrix;
     use std::f64::consts::PI;
+
+    #[test]
+    fn spectra_of_whole_periods_are_those_of_the_definition() {
+        let value = |row: usize, column: usize| ((row * row + 3 * column) as f64 * 0.7).sin();
+        let signals = DMatrix::from_fn(16, 3, value);
+        let [real, imaginary] = Fourier::circular(16).whole(&signals);
+        assert_eq!(real.shape(), (9, 3));
+        for (k, column) in (0..9).flat_map(|k| (0..3).map(move |column| (k, column))) {
+            let sum = |part: fn(f64) -> f64| -> f64 {
+                let angle = |i: usize| 2.0 * PI * (i * k) as f64 / 16.0;
+                (0..16).map(|i| signals[(i, column)] * part(angle(i))).sum()
+            };
+            assert!((real[(k, column)] - sum(f64::cos)).abs() < 1e-13);
+            assert!((imaginary[(k, column)] + sum(f64::sin)).abs() < 1e-13);
+        }
+    }
 
     #[test]
     fn spectra_and_correlations_are_those_of_the_definitions() {

@@ -3,6 +3,7 @@
 //! - `base`: base parameters in the symmetric order (42)-(43);
 //! - `estimate`: ordinary or weighted least squares with standard deviations (44)-(48);
 //! - `correlation`, `fourier`: deviations under residuals that are correlated over time and lines;
+//! - `returning`: how far sums stray by what returns with the motion;
 //! - `intervals`: 95 % intervals that admit all of that and what was cancelled;
 //! - `instruments`, `total_least_squares`: estimates that allow for errors of the columns;
 //! - `essential`: backward elimination of parameters that the data do not determine;
@@ -16,4 +17,5 @@ mod fourier;
 pub(crate) mod instruments;
 pub(crate) mod intervals;
 pub(crate) mod recommended;
+pub(crate) mod returning;
 pub(crate) mod total_least_squares;

@@ -226,7 +226,8 @@ impl Columns {
         };
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
-        let (systems, seen) = observer.run(0, (log, None), about.budget.unwrap_or(0), &report)?;
+        let (systems, seen) =
+            observer.run(0, (log, None), (about.budget.unwrap_or(0), None), &report)?;
         let models = projections.iter().zip(systems);
         let models = models.map(|(projection, observed)| {
             let lines = projection.line_names(&info);

@@ -151,6 +151,7 @@ impl Kind {
             lines,
             parts,
             stretches: Vec::new(),
+            folds: Vec::new(),
             partition: None,
             instruments: Vec::new(),
         }

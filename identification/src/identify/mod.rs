@@ -132,7 +132,13 @@ pub fn identify_after(
         let columns = (&prepared.columns, prepared.base.columns.as_slice());
         let reaches = reaches(&watched[..dataset.runs.len()]);
         let runs = (dataset.runs, dataset.variants);
-        scores(model, runs, columns, (base, &reaches), settings)
+        scores(
+            model,
+            runs,
+            columns,
+            (base, &reaches),
+            (settings, &prepared.returns),
+        )
     });
     let scores = scores.transpose()?;
     let checks = assessment::checks(&Context {

@@ -7,7 +7,10 @@ use super::{instruments::Companions, progress::Progress};
 use crate::{
     assessment,
     consistent::{Consistent, consistent},
-    data::Log,
+    data::{
+        Log,
+        periods::{Return, returns},
+    },
     error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters, payload_names},
     gains::{Gains, drive_shares},
@@ -51,6 +54,8 @@ pub struct Prepared {
     pub(super) points: Vec<Vec<Vec<DMatrix<f64>>>>,
     /// What there is of instruments.
     pub(super) companions: Companions,
+    /// The motion of each run, where it returns.
+    pub(super) returns: Vec<Option<Return>>,
     /// Of what was identified before, what its uncertainty does.
     pub(super) shares: Option<Shares>,
 }
@@ -72,6 +77,7 @@ impl Prepared {
             seen: Vec::new(),
             points: Vec::new(),
             companions: Companions::default(),
+            returns: Vec::new(),
             shares: None,
         }
     }
@@ -181,12 +187,14 @@ pub fn prepare(
         let with = |system: Result<System, Error>| system.map(System::with_instruments);
         systems = systems.into_iter().map(with).collect();
     }
+    let returns = returns(runs, settings.period_s);
     for (number, log) in runs.iter().enumerate() {
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
         let budget = LARGEST_STRETCHES / runs.len();
         let both = (log, companions.of(number));
-        match observer.run(number, both, budget, &report) {
+        let kept = (budget, returns[number]);
+        match observer.run(number, both, kept, &report) {
             Ok((equations, told)) => {
                 companions.missing = companions.missing.or_else(|| told.unusable.clone());
                 seen.push(told);
@@ -207,6 +215,7 @@ pub fn prepare(
         seen,
         points,
         companions,
+        returns,
         shares: None,
     })
 }

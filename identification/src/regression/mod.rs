@@ -6,6 +6,7 @@
 //! - `chunk`, `observation`: successive samples as equations; the pass over a run;
 //! - `instruments`: the same equations at the motion of the instruments, in step with the run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
+//! - `fold`: equations of a motion that returns, in the mean at each phase;
 //! - `projection`: on what the inputs are projected;
 //! - `points`: what is plotted of the motion;
 //! - `shares`: what the uncertainty of quantities identified beforehand does to estimates;
@@ -16,6 +17,7 @@ pub(crate) mod chunk;
 pub(crate) mod columns;
 pub(crate) mod elimination;
 pub(crate) mod factor;
+pub(crate) mod fold;
 mod friction;
 mod gathering;
 mod instruments;

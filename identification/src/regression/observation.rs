@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::{
     chunk::{Chunk, projected},
     columns::ColumnSet,
+    fold::Phases,
     instruments::Companion,
     points::Points,
     projection::Projection,
@@ -20,7 +21,7 @@ use super::{
 };
 use crate::{
     blocks::{BLOCK, slice},
-    data::Log,
+    data::{Log, periods::Return},
     error::Error,
     filters::Decimator,
     kinematics::{
@@ -63,7 +64,7 @@ pub(crate) struct Seen {
 impl Observer<'_> {
     /// Goes through a run, beside its instruments where it has some. Gives, for each projection, what
     /// its system keeps, or why it has none; and what is told of the run. `budget` is the number of
-    /// values that may be kept as stretches.
+    /// values that may be kept as stretches; `returns` is the motion of the run, where it returns.
     ///
     /// # Errors
     /// A run that does not fit, a sample outside the workspace, a file that can't be read.
@@ -71,7 +72,7 @@ impl Observer<'_> {
         &self,
         number: usize,
         (log, instruments): (&Log, Option<&Log>),
-        budget: usize,
+        (budget, returns): (usize, Option<Return>),
         progress: &dyn Fn(usize, usize),
     ) -> Result<(Vec<Result<Observed, Error>>, Seen), Error> {
         let info = self.model.info();
@@ -89,7 +90,8 @@ impl Observer<'_> {
         let plan = Plan::new(
             equations,
             budget / (lines * width * self.projections.len()).max(1),
-        );
+        )
+        .returning(returns.and_then(|motion| Phases::new(motion, self.settings.decimation)));
         let mut sinks = self.sinks(&plan, (&decimator, samples), companion.is_some())?;
         let mut torques = decimator.stream(info.sizes.actuators, samples)?;
         let mut decimated_torques = Vec::new();

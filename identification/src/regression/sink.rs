@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 
 use super::{
     factor::Factor,
+    fold::{Fold, Phases},
     system::{Observed, Part, PartitionCondition, Stretch},
 };
 use crate::{error::Error, filters::Decimation, series::LARGEST_SERIES};
@@ -27,6 +28,8 @@ pub(crate) struct Plan {
     /// Number of the first equation behind each part.
     ends: Vec<usize>,
     stretches: Vec<Range<usize>>,
+    /// Of a motion that returns, the phases of the equations.
+    phases: Option<Phases>,
     /// Distance of the equations at the points of the plots.
     stride: usize,
 }
@@ -42,7 +45,13 @@ impl Plan {
             ends,
             stretches: stretches(equations, budget.max(FEWEST_KEPT)),
             stride: equations.div_ceil(LARGEST_SERIES).max(1),
+            phases: None,
         }
+    }
+
+    /// The same for a motion that returns.
+    pub(crate) fn returning(self, phases: Option<Phases>) -> Self {
+        Self { phases, ..self }
     }
 
     /// Distance of the equations at the points of the plots.
@@ -92,6 +101,7 @@ pub(crate) struct LineSink {
     factor: Factor,
     parts: Vec<Factor>,
     stretches: Vec<Vec<f64>>,
+    fold: Option<Fold>,
     points: Vec<f64>,
     standstill: Option<Standstill>,
 }
@@ -182,6 +192,7 @@ impl LineSink {
             factor: Factor::new(parameters),
             parts: Vec::new(),
             stretches: vec![Vec::new(); plan.stretches.len()],
+            fold: plan.phases.map(|phases| Fold::new(phases, width)),
             points: Vec::new(),
             standstill,
         })
@@ -230,6 +241,9 @@ impl LineSink {
                 if range.contains(&self.taken) {
                     stretch.extend_from_slice(row);
                 }
+            }
+            if let Some(fold) = &mut self.fold {
+                fold.add(self.taken, row.iter());
             }
             self.rows.extend_from_slice(row);
             self.advance(plan);
@@ -317,6 +331,7 @@ pub(crate) fn observed(
     Observed {
         parts: (0..plan.ends.len()).map(part).collect(),
         stretches: (0..plan.stretches.len()).map(stretch).collect(),
+        folds: sinks.iter().filter_map(|sink| sink.fold.clone()).collect(),
         partition,
         points: sinks
             .iter()

@@ -15,7 +15,11 @@ use overact::Code;
 use overact::Info;
 use serde::Serialize;
 
-use super::{factor::Factor, projection::Projection};
+use super::{
+    factor::Factor,
+    fold::{self, Folds},
+    projection::Projection,
+};
 use crate::{error::Problem, kinematics::Motion};
 
 /// How badly conditioned the kept rows J_a of J_p^inv get along a trajectory, and where. It depends
@@ -62,6 +66,8 @@ pub struct System {
     pub parts: Vec<Part>,
     /// Successive equations as they are, from which the correlation of the residual is told.
     pub stretches: Vec<Stretch>,
+    /// Of each motion that returns, the mean equations of its phases.
+    pub(crate) folds: Vec<Folds>,
     /// Where actuators are kept: how well they determine the platform.
     pub partition: Option<PartitionCondition>,
     /// With instruments, R factor of the columns, the instruments and Y of each line; else empty.
@@ -100,6 +106,7 @@ impl System {
             projection,
             parts: Vec::new(),
             stretches: Vec::new(),
+            folds: Vec::new(),
             partition: None,
             instruments: Vec::new(),
         }
@@ -129,6 +136,9 @@ impl System {
         lines.for_each(|(line, factor)| line.add(factor));
         self.parts.extend(observed.parts);
         self.stretches.extend(observed.stretches);
+        if !observed.folds.is_empty() {
+            fold::add(&mut self.folds, observed.folds);
+        }
         let own = self.partition.take();
         self.partition = PartitionCondition::joined(own, observed.partition);
     }
@@ -139,6 +149,8 @@ impl System {
 pub(crate) struct Observed {
     pub(crate) parts: Vec<Part>,
     pub(crate) stretches: Vec<Stretch>,
+    /// For a motion that returns, of each line the mean equations of its phases; else empty.
+    pub(crate) folds: Folds,
     pub(crate) partition: Option<PartitionCondition>,
     /// As in the system.
     pub(crate) instruments: Vec<Factor>,

@@ -162,8 +162,8 @@ fn passed(identification: &Identification) -> String {
         })
         .collect();
     let summary = match all.len() {
-        1 => String::from("One check found nothing"),
-        count => format!("{count} checks found nothing"),
+        1 => String::from("What was found in order: one result, of all models and stages"),
+        count => format!("What was found in order: {count} results, of all models and stages"),
     };
     let elsewhere = "<p class=\"note paper-only\">Where the limits come from, and what shows these results, is on the page and not on paper.</p>\n";
     let plots = format!("<div class=\"screen-only\">{plots}</div>\n");

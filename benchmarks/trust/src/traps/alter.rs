@@ -30,6 +30,38 @@ pub(super) fn lag(record: &mut Record, seconds: f64) {
     }
 }
 
+/// Puts means over so many seconds around them in the place of the torques.
+pub(super) fn smooth(record: &mut Record, seconds: f64) {
+    let n = record.actuators.len();
+    let reach = (0.5 * seconds * record.sampling_hz).round() as usize;
+    let samples = record.torques.len() / n;
+    let own = record.torques.clone();
+    for sample in 0..samples {
+        let around = sample.saturating_sub(reach)..(sample + reach + 1).min(samples);
+        for i in 0..n {
+            let sum: f64 = around.clone().map(|near| own[near * n + i]).sum();
+            record.torques[sample * n + i] = sum / around.len() as f64;
+        }
+    }
+}
+
+/// Keeps torques so many seconds apart, and interpolates linearly between them.
+pub(super) fn interpolate(record: &mut Record, seconds: f64) {
+    let n = record.actuators.len();
+    let step = ((seconds * record.sampling_hz).round() as usize).max(1);
+    let samples = record.torques.len() / n;
+    let own = record.torques.clone();
+    for sample in 0..samples {
+        let before = sample / step * step;
+        let behind = (before + step).min(samples - 1);
+        let part = (sample - before) as f64 / (behind - before).max(1) as f64;
+        for i in 0..n {
+            let [a, b] = [before, behind].map(|place| own[place * n + i]);
+            record.torques[sample * n + i] = a + part * (b - a);
+        }
+    }
+}
+
 /// Drops a part of the samples, evenly scattered, as if the rest had been sampled uniformly.
 pub(super) fn drop_samples(record: &mut Record, part: f64) {
     let n = record.actuators.len();

@@ -19,8 +19,8 @@ pub struct Trap {
     /// Why no data can show it, where none can.
     pub assumed: Option<&'static str>,
     /// Its size, where it is one that every report looks for: the check, the name of the actuator or the
-    /// length, and the size.
-    pub size: Option<(CheckKind, &'static str, f64)>,
+    /// length with the unit of what is wrong of it, and the size.
+    pub size: Option<(CheckKind, (&'static str, &'static str), f64)>,
 }
 
 impl Trap {
@@ -60,9 +60,9 @@ impl Trap {
         }
     }
 
-    fn sized(self, kind: CheckKind, name: &'static str, size: f64) -> Self {
+    fn sized(self, kind: CheckKind, (name, unit): (&'static str, &'static str), size: f64) -> Self {
         Self {
-            size: Some((kind, name, size)),
+            size: Some((kind, (name, unit), size)),
             ..self
         }
     }
@@ -86,6 +86,12 @@ fn timing() -> Vec<Trap> {
         Trap::each("torques 5 ms late", |run| alter::late(run, 5e-3)),
         Trap::each("torques behind a first-order lag of 5 ms", |run| {
             alter::lag(run, 5e-3);
+        }),
+        Trap::each("torques smoothed by a mean over 20 ms", |run| {
+            alter::smooth(run, 20e-3);
+        }),
+        Trap::each("torques interpolated between samples 10 ms apart", |run| {
+            alter::interpolate(run, 10e-3);
         }),
         Trap::each("positions 2 ms late", |run| alter::late(run, -2e-3)),
         Trap::each("torque of drive 2 alone 2 ms late", |run| {
@@ -182,11 +188,15 @@ fn encoders(first: &'static str) -> Vec<Trap> {
         Trap::each("encoder 1 off by 0.2 deg", move |run| {
             alter::position(run, 0, |q| q + 0.2 * degree);
         })
-        .sized(CheckKind::EncoderOffset, first, 0.2 * degree),
+        .sized(CheckKind::EncoderOffset, (first, "rad"), 0.2 * degree),
         Trap::each("encoder 1 off by 1 deg", move |run| {
             alter::position(run, 0, |q| q + degree);
         })
-        .sized(CheckKind::EncoderOffset, first, degree),
+        .sized(CheckKind::EncoderOffset, (first, "rad"), degree),
+        Trap::each("positions of actuator 1 1 % too large", |run| {
+            alter::position(run, 0, |q| 1.01 * q);
+        })
+        .sized(CheckKind::EncoderOffset, (first, ""), 0.01),
         Trap::each("encoder 1 out of centre by 0.01 rad", |run| {
             alter::position(run, 0, |q| q + 0.01 * q.sin());
         }),
@@ -296,6 +306,11 @@ fn geometry(robot: &str) -> Vec<Trap> {
         "gravity = [0, 0, \"-9.81 m/s^2\"]",
         "gravity = [0, 0, \"9.81 m/s^2\"]",
     );
+    let weightless = Trap::plant(
+        "gravity compensated by the drives, and not in the log",
+        "gravity = [0, 0, \"-9.81 m/s^2\"]",
+        "gravity = [0, 0, 0]",
+    );
     match robot {
         "DualV" => vec![
             Trap::plant("links 1 % long", "l_bc = \"0.28 m\"", "l_bc = \"0.2828 m\""),
@@ -318,11 +333,12 @@ fn geometry(robot: &str) -> Vec<Trap> {
                 "gravity = [\"0.855 m/s^2\", 0, \"-9.773 m/s^2\"]",
             ),
             upwards,
+            weightless,
         ],
         "Rx90" => vec![
             Trap::plant("upper arm 1 % long", "d3 = \"0.45 m\"", "d3 = \"0.4545 m\"").sized(
                 CheckKind::EncoderOffset,
-                "d_3_arm",
+                ("d_3_arm", "m"),
                 0.0045,
             ),
             Trap::plant(
@@ -331,6 +347,7 @@ fn geometry(robot: &str) -> Vec<Trap> {
                 "gravity = [\"0.855 m/s^2\", 0, \"-9.773 m/s^2\"]",
             ),
             upwards,
+            weightless,
         ],
         _ => Vec::new(),
     }

@@ -204,24 +204,24 @@ fn oracle(result: &Identification, faultless: &Identification) -> Option<f64> {
 /// The check of an identification that looks for faults of a kind and a name, and how well it tells them.
 fn looked_for<'a>(
     result: &'a Identification,
-    (kind, name): (CheckKind, &str),
+    (kind, (name, unit)): (CheckKind, (&str, &str)),
 ) -> Option<(&'a Check, &'a Detectable)> {
     let own = result.checks.iter().filter(|check| check.kind == kind);
     let mut all = own.flat_map(|check| check.detectable.iter().map(move |one| (check, one)));
-    all.find(|(_, one)| one.name == name)
+    all.find(|(_, one)| one.name == name && one.unit == unit)
 }
 
 /// The size of a fault by its deviation in faultless data, and the threshold of the check that looks for it.
 fn honest(
     faultless: &Identification,
-    (kind, name, size): (CheckKind, &str, f64),
+    (kind, name, size): (CheckKind, (&str, &str), f64),
 ) -> Option<(f64, f64)> {
     let (check, found) = looked_for(faultless, (kind, name))?;
     Some((size.abs() / found.deviation, check.threshold))
 }
 
 /// Whether the report says itself that a fault of this size may be hidden in the data and spoil parameters.
-fn is_stated(result: &Identification, (kind, name, size): (CheckKind, &str, f64)) -> bool {
+fn is_stated(result: &Identification, (kind, name, size): (CheckKind, (&str, &str), f64)) -> bool {
     let found = looked_for(result, (kind, name));
     found.is_some_and(|(check, one)| {
         check.passed && one.moves > LARGEST_ERROR && size.abs() <= one.size

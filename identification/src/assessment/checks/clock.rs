@@ -14,6 +14,9 @@ use crate::{
     significant,
 };
 
+/// Errors that are larger are told without a number: the first order, in which they are looked for, tells no size.
+const LARGEST: f64 = 0.5;
+
 /// Tests one factor of all times.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
@@ -45,9 +48,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             return Check { words, ..check };
         }
         let harm = harm(context, scores, one);
+        let by = |size: f64| match size > LARGEST {
+            true => String::from("far"),
+            false => format!("{} %", percent(size)),
+        };
         let words = format!(
-            "the sampling frequency looks {} % too {} (standard deviation {} %); {}. Check the time column and its unit",
-            percent(accused.size().abs()),
+            "the sampling frequency looks {} too {} (standard deviation {} %); {}. Check the time column and its unit",
+            by(accused.size().abs()),
             if accused.size() > 0.0 { "high" } else { "low" },
             percent(accused.deviation),
             harm.words()

@@ -7,6 +7,7 @@ use crate::{
         suspects::Pace,
     },
     error::Error,
+    result::{ParameterEstimate, Stage},
     significant,
 };
 
@@ -115,12 +116,28 @@ fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
     if !ratio.is_finite() || ratio >= LEAST_CUTOFF {
         return Some(check(words));
     }
-    Some(
-        check(format!(
-            "{words}: velocities around reversals are rounded off, which biases friction; raise `filter_cutoff`"
-        ))
-        .found(),
-    )
+    let check = check(format!(
+        "{words}: velocities around reversals are rounded off, which biases dry friction; raise `filter_cutoff`"
+    ));
+    let dry = dry_friction(context);
+    Some(match dry.is_empty() {
+        true => check.found(),
+        false => check.allowing(Grade::UseListed).spoiling(dry),
+    })
+}
+
+/// Names of the base parameters that are dry friction.
+fn dry_friction(context: &Context<'_>) -> Vec<String> {
+    let Some(base) = context.estimates_of(Stage::Base).next() else {
+        return Vec::new();
+    };
+    let is_dry = |one: &&ParameterEstimate| {
+        let column = context.base.columns.get(one.column);
+        let column = column.and_then(|&column| context.columns.as_slice().get(column));
+        column.is_some_and(|column| column.symbol.has_sign())
+    };
+    let dry = base.parameters.iter().filter(is_dry);
+    dry.map(|one| one.name.clone()).collect()
 }
 
 /// Whether columns and torques pass the same filter.

@@ -18,6 +18,10 @@ use crate::{
 /// encoder noise does to it through the controller shift torques against motion by less.
 const HARMLESS: f64 = 0.1;
 
+/// A delay of more than this part of the fastest motion's period is told without a number: the first order, in which it
+/// is looked for, tells no size.
+const LARGEST: f64 = 0.2;
+
 /// Looks for one delay of all torques, and for one of a single drive.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
@@ -72,13 +76,22 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         || String::from("the torques come"),
         |name| format!("the torque of `{name}` alone comes"),
     );
+    let paces = scores.paces();
+    let fastest = paces.iter().flatten().map(|pace| pace.frequency);
+    let is_far = accused.size().abs() * fastest.fold(0.0, f64::max) > LARGEST;
+    let by = match is_far {
+        true => String::from("far"),
+        false => format!("{} ms", number(size.abs())),
+    };
     let words = format!(
-        "{whose} {} ms {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder; no key shifts them: {}, or give the two their own times in two files",
-        number(size.abs()),
+        "{whose} {by} {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder; no key shifts them: {}or give the two their own times in two files",
         if size > 0.0 { "behind" } else { "before" },
         number(deviation),
         harm.words(),
-        shifted(size, context)
+        match is_far {
+            true => String::new(),
+            false => format!("{}, ", shifted(size, context)),
+        }
     );
     let check = Check { words, ..check }.because(&harm);
     Ok(vec![match name {

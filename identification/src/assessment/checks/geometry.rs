@@ -24,8 +24,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let mut found: Vec<Tested> = Vec::new();
     let mut tests = 0;
     for (place, suspect) in scores.suspects.iter().enumerate() {
-        if let Suspect::Offset(_) | Suspect::Eccentric(..) | Suspect::Play(_) | Suspect::Length(_) =
-            *suspect
+        if let Suspect::Offset(_)
+        | Suspect::Scale(_)
+        | Suspect::Eccentric(..)
+        | Suspect::Play(_)
+        | Suspect::Length(_) = *suspect
         {
             for one in tested(scores, std::iter::once(Group::suspect(place))) {
                 tests += 1;
@@ -62,6 +65,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         Suspect::Eccentric(..) => {
             "Its disc may be out of centre, or its scale wrong: check its mounting and its gear"
         }
+        Suspect::Scale(_) => {
+            "Check the ratio of its gear or the lead of its screw, its increments, and its zero"
+        }
         _ => "Check its zero and its mounting, or the lengths of the description",
     };
     let (kind, words, title, axis) = match suspect {
@@ -76,6 +82,26 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             );
             let title = format!("Residual for other lengths {name}");
             (CheckKind::Length, words, title, "described too large by")
+        }
+        Suspect::Scale(_) => {
+            let [size, deviation] = [worst.accused.size(), worst.accused.deviation]
+                .map(|part| significant(100.0 * part.abs(), 3));
+            let sense = if worst.accused.size() > 0.0 {
+                "large"
+            } else {
+                "small"
+            };
+            let words = format!(
+                "the torques speak of positions of `{name}` that are {size} % too {sense} (standard deviation {deviation} %); {}. {zero}",
+                harm.words()
+            );
+            let title = format!("Residual for other scales of the positions of {name}");
+            (
+                CheckKind::EncoderOffset,
+                words,
+                title,
+                "positions too large by the part",
+            )
         }
         _ => {
             let what = match suspect {
@@ -171,9 +197,10 @@ fn ratio(one: &Tested) -> f64 {
 /// The actuator or the length.
 fn name(context: &Context<'_>, suspect: Suspect) -> String {
     let name = match suspect {
-        Suspect::Offset(at) | Suspect::Eccentric(at, _) | Suspect::Play(at) => {
-            context.model.info().actuators.get(at).copied()
-        }
+        Suspect::Offset(at)
+        | Suspect::Scale(at)
+        | Suspect::Eccentric(at, _)
+        | Suspect::Play(at) => context.model.info().actuators.get(at).copied(),
         Suspect::Length(at) => context.dataset.variants.get(at).map(|one| one.length),
         _ => None,
     };
@@ -183,6 +210,7 @@ fn name(context: &Context<'_>, suspect: Suspect) -> String {
 /// The unit of an actuator's position, or of a length.
 fn unit(context: &Context<'_>, suspect: Suspect) -> &'static str {
     match suspect {
+        Suspect::Scale(_) => "",
         Suspect::Offset(at) | Suspect::Eccentric(at, _) | Suspect::Play(at)
             if context.model.info().actuator_is_revolute.get(at) == Some(&true) =>
         {

@@ -17,6 +17,7 @@ pub(crate) mod raw_numbers;
 mod regressor_errors;
 mod relative_error;
 mod residual_correlation;
+mod smoothing;
 mod suspected;
 mod torque_faults;
 
@@ -96,12 +97,13 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 16] = [
+const CHECKS: [Function; 17] = [
     raw_numbers::check,
     course::check,
     closure::check,
     torque_faults::check,
     delay::check,
+    smoothing::check,
     clock::check,
     gains::check,
     geometry::check,

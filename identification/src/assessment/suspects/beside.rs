@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::{columns::Layout, scaled::Scaled, sections::RunScores};
+use crate::estimation::returning::Mean;
 
 /// Columns of base parameters and of friction that is late.
 #[derive(Debug, Clone)]
@@ -15,6 +16,8 @@ pub(super) struct Beside {
     whole: Scaled,
     /// For each run the products of the columns with each other over all cosines.
     pub(super) products: Vec<Vec<DMatrix<f64>>>,
+    /// What the fit leaves of the harmonics of each motion that returns.
+    pub(super) left: Vec<Vec<f64>>,
 }
 
 impl Beside {
@@ -22,7 +25,7 @@ impl Beside {
     /// where they depend on each other.
     pub(super) fn new(
         layout: &Layout,
-        runs: &[RunScores],
+        (runs, means): (&[RunScores], &[(Vec<usize>, Mean)]),
         (selected, late): (&[usize], &[usize]),
     ) -> Option<Self> {
         let count = selected.len();
@@ -37,10 +40,15 @@ impl Beside {
             .collect();
         let start = DMatrix::zeros(selected.len(), selected.len());
         let gram = products.iter().fold(start, |sum, own| sum + &own[0]);
+        let whole = Scaled::new(&gram.view((0, 0), (count, count)).clone_owned())?;
+        let gram = Scaled::new(&gram)?;
+        let inverse = gram.solve(&DMatrix::identity(selected.len(), selected.len()));
+        let left = means.iter().map(|(_, mean)| mean.left(&selected, &inverse));
         Some(Self {
             count,
-            whole: Scaled::new(&gram.view((0, 0), (count, count)).clone_owned())?,
-            gram: Scaled::new(&gram)?,
+            left: left.collect(),
+            whole,
+            gram,
             selected,
             products,
         })

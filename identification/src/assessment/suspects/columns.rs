@@ -16,6 +16,9 @@ use crate::{
 pub(crate) enum Suspect {
     /// Torques are late by so many seconds.
     Delay,
+    /// Torques are smoother than the motion by this time squared (s²): a symmetric filter of the weights w(t) has
+    /// half of Σ w t².
+    Smoothing,
     /// The torque of one actuator is late by so many seconds.
     Late(usize),
     /// The measured torque of an actuator is too large by this part of itself.
@@ -26,6 +29,8 @@ pub(crate) enum Suspect {
     Offset(usize),
     /// The position of an actuator is too large by this times its sine, or its cosine.
     Eccentric(usize, Misreading),
+    /// The position of an actuator is too large by this part of itself.
+    Scale(usize),
     /// The position of an actuator is behind by this half of a play.
     Play(usize),
     /// A length is too large by this.
@@ -99,7 +104,7 @@ impl Layout {
 pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Vec<Suspect> {
     let info = model.info();
     let sizes = info.sizes;
-    let mut all = vec![Suspect::Delay, Suspect::Clock];
+    let mut all = vec![Suspect::Delay, Suspect::Smoothing, Suspect::Clock];
     // Of one drive alone that is the delay of all.
     if sizes.actuators > 1 {
         all.extend((0..sizes.actuators).map(Suspect::Late));
@@ -108,6 +113,7 @@ pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Ve
     // With more actuators than degrees of freedom the closure tells.
     if sizes.actuators == sizes.dof {
         all.extend((0..sizes.actuators).map(Suspect::Offset));
+        all.extend((0..sizes.actuators).map(Suspect::Scale));
         all.extend((0..sizes.actuators).map(Suspect::Play));
         let revolute =
             (0..sizes.actuators).filter(|&i| info.actuator_is_revolute.get(i) == Some(&true));
@@ -143,6 +149,8 @@ pub(super) struct Sample<'a> {
     /// Torques freed of the residual, and their derivatives.
     pub(super) torques: &'a [f64],
     pub(super) torque_rates: &'a [f64],
+    /// Second derivatives of torques that are freed of dry friction, too.
+    pub(super) torque_bends: &'a [f64],
     /// The motion of the actuators.
     pub(super) actuators: &'a [Moment],
     /// Where they move.
@@ -187,11 +195,16 @@ impl Sample<'_> {
                 let rates = self.torque_rates.iter().enumerate();
                 -rates.map(|(i, rate)| share(i) * rate).sum::<f64>()
             }
+            Suspect::Smoothing => {
+                let bends = self.torque_bends.iter().enumerate();
+                bends.map(|(i, bend)| share(i) * bend).sum::<f64>()
+            }
             Suspect::Late(i) => -share(i) * self.torque_rates[i],
             Suspect::Gain(i) => share(i) * self.torques[i],
             Suspect::Clock => self.clock[line],
             Suspect::Offset(i) => misread(i, Misreading::Offset),
             Suspect::Eccentric(i, error) => misread(i, error),
+            Suspect::Scale(i) => misread(i, Misreading::Scale),
             Suspect::Play(i) => factor * misread(i, Misreading::Offset),
             Suspect::Length(length) => self.lengths[length * r + line],
             Suspect::Torque(i, _) => share(i) * factor,

@@ -23,6 +23,10 @@
 //!   tells. So every column w of dry friction has a column -ẇ beside it, as if it came late by a time of
 //!   its own, and no suspect is held against what that explains.
 //!
+//! A third error returns with every period of the motion and is the same in each: friction at reversals, steps of an
+//! encoder. How scores vary slowly does not tell it, and the longer a run is, the more clearly it stands out of the noise.
+//! So where a motion returns the deviation is at least that of the mean over all periods (`estimation::returning`).
+//!
 //! - `shapes`: how something missing may depend on the motion;
 //! - `columns`: the suspects and their columns;
 //! - `nearby`: what the model would explain of a motion that is slightly different;

@@ -26,6 +26,8 @@ const INSTANT: f64 = 1e-6;
 pub(crate) enum Misreading {
     /// Not at all: an offset.
     Offset,
+    /// As the position itself: a scale, or the ratio of a gear.
+    Scale,
     /// As its sine or its cosine: an encoder that is out of centre.
     Sine,
     Cosine,
@@ -33,7 +35,12 @@ pub(crate) enum Misreading {
 
 impl Misreading {
     /// All of them, in the order of their columns.
-    pub(super) const ALL: [Self; 3] = [Self::Offset, Self::Sine, Self::Cosine];
+    pub(super) const ALL: [Self; 4] = [Self::Offset, Self::Scale, Self::Sine, Self::Cosine];
+
+    /// Whether it is looked for at an actuator, which may be revolute: a length does not return with a turn.
+    pub(super) const fn concerns(self, revolute: bool) -> bool {
+        revolute || matches!(self, Self::Offset | Self::Scale)
+    }
 
     /// The error e(q) of unit size, and its first and second derivative along a motion: e' q̇ and e'' q̇² + e' q̈.
     fn at(self, motion: Moment) -> [f64; 3] {
@@ -46,6 +53,7 @@ impl Misreading {
         let (sine, cosine) = position.sin_cos();
         let [error, slope, bend] = match self {
             Self::Offset => [1.0, 0.0, 0.0],
+            Self::Scale => [position, 1.0, 0.0],
             Self::Sine => [sine, cosine, -sine],
             Self::Cosine => [cosine, -sine, -cosine],
         };
@@ -202,12 +210,16 @@ impl<'a> Nearby<'a> {
         let rates: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
         let changes: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
         let here = self.left(motion, &motion.pose, torques, (&rates, &changes))?;
+        let revolute = self.model.info().actuator_is_revolute;
         let count = errors.len();
         let mut all = vec![0.0; motion.samples * n * count * r];
         for (number, (actuator, error)) in (0..n)
             .flat_map(|actuator| errors.iter().map(move |error| (actuator, error)))
             .enumerate()
         {
+            if !error.concerns(revolute.get(actuator) == Some(&true)) {
+                continue;
+            }
             let (mut poses, mut rates, mut changes) =
                 (motion.pose.clone(), rates.clone(), changes.clone());
             for (sample, pose) in poses.chunks_exact_mut(sizes.pose).enumerate() {

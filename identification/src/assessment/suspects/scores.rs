@@ -18,8 +18,9 @@ use super::{
 };
 use crate::{
     blocks::{BLOCK, evaluate, slice},
-    data::{Log, Variant},
+    data::{Log, Variant, periods::Return},
     error::Error,
+    estimation::returning::Mean,
     filters::{DECIMATION_PADDING, Decimation},
     kinematics::{
         Motion, Motions,
@@ -29,6 +30,7 @@ use crate::{
     regression::{
         chunk::projected,
         columns::{ColumnSet, Reversal},
+        fold::{Folds, Phases},
         projection::ModelKind,
     },
     result::Estimate,
@@ -60,6 +62,8 @@ pub(crate) struct Scores {
     pub(super) late: Vec<usize>,
     /// What each run tells.
     pub(super) runs: Vec<RunScores>,
+    /// Motions that return, each with the runs that have it.
+    pub(super) means: Vec<(Vec<usize>, Mean)>,
     /// What was found beside the estimate's own columns.
     pub(super) own: Found,
 }
@@ -95,7 +99,7 @@ pub(crate) fn scores(
     (runs, variants): (&[Log], &[Variant<'_>]),
     (columns, base): (&ColumnSet, &[usize]),
     (estimate, reaches): (&Estimate, &[Reach]),
-    settings: &Settings,
+    (settings, returns): (&Settings, &[Option<Return>]),
 ) -> Result<Scores, Error> {
     let suspects = suspects(model, variants.len(), estimate.model);
     let payload = model.info().payload_parameters;
@@ -126,9 +130,14 @@ pub(crate) fn scores(
         decimation: settings.decimation * narrower,
         settings,
     };
+    let phases = |number: usize| {
+        let motion = returns.get(number).copied().flatten();
+        motion.and_then(|motion| Phases::new(motion, pass.decimation))
+    };
     let scores = runs
         .par_iter()
-        .map(|log| pass.run(log))
+        .enumerate()
+        .map(|(number, log)| pass.run(log, phases(number)))
         .collect::<Result<Vec<_>, Error>>()?;
     let selected = estimate.columns();
     Ok(Scores {
@@ -136,10 +145,40 @@ pub(crate) fn scores(
         payload: payload.iter().map(|one| one.name.to_owned()).collect(),
         layout,
         selected,
+        means: means(&scores),
         runs: scores,
         suspects,
         own: Found::default(),
     })
+}
+
+/// The motions that return.
+fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
+    let mut all: Vec<(Vec<usize>, Folds)> = Vec::new();
+    for (number, run) in runs.iter().enumerate() {
+        let motion = |folds: &Folds| folds.first().map(|fold| fold.phases.motion);
+        if run.folds.is_empty() {
+            continue;
+        }
+        let same = |one: &&mut (Vec<usize>, Folds)| motion(&one.1) == motion(&run.folds);
+        match all.iter_mut().find(same) {
+            Some((runs, folds)) => {
+                runs.push(number);
+                let both = folds.iter_mut().zip(&run.folds);
+                both.for_each(|(all, own)| all.merge(own));
+            }
+            None => all.push((vec![number], run.folds.clone())),
+        }
+    }
+    let split = |_, rows: DMatrix<f64>| {
+        let last = rows.ncols() - 1;
+        (
+            rows.columns(0, last).clone_owned(),
+            rows.column(last).clone_owned(),
+        )
+    };
+    let mean = |(runs, folds): (Vec<usize>, Folds)| Some((runs, Mean::new(&folds, split)?));
+    all.into_iter().filter_map(mean).collect()
 }
 
 /// By how many times narrower the band of the equations is than that of the estimate, for a model of so
@@ -218,7 +257,7 @@ impl Pass<'_> {
         self.frame.layout.decimated + 1
     }
 
-    fn run(&self, log: &Log) -> Result<RunScores, Error> {
+    fn run(&self, log: &Log, phases: Option<Phases>) -> Result<RunScores, Error> {
         let lines = self.model.info().sizes.dof;
         let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
         let decimator = self
@@ -230,7 +269,7 @@ impl Pass<'_> {
             .collect::<Result<_, _>>()?;
         let actuators = self.model.info().sizes.actuators;
         let mut places = decimator.stream(actuators, samples)?;
-        let mut sink = Sink::new(self.frame, decimator.kept(samples));
+        let mut sink = Sink::new(self.frame, decimator.kept(samples), phases);
         let frequency = log.sampling_frequency();
         let mut tempo = Tempo {
             start: self.settings.skip_start as f64 / frequency,
@@ -326,8 +365,10 @@ impl Pass<'_> {
                 places.zip(late).for_each(|(place, rate)| *place = -rate);
             }
         }
-        let torques = self.inputs(motion, jacobians, lines);
+        let [torques, smooth] = self.inputs(motion, jacobians, lines);
         let torque_rates = rates(&torques, n, motion.sampling_frequency);
+        let slopes = rates(&smooth, n, motion.sampling_frequency);
+        let torque_bends = rates(&slopes, n, motion.sampling_frequency);
         let nearby = Nearby {
             model: self.model,
             columns: self.columns,
@@ -356,6 +397,7 @@ impl Pass<'_> {
                 jacobian: slice(jacobians, n * r, sample, 1),
                 torques: slice(&torques, n, sample, 1),
                 torque_rates: slice(&torque_rates, n, sample, 1),
+                torque_bends: slice(&torque_bends, n, sample, 1),
                 actuators: &actuators[sample * n..(sample + 1) * n],
                 reaches: self.frame.reaches,
                 pose: slice(&motion.pose, info.sizes.pose, sample, 1),
@@ -384,39 +426,44 @@ impl Pass<'_> {
         Ok(positions)
     }
 
-    /// Puts the measured inputs into the rows, and gives the torques freed of the residual.
-    fn inputs(&self, motion: &Motion, jacobians: &[f64], lines: &mut [Vec<f64>]) -> Vec<f64> {
+    /// Puts the measured inputs into the rows, and gives the torques freed of the residual, and freed of dry friction
+    /// beside it.
+    fn inputs(&self, motion: &Motion, jacobians: &[f64], lines: &mut [Vec<f64>]) -> [Vec<f64>; 2] {
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);
         let (width, p, y) = (self.width(), self.base.len(), self.frame.layout.base);
-        let mut freed = motion.torques.clone();
-        for (sample, torques) in freed.chunks_exact_mut(n).enumerate() {
+        let mut both = [motion.torques.clone(), motion.torques.clone()];
+        for sample in 0..motion.samples {
             let jacobian = slice(jacobians, n * r, sample, 1);
-            let mut residual = vec![0.0; r];
+            let torques = slice(&motion.torques, n, sample, 1);
+            let mut taken = [vec![0.0; r], vec![0.0; r]];
             for (line, rows) in lines.iter_mut().enumerate() {
                 let row = &mut rows[sample * width..(sample + 1) * width];
                 let measured = torques.iter().enumerate();
                 let input: f64 = measured
                     .map(|(i, torque)| jacobian[i * r + line] * torque)
                     .sum();
-                let explained: f64 = row[..p]
-                    .iter()
-                    .zip(self.frame.values)
-                    .map(|(w, x)| w * x)
-                    .sum();
+                let part = |place: usize| row[place] * self.frame.values[place];
+                let explained: f64 = (0..p).map(part).sum();
+                let dry: f64 = self.friction.iter().map(|place| part(*place)).sum();
                 row[y] = input;
-                residual[line] = input - explained;
+                taken[0][line] = input - explained;
+                taken[1][line] = input - explained + dry;
             }
-            if let Some(distribution) = least_norm(jacobian, r) {
+            let Some(distribution) = least_norm(jacobian, r) else {
+                continue;
+            };
+            for (all, taken) in both.iter_mut().zip(&taken) {
                 let mut own = vec![0.0; n];
-                product(&distribution, &residual, &mut own);
+                product(&distribution, taken, &mut own);
+                let torques = &mut all[sample * n..(sample + 1) * n];
                 torques
                     .iter_mut()
                     .zip(&own)
                     .for_each(|(torque, own)| *torque -= own);
             }
         }
-        freed
+        both
     }
 
     /// Rows of Γ¹ as the estimate's model takes them, where it takes others.

@@ -10,7 +10,10 @@ use super::{
     pairs::Pairs,
     shapes::{Reach, Shape},
 };
-use crate::estimation::intervals::scores::cosines;
+use crate::{
+    estimation::intervals::scores::cosines,
+    regression::fold::{Fold, Folds, Phases},
+};
 
 /// Sections of a run for each cosine of the covariance.
 const SECTIONS: usize = 4;
@@ -42,6 +45,8 @@ pub(super) struct RunScores {
     pub(super) squares: Vec<f64>,
     /// How the run is timed and how the actuators move.
     pub(super) tempo: Tempo,
+    /// For a motion that returns, of each line the mean rows of all columns and the residual at each phase.
+    pub(super) folds: Folds,
 }
 
 /// The time of a run and the frequencies of its motion.
@@ -169,11 +174,13 @@ pub(super) struct Sink<'a> {
     pairs: Pairs,
     equations: usize,
     squares: Vec<f64>,
+    phases: Option<Phases>,
+    folds: Folds,
 }
 
 impl<'a> Sink<'a> {
-    /// For so many instants.
-    pub(super) fn new(frame: Frame<'a>, instants: usize) -> Self {
+    /// For so many instants, at the phases of a motion that returns.
+    pub(super) fn new(frame: Frame<'a>, instants: usize, phases: Option<Phases>) -> Self {
         let constant = |one: &Suspect| matches!(one, Suspect::Torque(_, Shape::Constant));
         let suspects = frame.suspects.iter().zip(&frame.layout.blocks);
         let constants = suspects.filter(|(one, _)| constant(one));
@@ -188,6 +195,8 @@ impl<'a> Sink<'a> {
             products: Products::new(frame.layout, sections),
             equations: 0,
             squares: Vec::new(),
+            phases,
+            folds: Vec::new(),
         }
     }
 
@@ -207,6 +216,7 @@ impl<'a> Sink<'a> {
             equations: self.equations,
             squares: self.squares,
             tempo,
+            folds: self.folds,
         }
     }
 
@@ -221,6 +231,7 @@ impl<'a> Sink<'a> {
             .enumerate()
             .map(|(line, rows)| self.line(line, (rows, count), positions))
             .collect();
+        self.fold(&taken);
         let mut first = 0;
         while first < count {
             let section = self.section(first);
@@ -242,6 +253,23 @@ impl<'a> Sink<'a> {
             self.squares.push(residual.norm_squared());
         }
         self.taken += count;
+    }
+
+    /// Adds rows of all lines at the phases of the motion.
+    fn fold(&mut self, lines: &[(DMatrix<f64>, DVector<f64>)]) {
+        let Some(phases) = self.phases else {
+            return;
+        };
+        if self.folds.is_empty() {
+            let fold = |_| Fold::new(phases, self.frame.layout.columns + 1);
+            self.folds = (0..lines.len()).map(fold).collect();
+        }
+        for (fold, (rows, residual)) in self.folds.iter_mut().zip(lines) {
+            for (sample, (row, rest)) in rows.row_iter().zip(residual.iter()).enumerate() {
+                let row = row.iter().chain(std::iter::once(rest));
+                fold.add(self.taken + sample, row);
+            }
+        }
     }
 
     /// The section of a sample of those that come.

@@ -3,15 +3,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{beside::Beside, columns::Layout, sections::RunScores};
+use super::{beside::Beside, columns::Layout, sections::RunScores, test::Group};
+use crate::estimation::returning::{Mean, Stray};
 
 /// Columns of a group, freed of those of the model by B and then orthonormal: z⊥ = (z - W B) Mᵀ.
 pub(super) struct Freed<'a> {
     pub(super) layout: &'a Layout,
     /// Columns of the model.
     pub(super) beside: &'a Beside,
-    /// The block of the group, and the columns within it.
-    pub(super) block: usize,
+    /// The group, and the columns within its block.
+    pub(super) group: Group,
     pub(super) told: &'a [usize],
     /// B, columns of the model x columns of the group.
     pub(super) solved: &'a DMatrix<f64>,
@@ -57,7 +58,7 @@ impl Freed<'_> {
                 let cross = run.beside(self.layout, m, (selected, &columns));
                 own -= cross.tr_mul(self.solved);
                 fitted += cross;
-                let block = run.own(self.layout, self.block, m);
+                let block = run.own(self.layout, self.group.block, m);
                 own += block.select_rows(self.told).select_columns(self.told);
                 score += all.select_rows(&columns);
             }
@@ -73,12 +74,17 @@ impl Freed<'_> {
 
     /// The columns of the group among all.
     fn columns(&self) -> impl Iterator<Item = usize> {
-        let first = self.layout.blocks[self.block].start;
+        let first = self.layout.blocks[self.group.block].start;
         self.told.iter().map(move |column| first + column)
     }
 
     /// The covariance of all runs' scores together, were the suspects there by `sizes`.
-    pub(super) fn spread(&self, shares: &[Share], sizes: &DVector<f64>) -> Option<Spread> {
+    pub(super) fn spread(
+        &self,
+        shares: &[Share],
+        means: &[(Vec<usize>, Mean)],
+        sizes: &DVector<f64>,
+    ) -> Option<Spread> {
         let width = sizes.len();
         let mut covariance = DMatrix::zeros(width, width);
         let mut moments = vec![(0.0, 0.0); width];
@@ -108,10 +114,39 @@ impl Freed<'_> {
         }
         let freedoms = moments.iter().map(|(mean, squares)| mean * mean / squares);
         let freedom = freedoms.fold(f64::INFINITY, f64::min);
-        Some(Spread {
+        let spread = Spread {
             covariance,
             freedom,
-        })
+        };
+        Some(spread.enlarged(&self.strays(means, sizes)))
+    }
+
+    /// How the scores stray by what returns with the motions, were the suspects there by `sizes`; none where a group
+    /// is confined to one of several runs of a motion.
+    fn strays(&self, means: &[(Vec<usize>, Mean)], sizes: &DVector<f64>) -> Vec<Stray> {
+        let width = sizes.len();
+        let mut all = vec![Stray::default(); width];
+        let turned = self.white.transpose();
+        let beside = -(self.solved * &turned);
+        for ((runs, mean), left) in means.iter().zip(&self.beside.left) {
+            let mut combinations = DMatrix::zeros(self.layout.columns, width);
+            for (row, column) in self.beside.selected.iter().enumerate() {
+                combinations.set_row(*column, &beside.row(row));
+            }
+            let inside = self.group.run.is_none_or(|own| runs.contains(&own));
+            if inside && self.group.run.is_some() && runs.len() > 1 {
+                return Vec::new();
+            }
+            if inside {
+                for (row, column) in self.columns().enumerate() {
+                    combinations.set_row(column, &turned.row(row));
+                }
+            }
+            let own = mean.strays(&combinations, left, Some(sizes));
+            let both = all.iter_mut().zip(own);
+            both.for_each(|(all, own)| *all = all.and(own));
+        }
+        all
     }
 
     /// C of column i: the covariance of its sums over cosines, had the residual been white noise of unit
@@ -130,6 +165,26 @@ impl Freed<'_> {
         DMatrix::from_fn(count, count, |a, b| {
             spectrum(a.abs_diff(b)) + spectrum(a + b + 2) - taken[(a, b)]
         })
+    }
+}
+
+impl Spread {
+    /// The same where the scores stray farther by what returns with the motion: that is the same in every period, and
+    /// so is not told from how the scores vary slowly.
+    fn enlarged(mut self, strays: &[Stray]) -> Self {
+        let all = strays.iter().copied().reduce(Stray::and);
+        let Some(all) = all.filter(|all| all.square > 0.0) else {
+            return self;
+        };
+        // The columns are orthonormal.
+        let (ratio, freedom) = all.by(self.covariance.trace(), strays.len() as f64);
+        if ratio > 1.0 && ratio.is_finite() {
+            self.covariance *= ratio;
+            if strays.len() == 1 {
+                self.freedom = 1.0 / (1.0 / self.freedom + 1.0 / freedom);
+            }
+        }
+        self
     }
 }
 

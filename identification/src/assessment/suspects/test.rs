@@ -16,9 +16,9 @@ use crate::estimation::intervals::distributions::fisher_tail;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Group {
     /// The block of their columns.
-    block: usize,
+    pub(super) block: usize,
     /// The run to which they are confined.
-    run: Option<usize>,
+    pub(super) run: Option<usize>,
 }
 
 impl Group {
@@ -65,7 +65,11 @@ impl Scores {
 
     /// The columns `selected` of the base parameters with what all tests beside them share.
     fn beside(&self, selected: &[usize]) -> Option<Beside> {
-        Beside::new(&self.layout, &self.runs, (selected, &self.late))
+        Beside::new(
+            &self.layout,
+            (&self.runs, &self.means),
+            (selected, &self.late),
+        )
     }
 
     /// Tests a group beside columns of the base parameters.
@@ -93,7 +97,7 @@ impl Scores {
         let freed = Freed {
             layout,
             beside,
-            block: group.block,
+            group: *group,
             told: &told,
             solved: &solved,
             white: &white,
@@ -112,7 +116,7 @@ impl Scores {
         let Spread {
             covariance,
             freedom,
-        } = freed.spread(shares, &score)?;
+        } = freed.spread(shares, &self.means, &score)?;
         let count = width as f64;
         let rest = freedom - count + 1.0;
         if width == 0 || rest < 1.0 {

@@ -53,6 +53,31 @@ pub(super) fn period(log: &Log) -> Result<Option<usize>, Error> {
     Ok(found.iter().find(fits).map(|(lag, _)| *lag))
 }
 
+/// Whether two runs begin with the same motion.
+///
+/// # Errors
+/// A log that can't be read.
+pub(super) fn same(first: &Log, second: &Log) -> Result<bool, Error> {
+    let n = first.actuators();
+    let samples = (LARGEST_BEGINNING / n).min(first.samples());
+    let samples = samples.min(second.samples());
+    let (a, b) = (beginning(first, samples)?, beginning(second, samples)?);
+    let count = a.len().min(b.len()) / n;
+    let stride = (count / PAIRS).max(1);
+    // Differences of one and the spread of the other of each actuator.
+    let part = |i: usize| {
+        let rows = || (0..count).step_by(stride).map(|row| row * n + i);
+        let taken = rows().count().max(1) as f64;
+        let mean = rows().map(|place| a[place]).sum::<f64>() / taken;
+        let spread: f64 = rows().map(|place| (a[place] - mean).powi(2)).sum();
+        let apart: f64 = rows().map(|place| (a[place] - b[place]).powi(2)).sum();
+        (spread > 0.0).then_some(0.5 * apart / spread)
+    };
+    let parts: Vec<f64> = (0..n).filter_map(part).collect();
+    let moving = parts.len().max(1) as f64;
+    Ok(!parts.is_empty() && parts.iter().sum::<f64>() / moving < LARGEST_FINE)
+}
+
 /// Positions of the first `samples` of a run.
 fn beginning(log: &Log, samples: usize) -> Result<Vec<f64>, Error> {
     let wanted = samples.min(log.samples()) * log.actuators();

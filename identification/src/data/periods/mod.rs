@@ -15,6 +15,9 @@
 //! some periods together may have it.
 
 mod find;
+mod returns;
+
+pub(crate) use returns::{Return, returns};
 
 use super::Log;
 use crate::error::{Error, Problem};

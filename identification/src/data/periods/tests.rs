@@ -1,6 +1,6 @@
 //! Periodic runs, with errors that repeat themselves and errors that do not.
 
-use super::{Log, periods};
+use super::{Log, Return, periods, returns};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -82,4 +82,41 @@ fn a_period_that_does_not_fit_into_memory_is_refused() {
     let log = Log::new("run", 1000.0, 2, numbers.clone(), numbers, false).expect("a run");
     let error = periods(&log, Some(samples as f64 * 1e-3)).expect_err("too long");
     assert!(error.to_string().contains("too many"), "{error}");
+}
+
+#[test]
+fn motions_that_return_are_found_within_a_run_and_from_run_to_run() {
+    let noise = (1e-4, 0.0);
+    let periodic = run(500.0, 1700, noise);
+    let other = run(400.0, 1700, noise);
+    // Less than two periods each.
+    let once = run(1500.0, 1700, noise);
+    let found = returns(
+        &[
+            periodic.clone(),
+            other,
+            once.clone(),
+            periodic,
+            once.clone(),
+        ],
+        None,
+    );
+    let told = |samples, motion| Some(Return { samples, motion });
+    let expected = [
+        told(500, 0),
+        told(400, 1),
+        told(1700, 2),
+        told(500, 0),
+        told(1700, 2),
+    ];
+    assert_eq!(found, expected);
+    assert_eq!(returns(&[once], None), [None]);
+}
+
+#[test]
+fn runs_of_one_motion_with_different_payloads_are_apart() {
+    let empty = run(1500.0, 1700, (1e-4, 0.0));
+    let (positions, torques) = empty.load().expect("in memory");
+    let loaded = Log::new("loaded", 1000.0, 2, positions, torques, true).expect("a run");
+    assert_eq!(returns(&[empty, loaded], None), [None, None]);
 }

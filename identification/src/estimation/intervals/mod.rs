@@ -3,6 +3,7 @@
 //! - `scores`: the covariance of the base estimate, whatever the residual is like in time and size,
 //!   and the degrees of freedom of its variances.
 //! - `repeats`: how much larger it is for what returns with the motion.
+//! - `periods`: how much larger it is for what returns from period to period.
 //! - `parts`: the covariance from sums over parts of the runs, where factors are all there is.
 //! - `distributions`: Student's distribution and its kin.
 //!
@@ -25,6 +26,7 @@
 
 pub(crate) mod distributions;
 mod parts;
+mod periods;
 pub(crate) mod repeats;
 pub(crate) mod scores;
 
@@ -75,6 +77,9 @@ impl Intervals {
         sorted.sort_by(f64::total_cmp);
         let freedom = sorted[sorted.len() / 2];
         covariance.enlarge(&ratios(system, context));
+        let variances: Vec<f64> = covariance.matrix.diagonal().iter().copied().collect();
+        let freedoms = covariance.freedoms.clone();
+        covariance.enlarge(&periods::ratios(system, context, (&variances, &freedoms)));
         Some(Self {
             columns,
             values: values.clone(),

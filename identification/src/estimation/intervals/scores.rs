@@ -203,7 +203,7 @@ impl<'a> Context<'a> {
     }
 
     /// M.
-    fn influence(&self) -> &DMatrix<f64> {
+    pub(super) fn influence(&self) -> &DMatrix<f64> {
         self.influence.as_ref().unwrap_or(&self.inverse)
     }
 

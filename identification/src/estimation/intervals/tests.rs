@@ -73,6 +73,7 @@ fn system(kind: Kind, samples: usize, seed: u64) -> System {
         line_names: vec![String::from("x"), String::from("y")],
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
+        folds: Vec::new(),
         stretches: vec![Stretch {
             run: 0,
             lines,

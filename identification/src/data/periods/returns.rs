@@ -1,0 +1,63 @@
+//! Which motions return: after a period within a run, or from run to run.
+
+use super::{Log, find, together};
+use crate::error::Error;
+
+/// By how much the lengths of runs of one motion may differ.
+const LENGTHS: f64 = 0.01;
+
+/// The motion of a run that returns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Return {
+    /// Samples after which it returns; those of the run where it does so in another run only.
+    pub(crate) samples: usize,
+    /// Number of the first run with this motion.
+    pub(crate) motion: usize,
+}
+
+/// The motions of runs that return, of which the period (s) is known or is to be found. Runs with different
+/// payloads have different equations, be their motion the same.
+pub(crate) fn returns(runs: &[Log], period: Option<f64>) -> Vec<Option<Return>> {
+    let within: Vec<Option<usize>> = runs.iter().map(|log| of_run(log, period)).collect();
+    let first = |number: usize| {
+        let own = &runs[number];
+        let same = |other: &usize| {
+            let (a, b) = (within[*other], within[number]);
+            a == b
+                && runs[*other].payload_name() == own.payload_name()
+                && runs[*other].payload() == own.payload()
+                && runs[*other].sampling_frequency() == own.sampling_frequency()
+                && (a.is_some() || as_long(&runs[*other], own))
+                && find::same(&runs[*other], own).unwrap_or(false)
+        };
+        (0..number).find(same).unwrap_or(number)
+    };
+    let motions: Vec<usize> = (0..runs.len()).map(first).collect();
+    let alone = |number: usize| {
+        let own = motions.iter().filter(|motion| **motion == motions[number]);
+        own.count() == 1
+    };
+    (0..runs.len())
+        .map(|number| {
+            let whole = (!alone(number)).then(|| runs[number].samples());
+            let samples = within[number].or(whole)?;
+            let motion = motions[number];
+            Some(Return { samples, motion })
+        })
+        .collect()
+}
+
+/// Samples of the period of a run; none of one that has none.
+fn of_run(log: &Log, period: Option<f64>) -> Option<usize> {
+    let found: Result<Option<usize>, Error> = match period {
+        Some(period) => together(log, period).map(Some),
+        None => find::period(log),
+    };
+    found.ok().flatten()
+}
+
+/// Whether two runs are as long as each other.
+fn as_long(a: &Log, b: &Log) -> bool {
+    let (a, b) = (a.samples() as f64, b.samples() as f64);
+    (a - b).abs() <= LENGTHS * a.max(b)
+}

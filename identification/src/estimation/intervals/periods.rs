@@ -1,0 +1,147 @@
+//! How much larger the covariance is for what returns from period to period, and from run to run.
+//!
+//! Pieces of a run are taken for independent of each other by what is told of them one by one. What returns in all
+//! of them is not, and is told from the mean over all periods.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::scores::Context;
+use crate::{
+    estimation::returning::{Mean, Stray},
+    regression::system::System,
+};
+
+/// By how much larger than these the variance of each parameter is, and the degrees of freedom of that.
+pub(super) fn ratios(
+    system: &System,
+    context: &Context<'_>,
+    (variances, freedoms): (&[f64], &[f64]),
+) -> Vec<(f64, f64)> {
+    let p = context.selected.len();
+    let influence = context.influence();
+    // In the mean over all periods instruments are the columns.
+    let mut combinations = influence.columns(0, p).transpose();
+    if influence.ncols() > p {
+        combinations += influence.columns(p, p).transpose();
+    }
+    let places: Vec<usize> = (0..p).collect();
+    let mut strays = vec![Stray::default(); p];
+    for folds in &system.folds {
+        let weighted = |line: usize, rows: DMatrix<f64>| {
+            let weight = context.estimation.weights[line];
+            let columns = rows.select_columns(context.selected) * weight;
+            let y = rows.column(rows.ncols() - 1) * weight;
+            let values = DVector::from_column_slice(&context.estimation.values);
+            let residual = y - &columns * values;
+            (columns, residual)
+        };
+        let Some(mean) = Mean::new(folds, weighted) else {
+            continue;
+        };
+        let left = mean.left(&places, &context.inverse);
+        let own = mean.strays(&combinations, &left, None);
+        for (all, own) in strays.iter_mut().zip(own) {
+            *all = all.and(own);
+        }
+    }
+    if system.folds.is_empty() {
+        return vec![(1.0, f64::INFINITY); p];
+    }
+    let squares = context.inverse.diagonal();
+    let each = strays.iter().zip(variances).zip(squares.iter());
+    let told = each
+        .zip(freedoms)
+        .map(|(((stray, variance), square), own)| {
+            let (ratio, freedom) = stray.by(*variance, *square);
+            Told::new(ratio, freedom, *own)
+        });
+    enlarged(&told.collect::<Vec<_>>())
+}
+
+/// What the mean of the ratios' logarithms has to exceed: that of errors which are no noise in the runs of ten seconds of
+/// faultless virtual robots, whose intervals are wide enough without.
+const LEAST_MEAN: f64 = 0.5;
+
+/// A ratio of variances as the data tell it.
+#[derive(Debug, Clone, Copy)]
+struct Told {
+    /// Its logarithm, freed of its bias.
+    logarithm: f64,
+    /// The variance of that by chance.
+    variance: f64,
+    freedom: f64,
+}
+
+impl Told {
+    /// That of two variances of so many degrees of freedom.
+    fn new(ratio: f64, freedom: f64, told: f64) -> Self {
+        Self {
+            logarithm: ratio.ln() + 1.0 / freedom - 1.0 / told,
+            variance: 2.0 / freedom + 2.0 / told,
+            freedom,
+        }
+    }
+
+    fn is_sound(&self) -> bool {
+        self.logarithm.is_finite() && self.variance.is_finite() && self.variance > 0.0
+    }
+}
+
+/// Ratios that are told, as far as they are larger than one, and their mean is clearly so. Each alone scatters, and a
+/// variance that is only ever enlarged would be too large in the mean: they are drawn to their mean, as far as they
+/// differ from it by no more than chance makes them (James and Stein).
+fn enlarged(told: &[Told]) -> Vec<(f64, f64)> {
+    let sound = || told.iter().filter(|one| one.is_sound());
+    let weights: f64 = sound().map(|one| 1.0 / one.variance).sum();
+    let mean = sound().map(|one| one.logarithm / one.variance).sum::<f64>() / weights;
+    if weights.is_nan() || mean < LEAST_MEAN {
+        return vec![(1.0, f64::INFINITY); told.len()];
+    }
+    let apart = sound().map(|one| (one.logarithm - mean).powi(2) / one.variance - 1.0);
+    // The variance of the true ratios.
+    let between = (apart.sum::<f64>() / weights).max(0.0);
+    let enlarged = |one: &Told| {
+        if !one.is_sound() {
+            return (1.0, f64::INFINITY);
+        }
+        let own = between / (between + one.variance);
+        let logarithm = mean + own * (one.logarithm - mean);
+        if logarithm > 0.0 {
+            (logarithm.exp(), one.freedom / own.max(f64::MIN_POSITIVE))
+        } else {
+            (1.0, f64::INFINITY)
+        }
+    };
+    told.iter().map(enlarged).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LEAST_MEAN, Told, enlarged};
+
+    fn told(ratios: &[f64]) -> Vec<Told> {
+        let one = |ratio: &f64| Told::new(*ratio, 20.0, 40.0);
+        ratios.iter().map(one).collect()
+    }
+
+    #[test]
+    fn ratios_that_chance_makes_enlarge_nothing() {
+        let found = enlarged(&told(&[0.6, 1.7, 1.1, 0.8, 1.3, 0.9]));
+        assert!(found.iter().all(|(ratio, _)| *ratio == 1.0), "{found:?}");
+    }
+
+    #[test]
+    fn ratios_are_drawn_to_their_mean_as_far_as_chance_parts_them() {
+        let found = enlarged(&told(&[2.5, 4.0, 3.0, 2.8, 3.6]));
+        let first = found[0].0;
+        assert!(first.ln() > LEAST_MEAN);
+        assert!(
+            found.iter().all(|(ratio, _)| (ratio - first).abs() < 1e-9),
+            "{found:?}"
+        );
+        // Where they are truly apart each keeps most of its own.
+        let found = enlarged(&told(&[1.0, 1.1, 30.0, 40.0, 0.9, 35.0]));
+        assert!(found[0].0 < 2.0 && found[3].0 > 20.0, "{found:?}");
+        assert!(found[3].1 < 25.0 && found[0].0 >= 1.0, "{found:?}");
+    }
+}

@@ -1,0 +1,289 @@
+//! How far sums over the motion stray by what returns with it.
+//!
+//! A sum Σ_t z_t ρ_t over the instants t of a motion that returns, with a residual ρ that returns as
+//! well, is the same in every period: its variance does not fall with their number as that of noise
+//! does. It is told from the means over all periods, of which the phases are the instants. Over the
+//! frequencies f of their transform,
+//!
+//! ```text
+//! V = 1/M² Σ_f z_f* S_f z_f,   S_f = mean of ρ_g ρ_g*/(1 - h_g) over g near f,
+//! ```
+//!
+//! with M phases, all lines in z_f and ρ_f, and the leverage h of the fit. Noise is in the means, too, as far
+//! as so many periods leave it, so that V is the whole variance.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::fourier::Fourier;
+use crate::regression::fold::Folds;
+
+/// Harmonics on either side whose mean is taken.
+const NEIGHBOURS: usize = 4;
+
+/// Part of the residual that the fit leaves, at least.
+const LEAST_LEFT: f64 = 0.2;
+
+/// One period in the mean of all, over its harmonics.
+#[derive(Debug, Clone)]
+pub(crate) struct Mean {
+    phases: usize,
+    lines: Vec<Line>,
+}
+
+/// The columns of a line and what it leaves; real and imaginary parts, harmonics x columns.
+#[derive(Debug, Clone)]
+struct Line {
+    columns: [DMatrix<f64>; 2],
+    residual: [DVector<f64>; 2],
+}
+
+/// How a sum strays.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Stray {
+    /// V.
+    pub(crate) variance: f64,
+    /// Σ z² over the motion.
+    pub(crate) square: f64,
+    /// 1/ν of V times V².
+    scatter: f64,
+}
+
+impl Mean {
+    /// That of a motion, of which `split` tells the columns and what is left of the mean rows of each line, both
+    /// weighted; none where phases have no equations.
+    pub(crate) fn new(
+        folds: &Folds,
+        split: impl Fn(usize, DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>),
+    ) -> Option<Self> {
+        let (mut lines, mut phases) = (Vec::new(), 0);
+        for (number, fold) in folds.iter().enumerate() {
+            let (columns, residual) = split(number, fold.means()?);
+            phases = columns.nrows();
+            let fourier = Fourier::circular(phases);
+            let columns = fourier.whole(&columns);
+            let rest = fourier.whole(&DMatrix::from_columns(&[residual]));
+            let residual = rest.map(|part| part.column(0).clone_owned());
+            lines.push(Line { columns, residual });
+        }
+        (!lines.is_empty()).then_some(Self { phases, lines })
+    }
+
+    /// 1 - h of each harmonic, of an estimate of the columns `selected` with this A^-1.
+    pub(crate) fn left(&self, selected: &[usize], inverse: &DMatrix<f64>) -> Vec<f64> {
+        let share = (self.phases * self.lines.len()) as f64;
+        let mut taken = vec![0.0; self.phases / 2 + 1];
+        for part in self.lines.iter().flat_map(|line| &line.columns) {
+            let own = part.select_columns(selected);
+            let product = &own * inverse;
+            for (harmonic, sum) in taken.iter_mut().enumerate() {
+                *sum += product.row(harmonic).dot(&own.row(harmonic)) / share;
+            }
+        }
+        let left = taken.iter().map(|part| (1.0 - part).clamp(0.0, 1.0));
+        left.collect()
+    }
+
+    /// How the sums of the residual with combinations of the columns stray, columns x sums, with what the fit has
+    /// `left` of each harmonic; of a residual that is freed of `sizes` of the combinations.
+    pub(crate) fn strays(
+        &self,
+        combinations: &DMatrix<f64>,
+        left: &[f64],
+        sizes: Option<&DVector<f64>>,
+    ) -> Vec<Stray> {
+        let combined: Vec<[DMatrix<f64>; 2]> = { self.lines.iter() }
+            .map(|line| line.columns.each_ref().map(|part| part * combinations))
+            .collect();
+        let both = self.lines.iter().zip(&combined);
+        let residuals = both.map(|(line, own)| {
+            [0, 1].map(|part| match sizes {
+                Some(sizes) => &line.residual[part] - &own[part] * sizes,
+                None => line.residual[part].clone(),
+            })
+        });
+        let residuals: Vec<[DVector<f64>; 2]> = residuals.collect();
+        (0..combinations.ncols())
+            .map(|sum| self.stray((&combined, &residuals), left, sum))
+            .collect()
+    }
+
+    fn stray(
+        &self,
+        (combined, residuals): (&[[DMatrix<f64>; 2]], &[[DVector<f64>; 2]]),
+        left: &[f64],
+        sum: usize,
+    ) -> Stray {
+        let last = left.len() - 1;
+        let lines = combined.len();
+        let mut stray = Stray::default();
+        // What the residual's square at each harmonic of each line counts, were lines independent.
+        let mut counts = vec![0.0; (last + 1) * lines];
+        let mean = |harmonic: usize| {
+            if harmonic == 0 || harmonic == last {
+                1.0
+            } else {
+                2.0
+            }
+        };
+        for f in 0..=last {
+            let near = || {
+                let reach = NEIGHBOURS as isize;
+                (f as isize - reach..=f as isize + reach).map(move |g| folded(g, last))
+            };
+            let weight: f64 = near().map(|(g, _)| left[g]).sum();
+            let least = LEAST_LEFT * (2 * NEIGHBOURS + 1) as f64;
+            let factor = mean(f) / weight.max(least) / (self.phases as f64).powi(2);
+            for (g, sign) in near() {
+                let (mut real, mut imaginary) = (0.0, 0.0);
+                for (z, rest) in combined.iter().zip(residuals) {
+                    let (a, b) = (z[0][(f, sum)], z[1][(f, sum)]);
+                    let (c, d) = (rest[0][g], sign * rest[1][g]);
+                    real += a * c + b * d;
+                    imaginary += a * d - b * c;
+                }
+                stray.variance += factor * (real * real + imaginary * imaginary);
+                for (line, z) in combined.iter().enumerate() {
+                    let square = z[0][(f, sum)].powi(2) + z[1][(f, sum)].powi(2);
+                    counts[g * lines + line] += factor * square;
+                }
+            }
+            for z in combined {
+                let square = z[0][(f, sum)].powi(2) + z[1][(f, sum)].powi(2);
+                stray.square += mean(f) * square / self.phases as f64;
+            }
+        }
+        let total: f64 = counts.iter().sum();
+        let squares = counts.iter().enumerate().map(|(place, count)| {
+            let harmonic = place / lines;
+            count * count / mean(harmonic)
+        });
+        let scatter = squares.sum::<f64>() / (total * total).max(f64::MIN_POSITIVE);
+        stray.scatter = scatter * stray.variance.powi(2);
+        stray
+    }
+}
+
+/// The harmonic at which a place stands on the circle of frequencies, and the sign of its imaginary part.
+fn folded(place: isize, last: usize) -> (usize, f64) {
+    let last = last as isize;
+    if place < 0 {
+        (place.unsigned_abs().min(last.unsigned_abs()), -1.0)
+    } else if place > last {
+        ((2 * last - place).max(0).unsigned_abs(), -1.0)
+    } else {
+        (place.unsigned_abs(), 1.0)
+    }
+}
+
+impl Stray {
+    /// That of independent motions together.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            variance: self.variance + other.variance,
+            square: self.square + other.square,
+            scatter: self.scatter + other.scatter,
+        }
+    }
+
+    /// The variance by that `told` of all equations, of which the square of z is `whole`, and the degrees of freedom;
+    /// of what does not return the told one is taken.
+    pub(crate) fn by(self, told: f64, whole: f64) -> (f64, f64) {
+        let rest = (1.0 - self.square / whole).clamp(0.0, 1.0);
+        let freedom = self.variance.powi(2) / self.scatter;
+        (self.variance / told + rest, freedom)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Mean, Stray};
+    use crate::{
+        data::periods::Return,
+        regression::fold::{Fold, Phases},
+    };
+    use nalgebra::{DMatrix, DVector};
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    const PERIOD: usize = 128;
+    const DRAWS: u64 = 400;
+
+    /// How Σ z ρ strays over so many periods, with z the sine of the fifth harmonic, and what it is: the residual has noise
+    /// of variance 1 and an error that returns, of another variance.
+    fn drawn(seed: u64, periods: usize, returning: f64) -> (Stray, f64) {
+        let mut generator = Pcg64::seed_from_u64(seed);
+        let mut white = || {
+            let all = (0..12).map(|_| generator.random_range(-0.5..0.5));
+            all.sum::<f64>()
+        };
+        let error: Vec<f64> = (0..PERIOD).map(|_| returning.sqrt() * white()).collect();
+        let motion = Return {
+            samples: PERIOD,
+            motion: 0,
+        };
+        let mut fold = Fold::new(Phases::new(motion, 1).expect("long"), 2);
+        let mut sum = 0.0;
+        for equation in 0..periods * PERIOD {
+            let angle = 5.0 * std::f64::consts::TAU * equation as f64 / PERIOD as f64;
+            let (z, rest) = (angle.sin(), error[equation % PERIOD] + white());
+            sum += z * rest;
+            fold.add(equation, [z, rest].iter());
+        }
+        let split = |_, rows: DMatrix<f64>| {
+            let columns = rows.columns(0, 1).clone_owned();
+            (columns, DVector::from(rows.column(1)))
+        };
+        let mean = Mean::new(&vec![fold], split).expect("every phase");
+        let all = vec![1.0; PERIOD / 2 + 1];
+        (mean.strays(&DMatrix::identity(1, 1), &all, None)[0], sum)
+    }
+
+    #[test]
+    fn the_variance_of_a_sum_holds_noise_and_what_returns() {
+        for (periods, returning) in [(1, 0.0), (10, 0.0), (10, 1.0), (40, 0.5)] {
+            let (mut told, mut squares, mut freedom) = (0.0, 0.0, 0.0);
+            for seed in 0..DRAWS {
+                let (stray, sum) = drawn(seed, periods, returning);
+                told += stray.variance / DRAWS as f64;
+                squares += sum * sum / DRAWS as f64;
+                freedom = stray.by(1.0, stray.square).1;
+            }
+            // Σ z² over all periods, each with its own noise; what returns adds up before it is squared.
+            let half = 0.5 * (periods * PERIOD) as f64;
+            let expected = half * (1.0 + periods as f64 * returning);
+            assert!((told / expected - 1.0).abs() < 0.05, "{told} {expected}");
+            assert!(
+                (squares / expected - 1.0).abs() < 0.25,
+                "{squares} {expected}"
+            );
+            // Nine harmonics, of two numbers each.
+            assert!((freedom - 18.0).abs() < 0.5, "{freedom}");
+        }
+    }
+
+    #[test]
+    fn what_a_suspect_explains_is_no_part_of_the_variance() {
+        let (stray, _) = drawn(1, 10, 0.0);
+        let half = 0.5 * (10 * PERIOD) as f64;
+        assert!((stray.square - half).abs() < 1e-9 * half);
+        // The same with the sine itself in the residual, which is taken away by its size.
+        let motion = Return {
+            samples: PERIOD,
+            motion: 0,
+        };
+        let mut fold = Fold::new(Phases::new(motion, 1).expect("long"), 2);
+        for equation in 0..PERIOD {
+            let angle = 5.0 * std::f64::consts::TAU * equation as f64 / PERIOD as f64;
+            fold.add(equation, [angle.sin(), 3.0 * angle.sin()].iter());
+        }
+        let split = |_, rows: DMatrix<f64>| {
+            let columns = rows.columns(0, 1).clone_owned();
+            (columns, DVector::from(rows.column(1)))
+        };
+        let mean = Mean::new(&vec![fold], split).expect("every phase");
+        let all = vec![1.0; PERIOD / 2 + 1];
+        let sizes = DVector::from_element(1, 3.0);
+        let freed = mean.strays(&DMatrix::identity(1, 1), &all, Some(&sizes))[0];
+        assert!(freed.variance < 1e-20, "{}", freed.variance);
+    }
+}

@@ -1,0 +1,187 @@
+//! The equations of a motion that returns, in the mean at each phase.
+//!
+//! What goes with the motion returns with it, noise does not: of K returns the mean has a K-th of the
+//! variance of the noise, and all of the rest. The phases of a period are told apart to a power of two,
+//! so that their transform is quick.
+
+use nalgebra::DMatrix;
+
+use crate::data::periods::Return;
+
+/// Equations of a period, at least: of fewer there is nothing to be told.
+const FEWEST: usize = 16;
+
+/// Phases of a period, at most.
+const MOST_PHASES: usize = 2048;
+
+/// At which phase of its motion each equation of a run is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Phases {
+    /// Number of the first run with this motion.
+    pub(crate) motion: usize,
+    /// Equations of a period.
+    period: f64,
+    count: usize,
+}
+
+impl Phases {
+    /// Those of a run decimated to one sample in so many; none of a period of too few equations.
+    pub(crate) fn new(motion: Return, decimation: usize) -> Option<Self> {
+        let period = motion.samples as f64 / decimation as f64;
+        let largest = (period as usize).min(MOST_PHASES);
+        (largest >= FEWEST).then(|| Self {
+            motion: motion.motion,
+            period,
+            count: 1 << largest.ilog2(),
+        })
+    }
+
+    /// The phase of an equation.
+    fn of(&self, equation: usize) -> usize {
+        let part = (equation as f64 / self.period).fract();
+        ((part * self.count as f64) as usize).min(self.count - 1)
+    }
+}
+
+/// Sums of the rows of a line at each phase.
+#[derive(Debug, Clone)]
+pub(crate) struct Fold {
+    pub(crate) phases: Phases,
+    /// Values of a row.
+    width: usize,
+    sums: Vec<f64>,
+    counts: Vec<u32>,
+}
+
+impl Fold {
+    /// That of no rows.
+    pub(crate) fn new(phases: Phases, width: usize) -> Self {
+        Self {
+            phases,
+            width,
+            sums: vec![0.0; phases.count * width],
+            counts: vec![0; phases.count],
+        }
+    }
+
+    /// Adds the row of an equation.
+    pub(crate) fn add<'a>(&mut self, equation: usize, row: impl Iterator<Item = &'a f64>) {
+        let phase = self.phases.of(equation);
+        let place = phase * self.width;
+        let sums = &mut self.sums[place..place + self.width];
+        sums.iter_mut().zip(row).for_each(|(sum, own)| *sum += own);
+        self.counts[phase] += 1;
+    }
+
+    /// Adds what another run has of the same motion.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        if self.sums.len() != other.sums.len() {
+            return;
+        }
+        let sums = self.sums.iter_mut().zip(&other.sums);
+        sums.for_each(|(sum, own)| *sum += own);
+        let counts = self.counts.iter_mut().zip(&other.counts);
+        counts.for_each(|(count, own)| *count += own);
+    }
+
+    /// The mean rows, phases x values, times the root of the equations of a phase: products of them are
+    /// about those of all rows. None where a phase has no equation.
+    pub(crate) fn means(&self) -> Option<DMatrix<f64>> {
+        if self.counts.contains(&0) {
+            return None;
+        }
+        let equations: f64 = self.counts.iter().map(|count| f64::from(*count)).sum();
+        let root = (equations / self.counts.len() as f64).sqrt();
+        let value = |phase: usize, column: usize| {
+            self.sums[phase * self.width + column] * root / f64::from(self.counts[phase])
+        };
+        Some(DMatrix::from_fn(self.counts.len(), self.width, value))
+    }
+}
+
+/// What the lines have of a motion that returns.
+pub(crate) type Folds = Vec<Fold>;
+
+/// Adds the folds of a run to those of all, which have one entry for each motion.
+pub(crate) fn add(all: &mut Vec<Folds>, own: Folds) {
+    let motion = |folds: &Folds| folds.first().map(|fold| fold.phases.motion);
+    match all.iter_mut().find(|one| motion(one) == motion(&own)) {
+        Some(same) => same.iter_mut().zip(&own).for_each(|(a, b)| a.merge(b)),
+        None => all.push(own),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Fold, Phases, add};
+    use crate::data::periods::Return;
+
+    fn phases(samples: usize, decimation: usize) -> Option<Phases> {
+        let motion = Return { samples, motion: 0 };
+        Phases::new(motion, decimation)
+    }
+
+    #[test]
+    fn products_of_means_are_those_of_all_rows_of_a_motion_that_returns() {
+        // Five periods of 60 equations, of which 32 phases are kept.
+        let phases = phases(600, 10).expect("long enough");
+        let row = |equation: usize| {
+            let angle = std::f64::consts::TAU * equation as f64 / 60.0;
+            [1.0, angle.sin(), (3.0 * angle).cos()]
+        };
+        let mut fold = Fold::new(phases, 3);
+        let mut products = nalgebra::DMatrix::<f64>::zeros(3, 3);
+        for equation in 0..300 {
+            let own = row(equation);
+            fold.add(equation, own.iter());
+            let own = nalgebra::DMatrix::from_row_slice(1, 3, &own);
+            products += own.tr_mul(&own);
+        }
+        let means = fold.means().expect("every phase has equations");
+        assert_eq!(means.shape(), (32, 3));
+        let miss = (means.tr_mul(&means) - &products).norm() / products.norm();
+        assert!(miss < 0.03, "{miss}");
+    }
+
+    #[test]
+    fn what_alternates_from_period_to_period_is_no_part_of_the_means() {
+        let mut fold = Fold::new(phases(16, 1).expect("long enough"), 1);
+        for equation in 0..64 {
+            let sign = if equation / 16 % 2 == 0 { 1.0 } else { -1.0 };
+            fold.add(equation, [sign].iter());
+        }
+        assert_eq!(fold.means().expect("every phase").norm(), 0.0);
+    }
+
+    #[test]
+    fn runs_of_one_motion_are_folded_together() {
+        let one = |value: f64| {
+            let mut fold = Fold::new(phases(16, 1).expect("long enough"), 1);
+            (0..16).for_each(|equation| fold.add(equation, [value].iter()));
+            fold
+        };
+        let mut all = Vec::new();
+        add(&mut all, vec![one(1.0)]);
+        add(&mut all, vec![one(3.0)]);
+        let other = Return {
+            samples: 16,
+            motion: 2,
+        };
+        let phases = Phases::new(other, 1).expect("long enough");
+        add(&mut all, vec![Fold::new(phases, 1)]);
+        assert_eq!(all.len(), 2);
+        let means = all[0][0].means().expect("every phase");
+        assert!(
+            means
+                .iter()
+                .all(|mean| (mean - 2.0 * 2.0_f64.sqrt()).abs() < 1e-15)
+        );
+        assert!(all[1][0].means().is_none());
+    }
+
+    #[test]
+    fn a_period_of_a_few_equations_is_not_folded() {
+        assert!(phases(150, 10).is_none());
+        assert!(phases(160, 10).is_some());
+    }
+}
