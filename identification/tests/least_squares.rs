@@ -49,12 +49,10 @@ fn system(lines: &[(DMatrix<f64>, DVector<f64>)]) -> System {
         }
         factor
     });
-    let empty = System::new(Projection::Platform, &common::PAIR.info(), TRUTH.len());
-    System {
-        line_names: ["x", "y", "phi"].map(String::from).to_vec(),
-        lines: factors.collect(),
-        ..empty
-    }
+    let mut system = System::new(Projection::Platform, &common::PAIR.info(), TRUTH.len());
+    system.line_names = ["x", "y", "phi"].map(String::from).to_vec();
+    system.lines = factors.collect();
+    system
 }
 
 fn settings(weighted: bool) -> Settings {

@@ -7,6 +7,7 @@ use super::{
     checks::HARMFUL,
 };
 use crate::{
+    kinematics::conditioning::couples,
     regression::{columns::ColumnSet, projection::ModelKind},
     significant,
 };
@@ -52,6 +53,12 @@ pub(crate) fn assumptions(
             "the robot is rigid and stays as it was: temperature, wear and what was mounted are those of the runs",
         ),
     ];
+    let sizes = model.info().sizes;
+    if sizes.actuators == sizes.dof && couples(model) {
+        all.push(String::from(
+            "each length of the loops is right: with as many drives as degrees of freedom no closure tells of them, and they are not looked for",
+        ));
+    }
     if !before.gravity {
         all.push(String::from(
             "gravity points as described: how the base stands is not looked for",

@@ -321,12 +321,14 @@ fn geometry(robot: &str) -> Vec<Trap> {
             ),
         ],
         "Delta" => vec![
-            Trap::plant("rods 1 % long", "rod = \"0.56 m\"", "rod = \"0.5656 m\""),
+            Trap::plant("rods 1 % long", "rod = \"0.56 m\"", "rod = \"0.5656 m\"")
+                .assumed("lengths of loops without redundancy"),
             Trap::plant(
                 "platform 2 mm large",
                 "r_p = \"0.05 m\"",
                 "r_p = \"0.052 m\"",
-            ),
+            )
+            .assumed("lengths of loops without redundancy"),
             Trap::plant(
                 "gravity tilted by 5 deg",
                 "gravity = [0, 0, \"-9.81 m/s^2\"]",

@@ -37,6 +37,7 @@
 //! - `beside`: the columns of the model beside which suspects are tested;
 //! - `scaled`: equations between columns of different units;
 //! - `spread`: how far a score strays by chance;
+//! - `group`: columns that are tested together;
 //! - `test`: sizes, deviations, probabilities; `accused`: what it says.
 //!
 //! Columns that are made of torques use torques that are freed of the residual,
@@ -46,6 +47,7 @@ mod accused;
 mod beside;
 mod columns;
 mod course;
+mod group;
 mod nearby;
 mod pairs;
 mod scaled;
@@ -58,8 +60,8 @@ mod test;
 pub(crate) use accused::Accused;
 pub(crate) use columns::Suspect;
 pub(crate) use course::Pace;
+pub(crate) use group::Group;
 pub(crate) use nearby::Misreading;
 pub(crate) use pairs::Correlation;
 pub(crate) use scores::{Scores, scores};
 pub(crate) use shapes::{Reach, Shape};
-pub(crate) use test::Group;

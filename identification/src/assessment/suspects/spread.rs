@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{beside::Beside, columns::Layout, sections::RunScores, test::Group};
+use super::{beside::Beside, columns::Layout, group::Group, sections::RunScores};
 use crate::estimation::returning::{Mean, Stray};
 
 /// Columns of a group, freed of those of the model by B and then orthonormal: z⊥ = (z - W B) Mᵀ.
