@@ -260,6 +260,27 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
 }
 
 #[test]
+fn what_would_go_unseen_stands_before_what_no_data_can_show() {
+    let mut own = identification();
+    let without = full(&own);
+    own.unseen = vec![String::from(
+        "delay of the torques: 1 ms would move `a<b>` by 5 deviations",
+    )];
+    own.assumptions = vec![String::from("the clock is right")];
+    let html = full(&own);
+    let document = parsed(&html);
+    let after = |id: &str| {
+        let list = element(&document, id).next_sibling_element();
+        let list = list.and_then(|words| words.next_sibling_element());
+        text(list.expect("a list behind the heading and its words"))
+    };
+    assert!(after("unseen").contains("Delay of the torques: 1 ms would move a<b> by 5 deviations"));
+    assert!(after("assumptions").contains("The clock is right"));
+    assert!(html.find("id=\"unseen\"") < html.find("id=\"assumptions\""));
+    assert!(!without.contains("id=\"unseen\""));
+}
+
+#[test]
 fn every_check_stands_with_what_shows_it() {
     let html = full(&identification());
     let document = parsed(&html);
