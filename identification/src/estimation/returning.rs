@@ -107,6 +107,27 @@ impl Mean {
             .collect()
     }
 
+    /// Σ_f |ρ_k|² |ρ_l|²/M² of two lines: the variance of Σ_t ρ_k ρ_l, of residuals that return and have nothing to do with
+    /// each other; and its square by its degrees of freedom.
+    pub(crate) fn product(&self, first: usize, second: usize) -> [f64; 2] {
+        let square = |line: &Line, f: usize| {
+            let [real, imaginary] = &line.residual;
+            real[f].powi(2) + imaginary[f].powi(2)
+        };
+        let (Some(a), Some(b)) = (self.lines.get(first), self.lines.get(second)) else {
+            return [0.0; 2];
+        };
+        let last = self.phases / 2;
+        let weight = |f: usize| if f == 0 || f == last { 1.0 } else { 2.0 };
+        let scale = (self.phases as f64).powi(2);
+        let each = (0..=last).map(|f| weight(f) * square(a, f) * square(b, f) / scale);
+        // The square of a product of two squares of complex normal numbers is four times that of its mean in the mean,
+        // its variance three times.
+        each.fold([0.0; 2], |[sum, scatter], one| {
+            [sum + one, scatter + 0.5 * 0.75 * one * one]
+        })
+    }
+
     fn stray(
         &self,
         (combined, residuals): (&[[DMatrix<f64>; 2]], &[[DVector<f64>; 2]]),

@@ -88,8 +88,11 @@ impl Pairs {
 
 /// The correlations of all pairs in runs, each with its cosines, as far as the motion tells them: each pair
 /// is fitted on its own beside what every actuator has of its own.
+/// `returning` is what their residuals that return with the motion add to the variance of the mean of a product, and the
+/// square of that by its degrees of freedom.
 pub(super) fn correlations<'a>(
     runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
+    returning: &dyn Fn((usize, usize)) -> [f64; 2],
 ) -> Vec<Correlation> {
     let Some((first, _)) = runs.clone().next() else {
         return Vec::new();
@@ -103,7 +106,7 @@ pub(super) fn correlations<'a>(
     told.filter_map(|(place, &actuators)| {
         let mut chosen = own.clone();
         chosen.push(place);
-        correlation(actuators, &chosen, runs.clone())
+        correlation(actuators, &chosen, (runs.clone(), returning(actuators)))
     })
     .collect()
 }
@@ -112,7 +115,7 @@ pub(super) fn correlations<'a>(
 fn correlation<'a>(
     actuators: (usize, usize),
     chosen: &[usize],
-    runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
+    (runs, [returning, scatter]): (impl Iterator<Item = (&'a Pairs, usize)> + Clone, [f64; 2]),
 ) -> Option<Correlation> {
     let count = chosen.len();
     let of = |run: &Pairs, m: usize| run.gram(m).select_rows(chosen).select_columns(chosen);
@@ -123,7 +126,7 @@ fn correlation<'a>(
     }
     let factor = Scaled::new(&gram)?;
     let sizes = factor.solve(&score).column(0).clone_owned();
-    let (mut variance, mut squares) = (0.0, 0.0);
+    let (mut variance, mut squares) = (returning, scatter);
     for (run, cosines) in runs {
         let scores = run.scores.select_rows(chosen);
         let sums: Vec<DVector<f64>> = (1..=cosines)

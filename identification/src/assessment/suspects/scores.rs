@@ -228,7 +228,18 @@ fn late(layout: &Layout, runs: &[RunScores], (selected, base): (&[usize], usize)
 impl Scores {
     /// How the residuals of all pairs of actuators hang together, as far as the motion tells.
     pub(crate) fn correlations(&self) -> Vec<Correlation> {
-        correlations(self.runs.iter().map(|run| (&run.pairs, run.cosines)))
+        // Where all actuators are kept and needed the lines are theirs.
+        let lines = self.runs.first().map_or(0, |run| run.lines);
+        let equations: usize = self.runs.iter().map(|run| run.equations).sum();
+        let instants = equations as f64 / lines.max(1) as f64;
+        let returning = |(first, second): (usize, usize)| {
+            let means = self.means.iter().map(|(_, mean)| mean);
+            let sums = means.map(|mean| mean.product(first, second));
+            let [sum, scatter] = sums.fold([0.0; 2], |all, own| [all[0] + own[0], all[1] + own[1]]);
+            [sum / instants.powi(2), scatter / instants.powi(4)]
+        };
+        let runs = self.runs.iter().map(|run| (&run.pairs, run.cosines));
+        correlations(runs, &returning)
     }
 
     /// The mean of λ² e² over all equations, of errors e that come from white noise of the torques, given its

@@ -41,6 +41,8 @@ pub(super) struct RunScores {
     /// Σ ρ², weighted, and how many equations it is of.
     pub(super) square: f64,
     pub(super) equations: usize,
+    /// Lines of the model.
+    pub(super) lines: usize,
     /// ρ² of each instant, summed over the lines, weighted.
     pub(super) squares: Vec<f64>,
     /// How the run is timed and how the actuators move.
@@ -173,6 +175,7 @@ pub(super) struct Sink<'a> {
     products: Products,
     pairs: Pairs,
     equations: usize,
+    lines: usize,
     squares: Vec<f64>,
     phases: Option<Phases>,
     folds: Folds,
@@ -194,6 +197,7 @@ impl<'a> Sink<'a> {
             constants,
             products: Products::new(frame.layout, sections),
             equations: 0,
+            lines: 0,
             squares: Vec::new(),
             phases,
             folds: Vec::new(),
@@ -214,6 +218,7 @@ impl<'a> Sink<'a> {
             cosines,
             square: self.squares.iter().sum(),
             equations: self.equations,
+            lines: self.lines,
             squares: self.squares,
             tempo,
             folds: self.folds,
@@ -243,6 +248,7 @@ impl<'a> Sink<'a> {
             first = part.end;
         }
         self.equations += count * lines.len();
+        self.lines = lines.len();
         for sample in 0..count {
             let (n, constants) = (self.constants.len(), &self.constants);
             let jacobian = DMatrix::from_fn(n, lines.len(), |i, line| {
