@@ -91,20 +91,18 @@ impl Mean {
         left: &[f64],
         sizes: Option<&DVector<f64>>,
     ) -> Vec<Stray> {
-        let combined: Vec<[DMatrix<f64>; 2]> = { self.lines.iter() }
-            .map(|line| line.columns.each_ref().map(|part| part * combinations))
-            .collect();
-        let both = self.lines.iter().zip(&combined);
-        let residuals = both.map(|(line, own)| {
-            [0, 1].map(|part| match sizes {
-                Some(sizes) => &line.residual[part] - &own[part] * sizes,
+        let combined = |line: &Line| {
+            let columns = line.columns.each_ref().map(|part| part * combinations);
+            let rest = |part: usize| match sizes {
+                Some(sizes) => &line.residual[part] - &columns[part] * sizes,
                 None => line.residual[part].clone(),
-            })
-        });
-        let residuals: Vec<[DVector<f64>; 2]> = residuals.collect();
-        (0..combinations.ncols())
-            .map(|sum| self.stray((&combined, &residuals), left, sum))
-            .collect()
+            };
+            let residual = [rest(0), rest(1)];
+            Line { columns, residual }
+        };
+        let lines: Vec<Line> = self.lines.iter().map(combined).collect();
+        let sums = 0..combinations.ncols();
+        sums.map(|sum| self.stray(&lines, left, sum)).collect()
     }
 
     /// Σ_f |ρ_k|² |ρ_l|²/M² of two lines: the variance of Σ_t ρ_k ρ_l, of residuals that return and have nothing to do with
@@ -128,56 +126,41 @@ impl Mean {
         })
     }
 
-    fn stray(
-        &self,
-        (combined, residuals): (&[[DMatrix<f64>; 2]], &[[DVector<f64>; 2]]),
-        left: &[f64],
-        sum: usize,
-    ) -> Stray {
+    /// How a sum strays, of lines whose columns are the sums'.
+    fn stray(&self, lines: &[Line], left: &[f64], sum: usize) -> Stray {
         let last = left.len() - 1;
-        let lines = combined.len();
         let mut stray = Stray::default();
         // What the residual's square at each harmonic of each line counts, were lines independent.
-        let mut counts = vec![0.0; (last + 1) * lines];
-        let mean = |harmonic: usize| {
-            if harmonic == 0 || harmonic == last {
-                1.0
-            } else {
-                2.0
-            }
+        let mut counts = vec![0.0; (last + 1) * lines.len()];
+        let twice = |harmonic: usize| match harmonic == 0 || harmonic == last {
+            true => 1.0,
+            false => 2.0,
         };
+        let reach = NEIGHBOURS as isize;
+        let least = LEAST_LEFT * (2 * NEIGHBOURS + 1) as f64;
         for f in 0..=last {
-            let near = || {
-                let reach = NEIGHBOURS as isize;
-                (f as isize - reach..=f as isize + reach).map(move |g| folded(g, last))
-            };
+            let near = || (f as isize - reach..=f as isize + reach).map(|g| folded(g, last));
+            let z = |line: &Line| line.columns.each_ref().map(|part| part[(f, sum)]);
             let weight: f64 = near().map(|(g, _)| left[g]).sum();
-            let least = LEAST_LEFT * (2 * NEIGHBOURS + 1) as f64;
-            let factor = mean(f) / weight.max(least) / (self.phases as f64).powi(2);
+            let factor = twice(f) / weight.max(least) / (self.phases as f64).powi(2);
             for (g, sign) in near() {
                 let (mut real, mut imaginary) = (0.0, 0.0);
-                for (z, rest) in combined.iter().zip(residuals) {
-                    let (a, b) = (z[0][(f, sum)], z[1][(f, sum)]);
-                    let (c, d) = (rest[0][g], sign * rest[1][g]);
+                for (number, line) in lines.iter().enumerate() {
+                    let ([a, b], [rest, other]) = (z(line), &line.residual);
+                    let (c, d) = (rest[g], sign * other[g]);
                     real += a * c + b * d;
                     imaginary += a * d - b * c;
+                    counts[g * lines.len() + number] += factor * (a * a + b * b);
                 }
                 stray.variance += factor * (real * real + imaginary * imaginary);
-                for (line, z) in combined.iter().enumerate() {
-                    let square = z[0][(f, sum)].powi(2) + z[1][(f, sum)].powi(2);
-                    counts[g * lines + line] += factor * square;
-                }
             }
-            for z in combined {
-                let square = z[0][(f, sum)].powi(2) + z[1][(f, sum)].powi(2);
-                stray.square += mean(f) * square / self.phases as f64;
+            for [a, b] in lines.iter().map(z) {
+                stray.square += twice(f) * (a * a + b * b) / self.phases as f64;
             }
         }
         let total: f64 = counts.iter().sum();
-        let squares = counts.iter().enumerate().map(|(place, count)| {
-            let harmonic = place / lines;
-            count * count / mean(harmonic)
-        });
+        let squares = counts.iter().enumerate();
+        let squares = squares.map(|(place, count)| count * count / twice(place / lines.len()));
         let scatter = squares.sum::<f64>() / (total * total).max(f64::MIN_POSITIVE);
         stray.scatter = scatter * stray.variance.powi(2);
         stray

@@ -33,7 +33,7 @@
 //! - `sections`: products of columns and residual, section by section of the time;
 //! - `pairs`: residuals of actuators that hang together;
 //! - `course`: how residual and motion are spread over the time;
-//! - `scores`: one pass over the runs;
+//! - `pass`: one pass over a run; `scores`: what all runs tell;
 //! - `beside`: the columns of the model beside which suspects are tested;
 //! - `scaled`: equations between columns of different units;
 //! - `spread`: how far a score strays by chance;
@@ -50,6 +50,7 @@ mod course;
 mod group;
 mod nearby;
 mod pairs;
+mod pass;
 mod scaled;
 mod scores;
 mod sections;

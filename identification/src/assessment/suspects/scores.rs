@@ -1,37 +1,29 @@
-//! One pass over the beginnings of the runs. What is kept does not grow with the data.
+//! What the beginnings of the runs tell. What is kept does not grow with the data.
 
 use std::sync::OnceLock;
 
 use nalgebra::DMatrix;
-use overact::{Function, Model};
+use overact::Model;
 use rayon::prelude::*;
 
 use super::{
     accused::Accused,
     beside::Beside,
-    columns::{Layout, Sample, Suspect, moments, rates, suspects},
-    nearby::{Misreading, Nearby},
+    columns::{Layout, Suspect, suspects},
     pairs::{Correlation, correlations},
+    pass::Pass,
     scaled::{Scaled, told},
-    sections::{Frame, RunScores, Sink, Tempo},
+    sections::{Frame, RunScores},
     shapes::{Reach, Shape},
 };
 use crate::{
-    blocks::{BLOCK, evaluate, slice},
     data::{Log, Variant, periods::Return},
     error::Error,
     estimation::returning::Mean,
-    filters::{DECIMATION_PADDING, Decimation},
-    kinematics::{
-        Motion, Motions,
-        conditioning::{KeptActuators, home_scales},
-        distribution::{least_norm, product},
-    },
+    filters::DECIMATION_PADDING,
     regression::{
-        chunk::projected,
-        columns::{ColumnSet, Reversal},
+        columns::ColumnSet,
         fold::{Folds, Phases},
-        projection::ModelKind,
     },
     result::Estimate,
     settings::Settings,
@@ -73,21 +65,6 @@ pub(crate) struct Scores {
 pub(super) struct Found {
     pub(super) beside: OnceLock<Option<Beside>>,
     pub(super) accused: OnceLock<Vec<Option<Accused>>>,
-}
-
-/// What a pass needs.
-struct Pass<'a> {
-    model: &'a dyn Model,
-    variants: &'a [Variant<'a>],
-    columns: &'a ColumnSet,
-    base: &'a [usize],
-    /// Places of the columns of dry friction among the base parameters.
-    friction: &'a [usize],
-    kind: ModelKind,
-    frame: Frame<'a>,
-    /// One sample in so many is kept.
-    decimation: usize,
-    settings: &'a Settings,
 }
 
 /// Goes through the runs with an estimate of all base parameters; `reaches` are those of the actuators.
@@ -259,233 +236,5 @@ impl Scores {
             }
         }
         noise / equations.max(1) as f64
-    }
-}
-
-impl Pass<'_> {
-    /// Columns of a row: the base parameters', Y, the suspects' of one column each, the payload's.
-    fn width(&self) -> usize {
-        self.frame.layout.decimated + 1
-    }
-
-    fn run(&self, log: &Log, phases: Option<Phases>) -> Result<RunScores, Error> {
-        let lines = self.model.info().sizes.dof;
-        let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
-        let decimator = self
-            .settings
-            .decimator(self.decimation, log.sampling_frequency())?;
-        let samples = motions.samples();
-        let mut streams: Vec<Decimation> = (0..lines)
-            .map(|_| decimator.stream(self.width(), samples))
-            .collect::<Result<_, _>>()?;
-        let actuators = self.model.info().sizes.actuators;
-        let mut places = decimator.stream(actuators, samples)?;
-        let mut sink = Sink::new(self.frame, decimator.kept(samples), phases);
-        let frequency = log.sampling_frequency();
-        let mut tempo = Tempo {
-            start: self.settings.skip_start as f64 / frequency,
-            interval: self.decimation as f64 / frequency,
-            velocities: vec![0.0; actuators],
-            accelerations: vec![0.0; actuators],
-        };
-        let mut rows = vec![Vec::new(); lines];
-        while let Some(motion) = motions.next()? {
-            let jacobians = self.jacobians(&motion)?;
-            let positions = self.rows(&motion, &jacobians, &mut tempo, &mut rows)?;
-            let projected = self.projected(&rows, &jacobians);
-            let rows = projected.as_ref().unwrap_or(&rows);
-            let mut kept: Vec<Vec<f64>> = vec![Vec::new(); lines];
-            let all = streams.par_iter_mut().zip(&mut kept).zip(rows);
-            all.for_each(|((stream, kept), rows)| stream.push(rows, kept));
-            let mut at = Vec::new();
-            places.push(&positions, &mut at);
-            sink.take(&kept, &at);
-        }
-        Ok(sink.told(tempo))
-    }
-
-    /// J_p^inv at all samples of a motion, n x r each.
-    fn jacobians(&self, motion: &Motion) -> Result<Vec<f64>, Error> {
-        let inputs: [&[f64]; 1] = [&motion.pose];
-        evaluate(
-            self.model,
-            Function::InverseJacobian,
-            &inputs,
-            motion.samples,
-        )
-        .map_err(|error| motion.outside(error.sample, error.error).into())
-    }
-
-    /// The rows of all samples of a motion, line by line of Γ¹, in the place of those of another one; gives the
-    /// positions of the actuators, whose motion is noted.
-    fn rows(
-        &self,
-        motion: &Motion,
-        jacobians: &[f64],
-        tempo: &mut Tempo,
-        lines: &mut [Vec<f64>],
-    ) -> Result<Vec<f64>, Error> {
-        let info = self.model.info();
-        let (n, r) = (info.sizes.actuators, info.sizes.dof);
-        let at =
-            |error: overact::SampleError| Error::from(motion.outside(error.sample, error.error));
-        let ask = |function: Function, inputs: &[&[f64]]| {
-            evaluate(self.model, function, inputs, motion.samples).map_err(at)
-        };
-        let states: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
-        let positions = ask(Function::ActuatorPositions, &states[..1])?;
-        let payload = match info.sizes.payload_parameters {
-            0 => Vec::new(),
-            _ => ask(Function::IdmRedPayload, &states)?,
-        };
-        let (layout, p) = (self.frame.layout, self.base.len());
-        let more = self.width() - p;
-        for rows in &mut *lines {
-            rows.clear();
-            rows.reserve_exact(motion.samples * self.width());
-        }
-        for first in (0..motion.samples).step_by(BLOCK) {
-            let count = BLOCK.min(motion.samples - first);
-            let states = [
-                slice(&motion.pose, info.sizes.pose, first, count),
-                slice(&motion.twist, r, first, count),
-                slice(&motion.acceleration, r, first, count),
-            ];
-            let interval = 1.0 / motion.sampling_frequency;
-            let rows = self
-                .columns
-                .evaluate(
-                    self.model,
-                    &states,
-                    (count, interval),
-                    motion.carried(),
-                    (self.base, more),
-                )
-                .map_err(at)?;
-            lines
-                .iter_mut()
-                .zip(rows)
-                .for_each(|(all, rows)| all.extend(rows));
-        }
-        for (to, from) in self.friction.iter().enumerate() {
-            for rows in &mut *lines {
-                let column = rows.iter().skip(*from).step_by(self.width());
-                let column: Vec<f64> = column.copied().collect();
-                let late = rates(&column, 1, motion.sampling_frequency);
-                let places = rows.iter_mut().skip(p + to).step_by(self.width());
-                places.zip(late).for_each(|(place, rate)| *place = -rate);
-            }
-        }
-        let [torques, smooth] = self.inputs(motion, jacobians, lines);
-        let torque_rates = rates(&torques, n, motion.sampling_frequency);
-        let slopes = rates(&smooth, n, motion.sampling_frequency);
-        let torque_bends = rates(&slopes, n, motion.sampling_frequency);
-        let nearby = Nearby {
-            model: self.model,
-            columns: self.columns,
-            base: self.base,
-            values: self.frame.values,
-        };
-        let [velocities, accelerations] = nearby.actuators(motion, jacobians)?;
-        tempo.take([&velocities, &accelerations]);
-        let signals: [&[f64]; 4] = [&positions, &velocities, &accelerations, &torques];
-        let actuators = moments((motion, Reversal::new(self.settings)), signals);
-        let clock = nearby.clock(motion)?;
-        let moved = self
-            .frame
-            .suspects
-            .iter()
-            .any(|one| matches!(one, Suspect::Offset(_)));
-        let misread = match moved {
-            true => nearby.misread(motion, (&torques, jacobians), &actuators, &Misreading::ALL)?,
-            false => Vec::new(),
-        };
-        let width = self.width();
-        let lengths = nearby.lengths(motion, self.variants)?;
-        let own = layout.base + 1;
-        for sample in 0..motion.samples {
-            let here = Sample {
-                jacobian: slice(jacobians, n * r, sample, 1),
-                torques: slice(&torques, n, sample, 1),
-                torque_rates: slice(&torque_rates, n, sample, 1),
-                torque_bends: slice(&torque_bends, n, sample, 1),
-                actuators: &actuators[sample * n..(sample + 1) * n],
-                reaches: self.frame.reaches,
-                pose: slice(&motion.pose, info.sizes.pose, sample, 1),
-                clock: slice(&clock, r, sample, 1),
-                misread: slice(&misread, Misreading::ALL.len() * n * r, sample, 1),
-                lengths: slice(&lengths, self.variants.len() * r, sample, 1),
-            };
-            // Waves, which come last, are made of decimated positions.
-            let narrow = self
-                .frame
-                .suspects
-                .iter()
-                .take(layout.decimated - layout.base);
-            let factors: Vec<f64> = narrow.map(|suspect| here.factor(*suspect)).collect();
-            for (line, rows) in lines.iter_mut().enumerate() {
-                let row = &mut rows[sample * width..(sample + 1) * width];
-                let narrow = row.len() - own - self.model.info().sizes.payload_parameters;
-                let (suspects, load) = row[own..].split_at_mut(narrow);
-                let all = self.frame.suspects.iter().zip(&factors);
-                for (to, (suspect, factor)) in suspects.iter_mut().zip(all) {
-                    *to = here.entry(*suspect, *factor, line);
-                }
-                load.copy_from_slice(slice(&payload, load.len(), sample * r + line, 1));
-            }
-        }
-        Ok(positions)
-    }
-
-    /// Puts the measured inputs into the rows, and gives the torques freed of the residual, and freed of dry friction
-    /// beside it.
-    fn inputs(&self, motion: &Motion, jacobians: &[f64], lines: &mut [Vec<f64>]) -> [Vec<f64>; 2] {
-        let sizes = self.model.info().sizes;
-        let (n, r) = (sizes.actuators, sizes.dof);
-        let (width, p, y) = (self.width(), self.base.len(), self.frame.layout.base);
-        let mut both = [motion.torques.clone(), motion.torques.clone()];
-        for sample in 0..motion.samples {
-            let jacobian = slice(jacobians, n * r, sample, 1);
-            let torques = slice(&motion.torques, n, sample, 1);
-            let mut taken = [vec![0.0; r], vec![0.0; r]];
-            for (line, rows) in lines.iter_mut().enumerate() {
-                let row = &mut rows[sample * width..(sample + 1) * width];
-                let measured = torques.iter().enumerate();
-                let input: f64 = measured
-                    .map(|(i, torque)| jacobian[i * r + line] * torque)
-                    .sum();
-                let part = |place: usize| row[place] * self.frame.values[place];
-                let explained: f64 = (0..p).map(part).sum();
-                let dry: f64 = self.friction.iter().map(|place| part(*place)).sum();
-                row[y] = input;
-                taken[0][line] = input - explained;
-                taken[1][line] = input - explained + dry;
-            }
-            let Some(distribution) = least_norm(jacobian, r) else {
-                continue;
-            };
-            for (all, taken) in both.iter_mut().zip(&taken) {
-                let mut own = vec![0.0; n];
-                product(&distribution, taken, &mut own);
-                let torques = &mut all[sample * n..(sample + 1) * n];
-                torques
-                    .iter_mut()
-                    .zip(&own)
-                    .for_each(|(torque, own)| *torque -= own);
-            }
-        }
-        both
-    }
-
-    /// Rows of Γ¹ as the estimate's model takes them, where it takes others.
-    fn projected(&self, lines: &[Vec<f64>], jacobians: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let sizes = self.model.info().sizes;
-        let kept = match self.kind {
-            ModelKind::Platform => return None,
-            ModelKind::Joints => (0..sizes.actuators).collect(),
-            ModelKind::Actuators => self.settings.kept_actuators.clone(),
-        };
-        let choice = KeptActuators::new(kept, &home_scales(self.model));
-        Some(projected(lines, &choice, jacobians, sizes.actuators * sizes.dof).0)
     }
 }
