@@ -48,17 +48,19 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             return Check { words, ..check };
         }
         let harm = harm(context, scores, one);
-        let by = |size: f64| match size > LARGEST {
-            true => String::from("far"),
-            false => format!("{} %", percent(size)),
+        let sense = if accused.size() > 0.0 { "high" } else { "low" };
+        let deviation = percent(accused.deviation);
+        let words = match accused.size().abs() > LARGEST {
+            true => format!(
+                "gravity and motion do not go together in the torques, as if the sampling frequency were far too {sense}; {}. Check the time column and its unit, `gravity` of the description, and whether the log has the whole torques: with a compensation of gravity that the drive adds",
+                harm.words()
+            ),
+            false => format!(
+                "the sampling frequency looks {} % too {sense} (standard deviation {deviation} %); {}. Check the time column and its unit",
+                percent(accused.size().abs()),
+                harm.words()
+            ),
         };
-        let words = format!(
-            "the sampling frequency looks {} too {} (standard deviation {} %); {}. Check the time column and its unit",
-            by(accused.size().abs()),
-            if accused.size() > 0.0 { "high" } else { "low" },
-            percent(accused.deviation),
-            harm.words()
-        );
         Check { words, ..check }.because(&harm)
     });
     Ok(checks.collect())

@@ -1,13 +1,12 @@
 //! Whether a few instants decide, whether the motion is long enough, and whether the filters suit it.
 
-use super::{Context, relative_error::times_the_noise};
+use super::{Context, relative_error::times_the_noise, suspected::dry_friction};
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Grade},
         suspects::Pace,
     },
     error::Error,
-    result::{ParameterEstimate, Stage},
     significant,
 };
 
@@ -124,20 +123,6 @@ fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
         true => check.found(),
         false => check.allowing(Grade::UseListed).spoiling(dry),
     })
-}
-
-/// Names of the base parameters that are dry friction.
-fn dry_friction(context: &Context<'_>) -> Vec<String> {
-    let Some(base) = context.estimates_of(Stage::Base).next() else {
-        return Vec::new();
-    };
-    let is_dry = |one: &&ParameterEstimate| {
-        let column = context.base.columns.get(one.column);
-        let column = column.and_then(|&column| context.columns.as_slice().get(column));
-        column.is_some_and(|column| column.symbol.has_sign())
-    };
-    let dry = base.parameters.iter().filter(is_dry);
-    dry.map(|one| one.name.clone()).collect()
 }
 
 /// Whether columns and torques pass the same filter.

@@ -7,7 +7,7 @@
 use super::{
     Context,
     level::{level, origin},
-    suspected::{Tested, parabola, tested, worst_harm},
+    suspected::{Tested, dry_friction, parabola, tested, worst_harm},
 };
 use crate::{
     assessment::{
@@ -69,14 +69,16 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             time(visible)
         ))]);
     }
-    let harm = worst_harm(context, scores, (&found, one), level);
+    let mut harm = worst_harm(context, scores, (&found, one), level);
+    // Reversals, which were left out of what it was found by, are rounded off, too.
+    harm.spoil(dry_friction(context));
     let (what, beside) = if accused.size() > 0.0 {
         ("the torques are", "the motion")
     } else {
         ("the motion is", "the torques")
     };
     let words = format!(
-        "{what} smoother than {beside}, as by a mean over {} ms; {}. Look for a filter of the drive or of the log that one of the two has passed, or for samples that were interpolated: log both without, or let both pass the same one",
+        "{what} smoother than {beside}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log that one of the two has passed, or for samples that were interpolated: log both without, or let both pass the same one",
         time(accused.size()),
         harm.words()
     );

@@ -102,6 +102,20 @@ pub(super) fn guilty(all: &[Tested], level: f64) -> Option<&Tested> {
     beyond.max_by(|a, b| a.accused.explained.total_cmp(&b.accused.explained))
 }
 
+/// Names of the base parameters that are dry friction.
+pub(super) fn dry_friction(context: &Context<'_>) -> Vec<String> {
+    let Some(base) = context.estimates_of(Stage::Base).next() else {
+        return Vec::new();
+    };
+    let is_dry = |one: &&ParameterEstimate| {
+        let column = context.base.columns.get(one.column);
+        let column = column.and_then(|&column| context.columns.as_slice().get(column));
+        column.is_some_and(|column| column.symbol.has_sign())
+    };
+    let dry = base.parameters.iter().filter(is_dry);
+    dry.map(|one| one.name.clone()).collect()
+}
+
 /// What suspects that may well be there do to the parameters: the worst of it, and all that any of them
 /// spoils.
 pub(super) fn worst_harm(
@@ -184,6 +198,18 @@ impl Harm {
             parameter: String::new(),
             spoiled: Vec::new(),
             grade: Grade::Use,
+        }
+    }
+
+    /// Adds parameters that are not to be used.
+    pub(super) fn spoil(&mut self, names: Vec<String>) {
+        if !names.is_empty() {
+            self.grade = self.grade.max(Grade::UseListed);
+        }
+        for name in names {
+            if !self.spoiled.contains(&name) {
+                self.spoiled.push(name);
+            }
         }
     }
 

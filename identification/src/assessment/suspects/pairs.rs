@@ -126,7 +126,7 @@ fn correlation<'a>(
     }
     let factor = Scaled::new(&gram)?;
     let sizes = factor.solve(&score).column(0).clone_owned();
-    let (mut variance, mut squares) = (returning, scatter);
+    let (mut variance, mut squares) = (0.0, 0.0);
     for (run, cosines) in runs {
         let scores = run.scores.select_rows(chosen);
         let sums: Vec<DVector<f64>> = (1..=cosines)
@@ -138,11 +138,13 @@ fn correlation<'a>(
         variance += share;
         squares += share * share / cosines as f64;
     }
+    let by_chance = variance.sqrt();
+    (variance, squares) = (variance + returning, squares + scatter);
     let scale = (sizes[actuators.0] * sizes[actuators.1]).sqrt();
     let strength = sizes[count - 1].abs() / variance.sqrt();
     let freedom = variance * variance / squares;
     let sound = scale > 0.0 && strength.is_finite() && freedom >= 1.0;
-    let is_told = variance.sqrt() <= LARGEST_DEVIATION * scale;
+    let is_told = by_chance <= LARGEST_DEVIATION * scale;
     (sound && is_told).then(|| Correlation {
         actuators,
         value: sizes[count - 1] / scale,
