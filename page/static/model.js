@@ -15,7 +15,8 @@ function broken(name) {
 }
 
 function table(header, rows, classes = []) {
-  const cell = kind => (text, at) => element(kind, classes[at] ? { class: classes[at] } : {}, ...broken(String(text)));
+  const content = one => (Array.isArray(one) ? one : broken(String(one)));
+  const cell = kind => (one, at) => element(kind, classes[at] ? { class: classes[at] } : {}, ...content(one));
   const head = element('tr', {}, ...header.map(cell('th')));
   const body = rows.map(row => element('tr', {}, ...row.map(cell('td'))));
   const made = element('table', {}, element('thead', {}, head), element('tbody', {}, ...body));
@@ -27,18 +28,20 @@ function digits(value) {
   return String(Number(value.toPrecision(6)));
 }
 
+/** A sum that is broken between its terms, never inside one. */
 function regrouping(terms) {
-  return terms.map(({ parameter, coefficient }, at) => {
-    const sign = coefficient < 0 ? (at ? ' − ' : '−') : (at ? ' + ' : '');
+  return terms.flatMap(({ parameter, coefficient }, at) => {
+    const sign = coefficient < 0 ? (at ? '− ' : '−') : (at ? '+ ' : '');
     const factor = Math.abs(coefficient) === 1 ? '' : `${digits(Math.abs(coefficient))} `;
-    return `${sign}${factor}${parameter}`;
-  }).join('');
+    const term = element('span', { class: 'term' }, `${sign}${factor}${parameter}`);
+    return at ? [' ', term] : [term];
+  });
 }
 
 function parametersOf(model) {
   const all = model.base_parameters;
   const standard = model.parameters.filter(name => !name.endsWith('_payload')).length;
-  const rows = all.map(one => [one.name, one.regrouping.length > 1 ? regrouping(one.regrouping) : '']);
+  const rows = all.map(one => [[one.name], one.regrouping.length > 1 ? regrouping(one.regrouping) : []]);
   return [
     element('p', { class: 'soft' }, `${all.length} base parameters of ${standard} standard parameters; those with the suffix R have others regrouped into them.`),
     table(['base parameter', 'is'], rows, ['', 'text wide']),

@@ -275,6 +275,10 @@ async function fits(tab) {
         if (shown !== 'drawing' && shown !== 'identification') await tab.until('page.model', 120);
         const overflow = await tab.value('document.documentElement.scrollWidth - innerWidth');
         holds(`${shown} fits ${width} px, ${dark ? 'dark' : 'light'}`, overflow <= 0, overflow);
+        if (shown === 'parameters') {
+          const terms = await tab.value("[...document.querySelectorAll('#parameters .term')].map(one => one.getClientRects().length)");
+          holds('sums are broken between their terms alone', terms.length > 0 && terms.every(one => one === 1), `${terms.length} terms`);
+        }
         await picture(tab, `${shown}-${width}-${dark ? 'dark' : 'light'}`);
       }
     }

@@ -4,6 +4,7 @@
 use overact::{Columns, Function, Model};
 use overact_robot::{Error, Excitation, ExcitationEffort, LimitKind, Robot};
 use overact_simulation::{Run, Trajectory, sample};
+use std::time::Duration;
 
 /// A search that takes a second in a test.
 const EFFORT: ExcitationEffort = ExcitationEffort {
@@ -212,4 +213,22 @@ fn limits_that_no_motion_keeps_are_told_at_their_line() {
         "{error}"
     );
     assert!(problems[0].help.is_some());
+}
+
+#[test]
+fn a_time_that_is_up_ends_the_random_series_too() {
+    let robot = library("planar_3prr");
+    let table = "\n[excitation]\nharmonics = 30\nruns = 1\n";
+    let text = format!("{}{table}", robot.source().text);
+    let robot = Robot::from_text("planar_3prr.toml", &text).expect("a robot");
+    let effort = ExcitationEffort {
+        time: Some(Duration::from_millis(1)),
+        ..EFFORT
+    };
+    let found = robot.excite(&effort, &|_, _| ()).expect("exciting runs");
+    let count = found.hundred.len();
+    assert!((1..100).contains(&count), "{count}");
+    let told = format!("the time was enough for {count} random series, not 100");
+    assert!(found.assumed.contains(&told), "{:?}", found.assumed);
+    keeps_limits(&written(&robot, &found), &found);
 }

@@ -93,12 +93,11 @@ fn text(found: &Excitation, info: &Info<'_>, written: Option<&Path>) -> String {
 }
 
 /// The sets of runs with what they are called.
-fn sets(found: &Excitation) -> impl Iterator<Item = (&'static str, &JudgedRuns)> {
-    let described = found.described.iter().map(|runs| ("described", runs));
-    described.chain([
-        ("best of 100 random", &found.random),
-        ("found", &found.found),
-    ])
+fn sets(found: &Excitation) -> impl Iterator<Item = (String, &JudgedRuns)> {
+    let described = found.described.iter();
+    let described = described.map(|runs| ("described".to_owned(), runs));
+    let random = format!("best of {} random", found.hundred.len());
+    described.chain([(random, &found.random), ("found".to_owned(), &found.found)])
 }
 
 /// How well each set of runs determines the parameters.
@@ -116,7 +115,7 @@ fn comparison(found: &Excitation) -> String {
     for (name, runs) in sets(found) {
         for case in &runs.cases {
             let mut row = vec![
-                name.to_owned(),
+                name.clone(),
                 case.model.case().to_owned(),
                 significant(case.condition, 3),
                 format!("{:.1}", case.log_det),
@@ -135,7 +134,7 @@ fn comparison(found: &Excitation) -> String {
 
 /// How much of each limit the sets of runs take.
 fn limits(found: &Excitation) -> String {
-    let names = sets(found).map(|(name, _)| name.to_owned());
+    let names = sets(found).map(|(name, _)| name);
     let mut header = vec!["limit".to_owned(), "largest".to_owned(), String::new()];
     header.extend(names);
     let mut rows = vec![header];

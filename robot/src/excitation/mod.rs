@@ -35,7 +35,7 @@ use overact::{Function, Info, Model};
 use overact_codegen::diagnostic::Code;
 use overact_simulation::Trajectory;
 use rand_pcg::Pcg64;
-use search::{Candidate, Search, added};
+use search::{Candidate, Deadlines, RANDOM, Search, added};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -58,7 +58,8 @@ pub struct ExcitationEffort {
     pub seed: u64,
     /// Generations of the evolution of each run, at most.
     pub generations: usize,
-    /// Time after which nothing better is searched; the runs depend on the machine then.
+    /// Time after which nothing better is searched; the runs depend on the machine then. What each run needs at
+    /// least comes on top: one random series that keeps the limits, and the check of the limits.
     pub time: Option<Duration>,
 }
 
@@ -93,10 +94,10 @@ pub struct Excitation {
     pub duration: f64,
     /// The runs of the description from which parameters are identified, if there are any.
     pub described: Option<JudgedRuns>,
-    /// The best of a hundred random ones, run after run.
+    /// The best of a hundred random ones, or of as many as were found, run after run.
     pub random: JudgedRuns,
-    /// The hundred: of every run the first, of every run the second, and so on. They are judged as candidates
-    /// are, at fewer samples.
+    /// The hundred, or as many as the time was enough for: of every run the first, of every run the second, and so
+    /// on. They are judged as candidates are, at fewer samples.
     #[serde(skip)]
     pub hundred: Vec<Vec<CaseOfRuns>>,
     /// Those that were found.
@@ -123,7 +124,7 @@ impl Robot {
         let start = Instant::now();
         // A description that can't take the runs is refused before they are searched.
         text::description(self, "")?;
-        let task = Task::new(self, effort)?;
+        let task = Task::new(self, effort, start)?;
         let chains = task.search(self, effort, start, progress)?;
         Ok(task.told(self, chains))
     }
@@ -155,10 +156,12 @@ struct Chains {
     found: Vec<Trajectory>,
     /// What the first random ones of all runs tell together, the second ones, and so on.
     hundred: Vec<Vec<DMatrix<f64>>>,
+    /// Whether the time for random ones was up in a run.
+    hurried: bool,
 }
 
 impl<'a> Task<'a> {
-    fn new(robot: &'a Robot, effort: &ExcitationEffort) -> Result<Self, Error> {
+    fn new(robot: &'a Robot, effort: &ExcitationEffort, start: Instant) -> Result<Self, Error> {
         let description = robot.description();
         let mut assumed = Vec::new();
         let truth = robot
@@ -187,7 +190,7 @@ impl<'a> Task<'a> {
             question,
             assumed,
         };
-        let typical = task.typical(robot, effort)?;
+        let typical = task.typical(robot, effort, start)?;
         task.question.normalise(&typical);
         Ok(task)
     }
@@ -199,7 +202,7 @@ impl<'a> Task<'a> {
             question: &self.question,
             limits: &self.limits,
             generations: effort.generations,
-            deadline: None,
+            deadlines: None,
         }
     }
 
@@ -208,8 +211,12 @@ impl<'a> Task<'a> {
         &self,
         robot: &Robot,
         effort: &ExcitationEffort,
+        start: Instant,
     ) -> Result<Vec<DMatrix<f64>>, Error> {
-        let search = self.of(effort);
+        let mut search = self.of(effort);
+        // Half of the first run's share of the time, with the payload and without.
+        let share = |time: Duration| start + time.div_f64(2.0 * self.frames.len() as f64);
+        search.deadlines = effort.time.map(share).map(Deadlines::until);
         let mut typical = Vec::new();
         for payload in [false, true] {
             let Some(frame) = self.frames.iter().find(|frame| frame.payload == payload) else {
@@ -250,11 +257,12 @@ impl<'a> Task<'a> {
             tell(0);
             // Each run has its share of the time.
             let share = |time: Duration| start + time.mul_f64(part * (index + 1) as f64);
-            search.deadline = effort.time.map(share);
+            search.deadlines = effort.time.map(share).map(Deadlines::until);
             let mut random = stream(effort.seed, index as u64);
             // A limit that holds every coordinate is refused; so each run has a series.
             let series = search.series(frame);
             let all = search.random(&series, &mut random);
+            chains.hurried |= search.late().0;
             let best = search
                 .best(&all, &told_random)
                 .zip(search.best(&all, &told));
@@ -303,13 +311,18 @@ impl<'a> Task<'a> {
     fn told(&self, robot: &Robot, chains: Chains) -> Excitation {
         let names = self.frames.iter().map(|frame| frame.name.clone()).collect();
         let with = |all: Vec<Trajectory>| self.frames.iter().cloned().zip(all).collect();
+        let mut assumed = self.assumed.clone();
+        let count = chains.hundred.len();
+        if chains.hurried && count < RANDOM {
+            let words = format!("the time was enough for {count} random series, not {RANDOM}");
+            assumed.push(words);
+        }
         let hundred = chains.hundred.iter();
         let hundred = hundred.map(|told| self.question.judge(told)).collect();
         let (random, found): (Vec<_>, Vec<_>) = (with(chains.random), with(chains.found));
         let duration =
             |runs: &[(Frame, Trajectory)]| runs.iter().map(|(f, _)| f.duration).sum::<f64>();
         let whole = duration(&found);
-        let mut assumed = self.assumed.clone();
         let judged = |runs: &[(Frame, Trajectory)]| self.judged(runs, whole / duration(runs));
         let described = judged(&self.described);
         if described.is_none() && !self.described.is_empty() {

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use std::time::Instant;
 
 /// Random series from which the best one is taken.
-const RANDOM: usize = 100;
+pub(super) const RANDOM: usize = 100;
 
 /// Random series that are tried for so many that keep all limits, at most.
 const ATTEMPTS: usize = 5 * RANDOM;
@@ -51,8 +51,14 @@ const UNREACHED: f64 = -1e9;
 /// Factor from one attempt to keep the limits for certain to the next, at least and at most.
 const SHRINK: [f64; 2] = [0.9, 0.9995];
 
+/// The same where the time is up: a motion that is a little smaller costs less than many more attempts.
+const LATE_SHRINK: [f64; 2] = [0.7, 0.99];
+
 /// Attempts to keep the limits for certain, at most.
 const SETTLING: usize = 300;
+
+/// Part of a run's time after which no more random series are drawn: the rest is the evolution's.
+const RANDOM_SHARE: f64 = 0.5;
 
 /// How far numbers that are printed may be off, relatively.
 const PRINTED: f64 = 1e-9;
@@ -70,10 +76,35 @@ pub(super) struct Search<'a> {
     pub(super) question: &'a Question,
     pub(super) limits: &'a [Limit],
     pub(super) generations: usize,
-    pub(super) deadline: Option<Instant>,
+    pub(super) deadlines: Option<Deadlines>,
+}
+
+/// When the phases of the search of a run end, if the time is limited.
+#[derive(Clone, Copy)]
+pub(super) struct Deadlines {
+    /// No more random series are drawn, once there is one.
+    random: Instant,
+    /// Nothing better is searched.
+    whole: Instant,
+}
+
+impl Deadlines {
+    /// Those of a run that is searched from now on until then.
+    pub(super) fn until(whole: Instant) -> Self {
+        let now = Instant::now();
+        let random = now + whole.saturating_duration_since(now).mul_f64(RANDOM_SHARE);
+        Self { random, whole }
+    }
 }
 
 impl<'a> Search<'a> {
+    /// Whether no more random series are drawn, and whether nothing better is searched.
+    pub(super) fn late(&self) -> (bool, bool) {
+        let now = Instant::now();
+        self.deadlines
+            .map_or((false, false), |ends| (now > ends.random, now > ends.whole))
+    }
+
     /// The series of a run: coordinates with a limit of 0 have none.
     pub(super) fn series(&self, frame: &'a Frame) -> Series<'a> {
         let limits = self
@@ -93,18 +124,29 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Random series of a run that keep all limits, each as large as it can be.
+    /// Random series of a run that keep all limits, each as large as it can be. Once the time for them is up, those
+    /// that were found so far, one at least where there is any.
     pub(super) fn random(&self, series: &Series<'_>, random: &mut Pcg64) -> Vec<Candidate> {
         let mut found = Vec::new();
-        for _ in 0..ATTEMPTS / RANDOM {
+        'all: for _ in 0..ATTEMPTS / RANDOM {
             let draw = |_| {
                 (0..series.len())
                     .map(|_| StandardNormal.sample(random))
                     .collect()
             };
             let drawn: Vec<Vec<f64>> = (0..RANDOM).map(draw).collect();
-            let fitted = drawn.par_iter().map(|numbers| self.fitted(series, numbers));
-            found.extend(fitted.collect::<Vec<_>>().into_iter().flatten());
+            // With all the time there is no need to wait for one another.
+            let together = match self.deadlines {
+                Some(_) => rayon::current_num_threads().min(CANDIDATES),
+                None => RANDOM,
+            };
+            for drawn in drawn.chunks(together) {
+                let fitted = drawn.par_iter().map(|numbers| self.fitted(series, numbers));
+                found.extend(fitted.collect::<Vec<_>>().into_iter().flatten());
+                if self.late().0 && !found.is_empty() {
+                    break 'all;
+                }
+            }
             // Where none of so many keeps the limits, more would hardly.
             if found.is_empty() || found.len() >= RANDOM {
                 break;
@@ -182,10 +224,7 @@ impl<'a> Search<'a> {
         );
         let mut evolution = Evolution::new(&numbers, FIRST_STEP, CANDIDATES);
         for generation in 0..self.generations {
-            let late = self
-                .deadline
-                .is_some_and(|deadline| Instant::now() > deadline);
-            if late || evolution.step() < LAST_STEP {
+            if self.late().1 || evolution.step() < LAST_STEP {
                 break;
             }
             let drawn = evolution.draw(CANDIDATES, random);
@@ -237,7 +276,7 @@ impl<'a> Search<'a> {
                     information,
                 });
             }
-            let [least, most] = SHRINK;
+            let [least, most] = if self.late().1 { LATE_SHRINK } else { SHRINK };
             factor *= (1.0 / worst).clamp(least, most);
         }
         None
