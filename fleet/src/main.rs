@@ -320,7 +320,10 @@ fn power(own: Power) -> Result<(), String> {
     if own.robots == 0 || own.healthy == 0 || own.days < 4 {
         return Err("a trial has robots of both kinds, and at least 4 days".to_owned());
     }
-    if sizes.clone().any(|size| !(size.abs() < 100.0)) {
+    if sizes
+        .clone()
+        .any(|size| size.is_nan() || size.abs() >= 100.0)
+    {
         return Err("a drift is less than 100 percent".to_owned());
     }
     let robot = overact_robot::Robot::from_toml(&own.robot).map_err(|error| error.to_string())?;
