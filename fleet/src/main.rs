@@ -10,6 +10,7 @@ use overact_fleet::{
     report,
     robots::Robots,
     session::{Fleet, Options},
+    store::Place,
 };
 use std::{
     io::Write,
@@ -45,12 +46,12 @@ enum Command {
 /// Where the data is, and who works on it.
 #[derive(Debug, Args)]
 struct Data {
-    /// Folder of factor files
-    #[arg(long, value_name = "FOLDER")]
-    factors: Option<PathBuf>,
-    /// Folder of logs, `serial=…/day=…/….parquet`
-    #[arg(long, value_name = "FOLDER")]
-    logs: Option<PathBuf>,
+    /// Folder of factor files, or `s3://BUCKET/PREFIX`
+    #[arg(long, value_name = "FOLDER|URL")]
+    factors: Option<Place>,
+    /// Folder or URL of logs, `serial=…/day=…/….parquet`
+    #[arg(long, value_name = "FOLDER|URL")]
+    logs: Option<Place>,
     /// Description of robots in the logs (again for others)
     #[arg(long = "robot", value_name = "TOML")]
     robots: Vec<PathBuf>,
