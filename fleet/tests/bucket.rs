@@ -1,5 +1,4 @@
-//! Factor files and logs of a bucket with the interface of S3, on one machine and by a scheduler and executors that
-//! know nothing of each other's folders: the answers of the same files in a folder.
+//! Factor files and logs of a bucket with the interface of S3: the answers of the same files in a folder.
 #![cfg(feature = "s3")]
 
 mod common;
