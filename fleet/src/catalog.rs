@@ -8,10 +8,7 @@ use datafusion::{
     prelude::{ParquetReadOptions, SessionContext, col},
 };
 use serde::Serialize;
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    path::{Path, PathBuf},
-};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The version of factor files that is read.
 const VERSION: i64 = 2;
@@ -31,40 +28,11 @@ pub struct LeftOut {
 #[derive(Debug, Clone, Default)]
 pub struct Catalog {
     /// Those that are read, in order.
-    pub files: Vec<PathBuf>,
+    pub files: Vec<String>,
     /// Of some of them the runs, by the hash of their numbers, that an earlier file has.
-    pub copies: BTreeMap<PathBuf, Vec<String>>,
+    pub copies: BTreeMap<String, Vec<String>>,
     /// What is not seen.
     pub left_out: Vec<LeftOut>,
-}
-
-/// All files below a folder whose names end in `.parquet`, in order.
-///
-/// # Errors
-/// A folder that can't be read.
-pub fn parquet_files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    if folder.is_file() {
-        return Ok(vec![folder.to_owned()]);
-    }
-    let mut found = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder)? {
-            let path = entry?.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|own| own == "parquet") {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    Ok(found)
-}
-
-/// A file to a URL that the query engine reads.
-pub(crate) fn text(path: &Path) -> String {
-    path.display().to_string()
 }
 
 impl Catalog {
@@ -73,13 +41,16 @@ impl Catalog {
     ///
     /// # Errors
     /// What is no fault of a file.
-    pub async fn of_factors(files: &[PathBuf], whole: bool) -> Result<Self> {
-        let context = SessionContext::new();
+    pub async fn of_factors(
+        context: &SessionContext,
+        files: &[String],
+        whole: bool,
+    ) -> Result<Self> {
         let mut own = Self::default();
         // Of each run the file that has it first.
-        let mut seen: BTreeMap<String, PathBuf> = BTreeMap::new();
+        let mut seen: BTreeMap<String, String> = BTreeMap::new();
         for file in files {
-            match runs(&context, file, whole).await {
+            match runs(context, file, whole).await {
                 Ok(runs) => own.add(file, runs, &mut seen),
                 Err(error) => own.leave_out(file, error),
             }
@@ -91,13 +62,12 @@ impl Catalog {
     ///
     /// # Errors
     /// What is no fault of a file.
-    pub async fn of_logs(files: &[PathBuf], whole: bool) -> Result<Self> {
-        let context = SessionContext::new();
+    pub async fn of_logs(context: &SessionContext, files: &[String], whole: bool) -> Result<Self> {
         let mut own = Self::default();
         for file in files {
             let read = async {
                 let table = context
-                    .read_parquet(text(file), ParquetReadOptions::default())
+                    .read_parquet(file, ParquetReadOptions::default())
                     .await?;
                 match whole {
                     true => table.collect().await.map(drop),
@@ -112,14 +82,14 @@ impl Catalog {
         Ok(own)
     }
 
-    fn add(&mut self, file: &Path, runs: BTreeSet<String>, seen: &mut BTreeMap<String, PathBuf>) {
+    fn add(&mut self, file: &str, runs: BTreeSet<String>, seen: &mut BTreeMap<String, String>) {
         let mut copies = Vec::new();
         let mut of = BTreeSet::new();
         let count = runs.len();
         for run in runs {
             match seen.get(&run) {
                 Some(first) => {
-                    of.insert(text(first));
+                    of.insert(first.clone());
                     copies.push(run);
                 }
                 None => {
@@ -131,7 +101,7 @@ impl Catalog {
         if !copies.is_empty() {
             let of: Vec<String> = of.into_iter().collect();
             self.left_out.push(LeftOut {
-                file: text(file),
+                file: file.to_owned(),
                 runs: if all { Vec::new() } else { copies.clone() },
                 why: format!("already in {}", of.join(", ")),
             });
@@ -144,9 +114,9 @@ impl Catalog {
         }
     }
 
-    fn leave_out(&mut self, file: &Path, why: String) {
+    fn leave_out(&mut self, file: &str, why: String) {
         self.left_out.push(LeftOut {
-            file: text(file),
+            file: file.to_owned(),
             runs: Vec::new(),
             why,
         });
@@ -156,12 +126,12 @@ impl Catalog {
 /// The runs of a factor file, by the hash of their numbers.
 async fn runs(
     context: &SessionContext,
-    file: &Path,
+    file: &str,
     whole: bool,
 ) -> std::result::Result<BTreeSet<String>, String> {
     let told = |error: datafusion::error::DataFusionError| error.strip_backtrace();
     let table = context
-        .read_parquet(text(file), ParquetReadOptions::default())
+        .read_parquet(file, ParquetReadOptions::default())
         .await
         .map_err(told)?;
     let has = |name: &str| table.schema().has_column_with_unqualified_name(name);

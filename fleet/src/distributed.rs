@@ -1,7 +1,7 @@
 //! Many machines: a scheduler, executors that know the functions of a fleet, and their client. They are Ballista's own,
 //! with the functions registered in each process, since a plan names functions and does not carry them.
 
-use crate::{functions, lost, robots::Robots};
+use crate::{functions, lost, robots::Robots, store};
 use ballista::prelude::{SessionConfigExt, SessionContextExt};
 use ballista_core::{registry::BallistaFunctionRegistry, utils::default_session_builder};
 use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
@@ -46,6 +46,7 @@ pub async fn client(url: &str, config: SessionConfig) -> Result<SessionContext> 
         .set_bool(ADAPTIVE_PLANNER, false);
     let state = SessionStateBuilder::new()
         .with_config(config)
+        .with_runtime_env(store::runtime().build_arc()?)
         .with_default_features()
         .build();
     SessionContext::remote_with_state(url, state).await
@@ -67,7 +68,10 @@ fn reached(address: SocketAddr) -> SocketAddr {
 /// An address that can't be had.
 pub async fn scheduler(address: SocketAddr, robots: Robots) -> Result<()> {
     let builder = Arc::new(move |config: SessionConfig| {
-        let mut state = default_session_builder(config)?;
+        let state = default_session_builder(config)?;
+        let mut state = SessionStateBuilder::new_from_existing(state)
+            .with_runtime_env(store::runtime().build_arc()?)
+            .build();
         functions::register(&mut state, &robots)?;
         Ok(state)
     });
@@ -124,6 +128,15 @@ pub async fn executor(own: Executor, robots: &Robots) -> Result<()> {
             .scalar_functions
             .insert(function.name().to_owned(), function);
     }
+    let folder = own.folder.clone();
+    let runtime = move |_: &SessionConfig| {
+        let runtime = store::runtime();
+        let runtime = match &folder {
+            Some(folder) => runtime.with_temp_file_path(folder.clone()),
+            None => runtime,
+        };
+        runtime.build_arc()
+    };
     let config = ExecutorProcessConfig {
         bind_host: own.address.ip().to_string(),
         port: own.address.port(),
@@ -137,6 +150,7 @@ pub async fn executor(own: Executor, robots: &Robots) -> Result<()> {
         grpc_max_decoding_message_size: LARGEST_MESSAGE,
         grpc_max_encoding_message_size: LARGEST_MESSAGE,
         executor_heartbeat_interval_seconds: SIGN_OF_LIFE_S,
+        override_runtime_producer: Some(Arc::new(runtime)),
         override_function_registry: Some(Arc::new(registry)),
         ..ExecutorProcessConfig::default()
     };

@@ -17,6 +17,8 @@
 //!
 //! - [`functions`]: these; [`robots`]: the descriptions that `factor` knows by name.
 //! - [`catalog`]: which files can be read, and what is there twice.
+//! - [`store`]: where files are, in folders and buckets.
+//! - `days`: logs of a bucket around those that can't be read.
 //! - [`session`]: a query on one machine or on many; `distributed`: scheduler and executors,
 //!   [`logging`]: what they tell.
 //! - [`chart`]: control charts with a stated rate of false alarms; [`report`]: the page of a fleet;
@@ -24,6 +26,7 @@
 
 pub mod catalog;
 pub mod chart;
+mod days;
 #[cfg(feature = "distributed")]
 pub mod distributed;
 pub mod functions;
@@ -34,3 +37,4 @@ pub mod power;
 pub mod report;
 pub mod robots;
 pub mod session;
+pub mod store;

@@ -10,6 +10,7 @@ use overact_fleet::{
     report,
     robots::Robots,
     session::{Fleet, Options},
+    store::Place,
 };
 use std::{
     io::Write,
@@ -45,12 +46,12 @@ enum Command {
 /// Where the data is, and who works on it.
 #[derive(Debug, Args)]
 struct Data {
-    /// Folder of factor files
-    #[arg(long, value_name = "FOLDER")]
-    factors: Option<PathBuf>,
-    /// Folder of logs, `serial=…/day=…/….parquet`
-    #[arg(long, value_name = "FOLDER")]
-    logs: Option<PathBuf>,
+    /// Folder of factor files, or `s3://BUCKET/PREFIX`
+    #[arg(long, value_name = "FOLDER|URL")]
+    factors: Option<Place>,
+    /// Folder or URL of logs, `serial=…/day=…/….parquet`
+    #[arg(long, value_name = "FOLDER|URL")]
+    logs: Option<Place>,
     /// Description of robots in the logs (again for others)
     #[arg(long = "robot", value_name = "TOML")]
     robots: Vec<PathBuf>,
@@ -320,7 +321,10 @@ fn power(own: Power) -> Result<(), String> {
     if own.robots == 0 || own.healthy == 0 || own.days < 4 {
         return Err("a trial has robots of both kinds, and at least 4 days".to_owned());
     }
-    if sizes.clone().any(|size| !(size.abs() < 100.0)) {
+    if sizes
+        .clone()
+        .any(|size| size.is_nan() || size.abs() >= 100.0)
+    {
         return Err("a drift is less than 100 percent".to_owned());
     }
     let robot = overact_robot::Robot::from_toml(&own.robot).map_err(|error| error.to_string())?;

@@ -5,9 +5,11 @@
 //! - `logs`: the rows of all logs, with the columns `serial` and `day` of the names of their folders.
 
 use crate::{
-    catalog::{Catalog, LeftOut, parquet_files, text},
+    catalog::{Catalog, LeftOut},
+    days::Days,
     functions,
     robots::Robots,
+    store::{self, Place},
 };
 use arrow::{datatypes::DataType, record_batch::RecordBatch};
 use datafusion::{
@@ -16,24 +18,20 @@ use datafusion::{
         listing::{ListingOptions, ListingTable, ListingTableConfig, ListingTableUrl},
     },
     error::{DataFusionError, Result},
-    execution::{memory_pool::FairSpillPool, runtime_env::RuntimeEnvBuilder},
+    execution::memory_pool::FairSpillPool,
     logical_expr::{col, lit},
-    prelude::{DataFrame, SessionConfig, SessionContext},
+    prelude::{DataFrame, ParquetReadOptions, SessionConfig, SessionContext},
 };
-use std::{
-    path::{Path, PathBuf},
-    sync::Arc,
-    time::Duration,
-};
+use std::{path::Path, sync::Arc, time::Duration};
 use tempfile::TempDir;
 
 /// What a fleet is.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// Folder of factor files.
-    pub factors: Option<PathBuf>,
-    /// Folder of logs, `serial=…/day=…/….parquet`.
-    pub logs: Option<PathBuf>,
+    /// Where factor files are.
+    pub factors: Option<Place>,
+    /// Where logs are, `serial=…/day=…/….parquet`.
+    pub logs: Option<Place>,
     /// Descriptions for `factor`.
     pub robots: Robots,
     /// The scheduler of a cluster, `df://host:port`; none for this machine.
@@ -78,6 +76,8 @@ fn lost(error: &DataFusionError) -> bool {
 pub struct Fleet {
     options: Options,
     context: SessionContext,
+    /// What looks through files on this machine, whoever answers.
+    files: SessionContext,
     left_out: Vec<LeftOut>,
     /// Links to those logs that can be read, where some can't.
     links: Option<TempDir>,
@@ -93,6 +93,7 @@ impl Fleet {
         let mut fleet = Self {
             options,
             context,
+            files: SessionContext::new_with_config_rt(config(0), store::runtime().build_arc()?),
             left_out: Vec::new(),
             links: None,
         };
@@ -181,22 +182,23 @@ impl Fleet {
 
     async fn register(&mut self, whole: bool) -> Result<()> {
         self.left_out.clear();
-        if let Some(folder) = self.options.factors.clone() {
-            self.register_factors(&folder, whole).await?;
+        if let Some(place) = self.options.factors.clone() {
+            self.register_factors(&place, whole).await?;
         }
-        if let Some(folder) = self.options.logs.clone() {
-            self.register_logs(&folder, whole).await?;
+        if let Some(place) = self.options.logs.clone() {
+            self.register_logs(&place, whole).await?;
         }
         Ok(())
     }
 
-    async fn register_factors(&mut self, folder: &Path, whole: bool) -> Result<()> {
-        let catalog = Catalog::of_factors(&parquet_files(folder)?, whole).await?;
+    async fn register_factors(&mut self, place: &Place, whole: bool) -> Result<()> {
+        let files = place.parquet_files(&self.files.runtime_env()).await?;
+        let catalog = Catalog::of_factors(&self.files, &files, whole).await?;
         self.left_out.extend(catalog.left_out);
-        none_left(&catalog.files, folder, &self.left_out)?;
+        none_left(&catalog.files, place, &self.left_out)?;
         let table = self.table(&catalog.files).await?;
         self.put("factor_rows", table)?;
-        let simple: Vec<PathBuf> = { catalog.files.iter() }
+        let simple: Vec<String> = { catalog.files.iter() }
             .filter(|file| !catalog.copies.contains_key(*file))
             .cloned()
             .collect();
@@ -218,37 +220,53 @@ impl Fleet {
         self.put("factors", factors.filter(col("kind").eq(lit("factor")))?)
     }
 
-    async fn register_logs(&mut self, folder: &Path, whole: bool) -> Result<()> {
-        let files = parquet_files(folder)?;
-        let catalog = Catalog::of_logs(&files, whole).await?;
+    async fn register_logs(&mut self, place: &Place, whole: bool) -> Result<()> {
+        let files = place.parquet_files(&self.files.runtime_env()).await?;
+        let catalog = Catalog::of_logs(&self.files, &files, whole).await?;
         self.left_out.extend(catalog.left_out);
-        none_left(&catalog.files, folder, &self.left_out)?;
-        let mut root = folder.to_owned();
-        if catalog.files.len() < files.len() {
-            // The engine finds the columns of a folder's names below one root, so good files get one of their own.
-            let links = TempDir::new()?;
-            for file in &catalog.files {
-                let relative = file.strip_prefix(folder).unwrap_or(file);
-                let link = links.path().join(relative);
-                std::fs::create_dir_all(link.parent().unwrap_or(links.path()))?;
-                link_to(&std::path::absolute(file)?, &link)?;
+        none_left(&catalog.files, place, &self.left_out)?;
+        let all = catalog.files.len() == files.len();
+        let table = match place {
+            Place::Folder(folder) if !all => {
+                let links = linked(folder, &catalog.files)?;
+                let root = Place::Folder(links.path().to_owned());
+                self.links = Some(links);
+                self.logs_below(&root, None).await?
             }
-            root = links.path().to_owned();
-            self.links = Some(links);
-        }
-        let columns = ["serial", "day"].map(|name| (name.to_owned(), DataType::Utf8));
-        let options = listing().with_table_partition_cols(columns.to_vec());
-        let url = ListingTableUrl::parse(format!("{}/", text(&root)))?;
-        let config = ListingTableConfig::new(url).with_listing_options(options);
-        let config = config.infer_schema(&self.context.state()).await?;
-        let table = self
-            .context
-            .read_table(Arc::new(ListingTable::try_new(config)?))?;
+            Place::Bucket(_) if !all => {
+                // A bucket takes no links: days with a file that can't be read are left out as a whole.
+                let days = Days::without(&files, &catalog.files);
+                self.left_out.extend(days.left_out);
+                none_left(&days.files, place, &self.left_out)?;
+                let table = self.logs_below(place, days.files.first()).await?;
+                table.filter(days.filter)?
+            }
+            _ => self.logs_below(place, None).await?,
+        };
         self.put("logs", table)
     }
 
-    async fn table(&self, files: &[PathBuf]) -> Result<DataFrame> {
-        let urls = files.iter().map(|file| ListingTableUrl::parse(text(file)));
+    /// All logs below a place; the columns are those of a file, of all files if none is named.
+    async fn logs_below(&self, place: &Place, file: Option<&String>) -> Result<DataFrame> {
+        let columns = ["serial", "day"].map(|name| (name.to_owned(), DataType::Utf8));
+        let options = listing().with_table_partition_cols(columns.to_vec());
+        let url = ListingTableUrl::parse(place.root())?;
+        let config = ListingTableConfig::new(url).with_listing_options(options);
+        let config = match file {
+            Some(file) => {
+                let own = self
+                    .files
+                    .read_parquet(file.as_str(), ParquetReadOptions::default());
+                config.with_schema(Arc::clone(own.await?.schema().inner()))
+            }
+            None => config.infer_schema(&self.context.state()).await?,
+        };
+        self.context
+            .read_table(Arc::new(ListingTable::try_new(config)?))
+    }
+
+    async fn table(&self, files: &[String]) -> Result<DataFrame> {
+        let urls = files.iter().map(ListingTableUrl::parse);
         let config = ListingTableConfig::new_with_multi_paths(urls.collect::<Result<_>>()?)
             .with_listing_options(listing());
         let config = config.infer_schema(&self.context.state()).await?;
@@ -262,6 +280,17 @@ impl Fleet {
             .register_table(name, table.into_view())
             .map(drop)
     }
+}
+
+/// A folder of links to files of another one: the engine finds the columns of names of folders below one root.
+fn linked(folder: &Path, files: &[String]) -> Result<TempDir> {
+    let links = TempDir::new()?;
+    for file in files.iter().map(Path::new) {
+        let link = links.path().join(file.strip_prefix(folder).unwrap_or(file));
+        std::fs::create_dir_all(link.parent().unwrap_or(links.path()))?;
+        link_to(&std::path::absolute(file)?, &link)?;
+    }
+    Ok(links)
 }
 
 #[cfg(unix)]
@@ -278,7 +307,7 @@ fn listing() -> ListingOptions {
     ListingOptions::new(Arc::new(ParquetFormat::default())).with_file_extension(".parquet")
 }
 
-fn none_left(files: &[PathBuf], folder: &Path, left_out: &[LeftOut]) -> Result<()> {
+fn none_left(files: &[String], place: &Place, left_out: &[LeftOut]) -> Result<()> {
     if !files.is_empty() {
         return Ok(());
     }
@@ -286,10 +315,7 @@ fn none_left(files: &[PathBuf], folder: &Path, left_out: &[LeftOut]) -> Result<(
         .iter()
         .map(|own| format!("\n  {}: {}", own.file, own.why));
     let why: String = why.take(10).collect();
-    let message = format!(
-        "{}: there is no file that can be read{why}",
-        folder.display()
-    );
+    let message = format!("{place}: there is no file that can be read{why}");
     Err(DataFusionError::Execution(message))
 }
 
@@ -311,7 +337,7 @@ async fn context(options: &Options) -> Result<SessionContext> {
     let context = match &options.scheduler {
         Some(url) => remote(url, config).await?,
         None => {
-            let runtime = RuntimeEnvBuilder::new();
+            let runtime = store::runtime();
             let runtime = match options.memory {
                 0 => runtime,
                 bytes => runtime.with_memory_pool(Arc::new(FairSpillPool::new(bytes))),

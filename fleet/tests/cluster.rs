@@ -138,7 +138,7 @@ const QUERY: &str =
 async fn ask(folder: &Path, scheduler: Option<&str>) -> Result<Vec<Pooled>, String> {
     let options = Options {
         limit: Some(PATIENCE),
-        factors: Some(folder.to_owned()),
+        factors: Some(folder.to_owned().into()),
         scheduler: scheduler.map(str::to_owned),
         partitions: 6,
         ..Options::default()
@@ -237,7 +237,7 @@ async fn without_any_executor_a_query_ends_with_a_way_out() {
     };
     (0..3).for_each(|own| cluster.kill(own));
     let options = Options {
-        factors: Some(folder),
+        factors: Some(folder.into()),
         scheduler: Some(cluster.url.clone()),
         limit: Some(Duration::from_secs(5)),
         ..Options::default()

@@ -25,7 +25,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 fn options(factors: &Path, partitions: usize) -> Options {
     Options {
-        factors: Some(factors.to_owned()),
+        factors: Some(factors.to_owned().into()),
         partitions,
         ..Options::default()
     }
@@ -265,7 +265,7 @@ async fn logs_are_factored_in_sql() {
     let reference = estimates(&reference.sql(PER_ROBOT).await.expect("rows"));
     let open = || async {
         Fleet::open(Options {
-            logs: Some(root.clone()),
+            logs: Some(root.clone().into()),
             robots: Robots::read(&[bench.path("five_bar.toml")]).expect("a description"),
             partitions: 3,
             ..Options::default()
