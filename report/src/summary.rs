@@ -113,7 +113,7 @@ fn unseen(identification: &Identification) -> String {
         text.push('\n');
         line(
             &mut text,
-            "Errors that these data would just not have shown (--report: all that the result rests on):",
+            "Errors that can hide in these data, up to this size (--report: all that the result rests on):",
         );
         for one in &identification.unseen {
             paragraph(&mut text, "  - ", one);

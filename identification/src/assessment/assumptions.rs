@@ -4,7 +4,10 @@ use overact::Model;
 
 use super::{
     check::{Check, CheckKind},
-    checks::HARMFUL,
+    checks::{
+        HARMFUL,
+        smoothing::{OF_MEAN, UNIT},
+    },
 };
 use crate::{
     kinematics::conditioning::couples,
@@ -78,41 +81,72 @@ pub(crate) fn assumptions(
     all
 }
 
-/// Faults of one kind, and what such a fault is of.
-const KINDS: [(&[CheckKind], &str); 3] = [
-    (
-        &[CheckKind::EncoderOffset, CheckKind::Length],
-        "zeros, scales and lengths",
-    ),
-    (&[CheckKind::WrongGain], "single gains"),
-    (&[CheckKind::Delay], "delay of the torques"),
+/// A kind of faults: the check that looks for it, whether its size is a part of one, and what it is called.
+struct Kind {
+    check: CheckKind,
+    is_part: bool,
+    name: &'static str,
+}
+
+/// A kind of faults.
+const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> Kind {
+    Kind {
+        check,
+        is_part,
+        name,
+    }
+}
+
+/// All kinds of faults whose sizes are told.
+const KINDS: [Kind; 7] = [
+    kind(CheckKind::EncoderOffset, false, "zero of an encoder"),
+    kind(CheckKind::EncoderOffset, true, "scale of an encoder"),
+    kind(CheckKind::Length, false, "length"),
+    kind(CheckKind::WrongGain, true, "gain of one drive"),
+    kind(CheckKind::Delay, false, "delay of the torques"),
+    kind(CheckKind::Filters, false, "smoothing of the torques"),
+    kind(CheckKind::Clock, true, "sampling frequency"),
 ];
 
 /// What the checks would have missed though it spoils parameters: of each kind the fault that does most harm at the
 /// size that would just have been seen.
 pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
-    let worst_of = |kinds: &[CheckKind]| {
-        let own = checks
-            .iter()
-            .filter(|one| one.passed && kinds.contains(&one.kind));
+    let worst_of = |kind: &Kind| {
+        let own = checks.iter().filter(|one| one.passed);
+        // Offsets and lengths are told by one check, whichever is found.
+        let geometry = [CheckKind::EncoderOffset, CheckKind::Length];
+        let own = own.filter(|one| {
+            one.kind == kind.check || geometry.contains(&one.kind) && geometry.contains(&kind.check)
+        });
         let all = own.flat_map(|one| &one.detectable);
+        let is_length = kind.check == CheckKind::Length;
+        let all =
+            all.filter(|one| one.unit.is_empty() == kind.is_part && one.is_length == is_length);
         let harmful = all.filter(|one| one.moves > HARMFUL && one.moves.is_finite());
         harmful.max_by(|a, b| a.moves.total_cmp(&b.moves))
     };
-    let told = KINDS.iter().filter_map(|(kinds, what)| {
-        let worst = worst_of(kinds)?;
-        let of = match worst.name.as_str() {
-            "" => String::new(),
-            name => format!(" of `{name}`"),
+    let told = KINDS.iter().filter_map(|kind| {
+        let worst = worst_of(kind)?;
+        let of = match (worst.name.as_str(), kind.check) {
+            ("", CheckKind::EncoderOffset) => String::from(" of all drives"),
+            ("", _) => String::new(),
+            (name, _) => format!(" of `{name}`"),
         };
+        // Of a part of one more than the whole means nothing.
+        let most = if kind.is_part { 1.0 } else { f64::INFINITY };
+        let moves = worst.moves * (most / worst.size).min(1.0);
         let size = match worst.unit {
-            "" => format!("{} %", significant(100.0 * worst.size, 2)),
+            "" => format!("{} %", significant(100.0 * worst.size.min(most), 2)),
             "s" => format!("{} ms", significant(1e3 * worst.size, 2)),
+            UNIT => format!(
+                "a mean over {} ms",
+                significant(1e3 * (OF_MEAN * worst.size).sqrt(), 2)
+            ),
             unit => format!("{} {unit}", significant(worst.size, 2)),
         };
         Some(format!(
-            "{what}: {size}{of} would move `{}` by {:.0} deviations",
-            worst.parameter, worst.moves
+            "{}: {size}{of} would move `{}` by {:.0} deviations",
+            kind.name, worst.parameter, moves
         ))
     });
     told.collect()
@@ -131,6 +165,7 @@ mod tests {
             size,
             parameter: String::from("zz_1"),
             moves,
+            is_length: false,
         };
         let all = faults.iter().map(fault).collect();
         Check::new(kind, About::Model, "nothing").detecting(all)
@@ -140,14 +175,22 @@ mod tests {
     fn of_each_kind_the_worst_is_told_with_its_unit() {
         let gains = [("left", "", 0.03, 7.0), ("right", "", 0.1, 86.0)];
         let told = unseen(&[
+            check(CheckKind::Clock, &[("", "", 2.5, 500.0)]),
             check(CheckKind::WrongGain, &gains),
             check(CheckKind::Delay, &[("", "s", 2.8e-4, 5.0)]),
-            check(CheckKind::EncoderOffset, &[("left", "rad", 0.0091, 13.0)]),
+            check(CheckKind::Filters, &[("", "s²", 6e-6, 8.0)]),
+            check(
+                CheckKind::EncoderOffset,
+                &[("left", "rad", 0.0091, 13.0), ("", "", 0.001, 16.0)],
+            ),
         ]);
         let expected = [
-            "zeros, scales and lengths: 0.0091 rad of `left` would move `zz_1` by 13 deviations",
-            "single gains: 10 % of `right` would move `zz_1` by 86 deviations",
+            "zero of an encoder: 0.0091 rad of `left` would move `zz_1` by 13 deviations",
+            "scale of an encoder: 0.1 % of all drives would move `zz_1` by 16 deviations",
+            "gain of one drive: 10 % of `right` would move `zz_1` by 86 deviations",
             "delay of the torques: 0.28 ms would move `zz_1` by 5 deviations",
+            "smoothing of the torques: a mean over 12 ms would move `zz_1` by 8 deviations",
+            "sampling frequency: 100 % would move `zz_1` by 200 deviations",
         ];
         assert_eq!(told, expected);
     }

@@ -58,8 +58,11 @@ pub struct Check {
 pub struct Detectable {
     /// The actuator or the length; empty for what concerns all.
     pub name: String,
-    /// Unit of its size: `rad`, `m`, `s`; empty for a part of one.
+    /// Unit of its size: `rad`, `m`, `s`, of a smoothing `s²`; empty for a part of one.
     pub unit: &'static str,
+    /// Whether it is a length of the description.
+    #[serde(skip)]
+    pub is_length: bool,
     /// Standard deviation of its size.
     pub deviation: f64,
     /// The size that nine of ten such data would have shown, were it there.

@@ -35,7 +35,7 @@ use crate::{
     assessment::{
         self, Context, Watched,
         assumptions::{Found, assumptions, unseen},
-        check::Check,
+        check::{Check, Grade},
         suspects::{Reach, scores},
         verdict::verdicts,
     },
@@ -166,6 +166,13 @@ pub fn identify_after(
     )?;
     let models: Vec<ModelKind> = projections.iter().map(Projection::model).collect();
     let estimates: Vec<Estimate> = estimates.into_iter().map(|(_, one)| one).collect();
+    let verdicts = verdicts(&estimates, &checks);
+    // What is refused anyway needs no word on what it might hide.
+    let refused = verdicts.iter().all(|one| one.grade == Grade::DoNotUse);
+    let unseen = match refused {
+        true => Vec::new(),
+        false => unseen(&checks),
+    };
     Ok(Identification {
         robot: info.name.to_owned(),
         base_parameters: BaseParameter::all(&prepared.columns, &prepared.base, dataset.true_values),
@@ -173,8 +180,8 @@ pub fn identify_after(
         runs: prepared.runs,
         warnings,
         assumptions: assumptions(model, &prepared.columns, &models, found),
-        unseen: unseen(&checks),
-        verdicts: verdicts(&estimates, &checks),
+        unseen,
+        verdicts,
         checks,
         thresholds: Thresholds::default(),
         calibration: None,

@@ -26,6 +26,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     for (place, suspect) in scores.suspects.iter().enumerate() {
         if let Suspect::Offset(_)
         | Suspect::Scale(_)
+        | Suspect::Scales
         | Suspect::Eccentric(..)
         | Suspect::Play(_)
         | Suspect::Length(_) = *suspect
@@ -65,7 +66,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         Suspect::Eccentric(..) => {
             "Its disc may be out of centre, or its scale wrong: check its mounting and its gear"
         }
-        Suspect::Scale(_) => {
+        Suspect::Scale(_) | Suspect::Scales => {
             "Check the ratio of its gear or the lead of its screw, its increments, and its zero"
         }
         _ => "Check its zero and its mounting, or the lengths of the description",
@@ -83,7 +84,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             let title = format!("Residual for other lengths {name}");
             (CheckKind::Length, words, title, "described too large by")
         }
-        Suspect::Scale(_) => {
+        Suspect::Scale(_) | Suspect::Scales => {
+            let whose = match suspect {
+                Suspect::Scales => String::from("all drives"),
+                _ => format!("`{name}`"),
+            };
             let [size, deviation] = [worst.accused.size(), worst.accused.deviation]
                 .map(|part| significant(100.0 * part.abs(), 3));
             let sense = if worst.accused.size() > 0.0 {
@@ -92,10 +97,10 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 "small"
             };
             let words = format!(
-                "the torques speak of positions of `{name}` that are {size} % too {sense} (standard deviation {deviation} %); {}. {zero}",
+                "the torques speak of positions of {whose} that are {size} % too {sense} (standard deviation {deviation} %); {}. {zero}",
                 harm.words()
             );
-            let title = format!("Residual for other scales of the positions of {name}");
+            let title = format!("Residual for other scales of the positions of {whose}");
             (
                 CheckKind::EncoderOffset,
                 words,
@@ -128,7 +133,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let detectable = detectable((context, scores), (&suspects, &found), level).into_iter();
     let check = check.detecting(detectable.map(|(_, one)| one).collect());
     Ok(vec![match suspect {
-        Suspect::Length(_) => check,
+        Suspect::Length(_) | Suspect::Scales => check,
         _ => check.of_actuator(&name),
     }])
 }
@@ -182,10 +187,10 @@ fn detectable(
         both.filter(|(suspect, _)| !matches!(suspect, Suspect::Play(_) | Suspect::Eccentric(..)));
     let one = |(&suspect, one): (&Suspect, &Tested)| {
         let (name, unit) = (name(context, suspect), unit(context, suspect));
-        (
-            suspect,
-            one.detectable((context, scores), (name, unit), one.accused.visible(level)),
-        )
+        let visible = one.accused.visible(level);
+        let own = one.detectable((context, scores), (name, unit), visible);
+        let is_length = matches!(suspect, Suspect::Length(_));
+        (suspect, Detectable { is_length, ..own })
     };
     sizes.map(one).collect()
 }
@@ -210,7 +215,7 @@ fn name(context: &Context<'_>, suspect: Suspect) -> String {
 /// The unit of an actuator's position, or of a length.
 fn unit(context: &Context<'_>, suspect: Suspect) -> &'static str {
     match suspect {
-        Suspect::Scale(_) => "",
+        Suspect::Scale(_) | Suspect::Scales => "",
         Suspect::Offset(at) | Suspect::Eccentric(at, _) | Suspect::Play(at)
             if context.model.info().actuator_is_revolute.get(at) == Some(&true) =>
         {

@@ -17,7 +17,7 @@ pub(crate) mod raw_numbers;
 mod regressor_errors;
 mod relative_error;
 mod residual_correlation;
-mod smoothing;
+pub(super) mod smoothing;
 mod suspected;
 mod torque_faults;
 

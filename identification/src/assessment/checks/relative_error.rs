@@ -22,7 +22,9 @@ const SILENT: f64 = 4.0;
 
 /// Says that a residual is far beyond the noise where no check has found why.
 pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
-    if all.iter().any(|check| !check.passed) {
+    // That residuals hang together explains none of them.
+    let explains = |check: &Check| !check.passed && check.kind != CheckKind::ResidualCorrelation;
+    if all.iter().any(explains) {
         return None;
     }
     let base = context.estimates_of(Stage::Base).next()?;

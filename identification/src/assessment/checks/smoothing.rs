@@ -7,7 +7,7 @@
 use super::{
     Context,
     level::{level, origin},
-    suspected::{Tested, dry_friction, parabola, tested, worst_harm},
+    suspected::{Tested, dry_friction, harm, parabola, tested},
 };
 use crate::{
     assessment::{
@@ -22,22 +22,29 @@ use crate::{
 const HARMLESS: f64 = 2.0;
 
 /// s of a mean over T is T² by this.
-const OF_MEAN: f64 = 24.0;
+pub(in crate::assessment) const OF_MEAN: f64 = 24.0;
+
+/// The unit of s.
+pub(in crate::assessment) const UNIT: &str = "s²";
 
 /// Looks for torques that are smoother than the motion, or a motion that is smoother than the torques.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let suspects = scores.suspects.iter();
-    let places = suspects
-        .enumerate()
-        .filter(|(_, one)| **one == Suspect::Smoothing);
-    let groups = places.map(|(place, _)| Group::suspect(place));
-    let found: Vec<Tested> = tested(scores, groups);
-    let Some(one) = found.first() else {
+    let of = |wanted: Suspect| {
+        let place = scores.suspects.iter().position(|one| *one == wanted);
+        tested(scores, place.into_iter().map(Group::suspect)).pop()
+    };
+    let Some(one) = of(Suspect::Smoothing) else {
         return Ok(Vec::new());
     };
+    // What it does to the parameters, dry friction among them, if it is as large as the other tells.
+    let whole = of(Suspect::Rounding).map(|whole| Tested {
+        size: Some(one.accused.size()),
+        ..whole
+    });
+    let whole = whole.as_ref().unwrap_or(&one);
     let level = level(1);
     let intervals = context.dataset.runs.iter();
     let intervals = intervals.map(|run| HARMLESS / run.sampling_frequency());
@@ -57,6 +64,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                     origin(1)
                 ),
             )
+            .detecting(vec![whole.detectable(
+                (context, scores),
+                (String::new(), UNIT),
+                visible,
+            )])
             .shown_by(parabola(
                 accused,
                 "Residual for torques that are smoothed",
@@ -69,7 +81,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             time(visible)
         ))]);
     }
-    let mut harm = worst_harm(context, scores, (&found, one), level);
+    let mut harm = harm(context, scores, whole);
+    harm.explained = accused.explained;
     // Reversals, which were left out of what it was found by, are rounded off, too.
     harm.spoil(dry_friction(context));
     let (what, beside) = if accused.size() > 0.0 {

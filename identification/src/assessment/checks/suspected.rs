@@ -26,6 +26,8 @@ const HALF_WIDTH: f64 = 1.96;
 pub(super) struct Tested {
     pub(super) group: Group,
     pub(super) accused: Accused,
+    /// What its size is, where another one tells it better.
+    pub(super) size: Option<f64>,
 }
 
 impl Tested {
@@ -42,13 +44,15 @@ impl Tested {
         Detectable {
             name,
             unit,
+            is_length: false,
             deviation: self.accused.deviation,
             size,
             parameter: base
                 .zip(most)
                 .map_or_else(String::new, |(base, (_, column))| self::name(base, *column)),
             moves: most.map_or(0.0, |(by, _)| {
-                by * size / self.accused.size().abs().max(f64::MIN_POSITIVE)
+                let own = self.size.unwrap_or_else(|| self.accused.size());
+                by * size / own.abs().max(f64::MIN_POSITIVE)
             }),
         }
     }
@@ -61,9 +65,16 @@ impl Tested {
         };
         let mut recommended = context.estimates_of(Stage::Recommended);
         let smaller = recommended.find(|one| one.model == base.model);
-        let beside =
-            smaller.and_then(|one| Some((one, scores.test(&self.group, &one.columns())?.moves)));
-        let mut all = by_deviation(base, &self.accused.moves);
+        let of_size = |accused: &Accused| -> Vec<(usize, f64)> {
+            let factor = self.size.map_or(1.0, |size| size / accused.size());
+            let moves = accused.moves.iter();
+            moves.map(|(column, by)| (*column, by * factor)).collect()
+        };
+        let beside = smaller.and_then(|one| {
+            let accused = scores.test(&self.group, &one.columns())?;
+            Some((one, of_size(&accused)))
+        });
+        let mut all = by_deviation(base, &of_size(&self.accused));
         all.extend(
             beside
                 .iter()
@@ -91,7 +102,12 @@ pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Ve
     groups
         .filter_map(|group| {
             let accused = scores.test(&group, scores.selected())?;
-            Some(Tested { group, accused })
+            let size = None;
+            Some(Tested {
+                group,
+                accused,
+                size,
+            })
         })
         .collect()
 }

@@ -17,8 +17,10 @@ pub(crate) enum Suspect {
     /// Torques are late by so many seconds.
     Delay,
     /// Torques are smoother than the motion by this time squared (s²): a symmetric filter of the weights w(t) has
-    /// half of Σ w t².
+    /// half of Σ w t². As it is told, without what it does to dry friction.
     Smoothing,
+    /// The same with what it does to dry friction, which tells the harm.
+    Rounding,
     /// The torque of one actuator is late by so many seconds.
     Late(usize),
     /// The measured torque of an actuator is too large by this part of itself.
@@ -31,6 +33,8 @@ pub(crate) enum Suspect {
     Eccentric(usize, Misreading),
     /// The position of an actuator is too large by this part of itself.
     Scale(usize),
+    /// The positions of all actuators are.
+    Scales,
     /// The position of an actuator is behind by this half of a play.
     Play(usize),
     /// A length is too large by this.
@@ -104,7 +108,12 @@ impl Layout {
 pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Vec<Suspect> {
     let info = model.info();
     let sizes = info.sizes;
-    let mut all = vec![Suspect::Delay, Suspect::Smoothing, Suspect::Clock];
+    let mut all = vec![
+        Suspect::Delay,
+        Suspect::Smoothing,
+        Suspect::Rounding,
+        Suspect::Clock,
+    ];
     // Of one drive alone that is the delay of all.
     if sizes.actuators > 1 {
         all.extend((0..sizes.actuators).map(Suspect::Late));
@@ -114,6 +123,9 @@ pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Ve
     if sizes.actuators == sizes.dof {
         all.extend((0..sizes.actuators).map(Suspect::Offset));
         all.extend((0..sizes.actuators).map(Suspect::Scale));
+        if sizes.actuators > 1 {
+            all.push(Suspect::Scales);
+        }
         all.extend((0..sizes.actuators).map(Suspect::Play));
         let revolute =
             (0..sizes.actuators).filter(|&i| info.actuator_is_revolute.get(i) == Some(&true));
@@ -151,6 +163,8 @@ pub(super) struct Sample<'a> {
     pub(super) torque_rates: &'a [f64],
     /// Second derivatives of torques that are freed of dry friction, too.
     pub(super) torque_bends: &'a [f64],
+    /// Those of the torques as they are.
+    pub(super) torque_turns: &'a [f64],
     /// The motion of the actuators.
     pub(super) actuators: &'a [Moment],
     /// Where they move.
@@ -195,8 +209,12 @@ impl Sample<'_> {
                 let rates = self.torque_rates.iter().enumerate();
                 -rates.map(|(i, rate)| share(i) * rate).sum::<f64>()
             }
-            Suspect::Smoothing => {
-                let bends = self.torque_bends.iter().enumerate();
+            Suspect::Smoothing | Suspect::Rounding => {
+                let bends = match suspect {
+                    Suspect::Smoothing => self.torque_bends,
+                    _ => self.torque_turns,
+                };
+                let bends = bends.iter().enumerate();
                 bends.map(|(i, bend)| share(i) * bend).sum::<f64>()
             }
             Suspect::Late(i) => -share(i) * self.torque_rates[i],
@@ -205,6 +223,10 @@ impl Sample<'_> {
             Suspect::Offset(i) => misread(i, Misreading::Offset),
             Suspect::Eccentric(i, error) => misread(i, error),
             Suspect::Scale(i) => misread(i, Misreading::Scale),
+            Suspect::Scales => {
+                let all = 0..self.torques.len();
+                all.map(|i| misread(i, Misreading::Scale)).sum::<f64>()
+            }
             Suspect::Play(i) => factor * misread(i, Misreading::Offset),
             Suspect::Length(length) => self.lengths[length * r + line],
             Suspect::Torque(i, _) => share(i) * factor,

@@ -106,6 +106,7 @@ impl Pass<'_> {
         self.late_friction(motion, lines);
         let [torques, smooth] = self.inputs(motion, jacobians, lines);
         let frequency = motion.sampling_frequency;
+        let torque_rates = rates(&torques, n, frequency);
         let nearby = Nearby {
             model: self.model,
             columns: self.columns,
@@ -124,7 +125,8 @@ impl Pass<'_> {
         };
         let whole = Sample {
             jacobian: jacobians,
-            torque_rates: &rates(&torques, n, frequency),
+            torque_rates: &torque_rates,
+            torque_turns: &rates(&torque_rates, n, frequency),
             torque_bends: &rates(&rates(&smooth, n, frequency), n, frequency),
             torques: &torques,
             actuators: &actuators,
@@ -212,6 +214,7 @@ impl Pass<'_> {
                 torques: part(whole.torques, n),
                 torque_rates: part(whole.torque_rates, n),
                 torque_bends: part(whole.torque_bends, n),
+                torque_turns: part(whole.torque_turns, n),
                 actuators: &whole.actuators[sample * n..(sample + 1) * n],
                 reaches: whole.reaches,
                 pose: part(whole.pose, sizes.pose),
