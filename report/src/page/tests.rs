@@ -260,6 +260,18 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
 }
 
 #[test]
+fn the_first_figures_keep_their_units_beside_them() {
+    let html = full(&identification());
+    let document = parsed(&html);
+    let mut all = document.descendants();
+    let facts = all.find(|node| node.attribute("class") == Some("facts"));
+    let told = text(facts.expect("the result in a few numbers"));
+    for (unit, apart) in [("\u{a0}%", " %"), ("\u{a0}s, ", " s, ")] {
+        assert!(told.contains(unit) && !told.contains(apart), "{told:?}");
+    }
+}
+
+#[test]
 fn every_check_stands_with_what_shows_it() {
     let html = full(&identification());
     let document = parsed(&html);
