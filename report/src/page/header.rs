@@ -47,7 +47,7 @@ pub(super) fn header(contents: &Contents<'_>) -> String {
     html
 }
 
-/// The result in a few numbers.
+/// The result in a few numbers, which keep their units beside them.
 fn facts(contents: &Contents<'_>) -> String {
     let identification = contents.identification;
     let base = identification.base_parameters.len();
@@ -59,7 +59,7 @@ fn facts(contents: &Contents<'_>) -> String {
         };
         let _ = writeln!(
             html,
-            "<div><dt>{}</dt><dd><b>{}</b> {what}, relative error <b>{} %</b></dd></div>",
+            "<div><dt>{}</dt><dd><b>{}</b> {what}, relative error <b>{}\u{a0}%</b></dd></div>",
             case_heading(estimate.model),
             estimate.parameters.len(),
             escape(&significant(estimate.relative_error_percent, 3))
@@ -73,7 +73,7 @@ fn facts(contents: &Contents<'_>) -> String {
         .sum();
     let _ = writeln!(
         html,
-        "<div><dt>Data</dt><dd><b>{}</b> run{}, {} s, {samples} samples</dd></div>",
+        "<div><dt>Data</dt><dd><b>{}</b> run{}, {}\u{a0}s, {samples} samples</dd></div>",
         identification.runs.len(),
         if identification.runs.len() == 1 {
             ""

@@ -281,6 +281,18 @@ fn what_would_go_unseen_stands_before_what_no_data_can_show() {
 }
 
 #[test]
+fn the_first_figures_keep_their_units_beside_them() {
+    let html = full(&identification());
+    let document = parsed(&html);
+    let mut all = document.descendants();
+    let facts = all.find(|node| node.attribute("class") == Some("facts"));
+    let told = text(facts.expect("the result in a few numbers"));
+    for (unit, apart) in [("\u{a0}%", " %"), ("\u{a0}s, ", " s, ")] {
+        assert!(told.contains(unit) && !told.contains(apart), "{told:?}");
+    }
+}
+
+#[test]
 fn every_check_stands_with_what_shows_it() {
     let html = full(&identification());
     let document = parsed(&html);
