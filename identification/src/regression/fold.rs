@@ -102,13 +102,17 @@ impl Fold {
 /// What the lines have of a motion that returns.
 pub(crate) type Folds = Vec<Fold>;
 
-/// Adds the folds of a run to those of all, which have one entry for each motion.
-pub(crate) fn add(all: &mut Vec<Folds>, own: Folds) {
+/// Adds the folds of a run to those of all, which have one entry for each motion, and gives the place of its own.
+pub(crate) fn add(all: &mut Vec<Folds>, own: Folds) -> usize {
     let motion = |folds: &Folds| folds.first().map(|fold| fold.phases.motion);
-    match all.iter_mut().find(|one| motion(one) == motion(&own)) {
-        Some(same) => same.iter_mut().zip(&own).for_each(|(a, b)| a.merge(b)),
-        None => all.push(own),
-    }
+    let same = all.iter().position(|one| motion(one) == motion(&own));
+    let Some(place) = same else {
+        all.push(own);
+        return all.len() - 1;
+    };
+    let both = all[place].iter_mut().zip(&own);
+    both.for_each(|(all, own)| all.merge(own));
+    place
 }
 
 #[cfg(test)]
@@ -161,14 +165,14 @@ mod tests {
             fold
         };
         let mut all = Vec::new();
-        add(&mut all, vec![one(1.0)]);
-        add(&mut all, vec![one(3.0)]);
+        assert_eq!(add(&mut all, vec![one(1.0)]), 0);
+        assert_eq!(add(&mut all, vec![one(3.0)]), 0);
         let other = Return {
             samples: 16,
             motion: 2,
         };
         let phases = Phases::new(other, 1).expect("long enough");
-        add(&mut all, vec![Fold::new(phases, 1)]);
+        assert_eq!(add(&mut all, vec![Fold::new(phases, 1)]), 1);
         assert_eq!(all.len(), 2);
         let means = all[0][0].means().expect("every phase");
         assert!(

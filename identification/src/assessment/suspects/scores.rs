@@ -23,7 +23,7 @@ use crate::{
     filters::DECIMATION_PADDING,
     regression::{
         columns::ColumnSet,
-        fold::{Folds, Phases},
+        fold::{self, Folds, Phases},
     },
     result::Estimate,
     settings::Settings,
@@ -131,21 +131,14 @@ pub(crate) fn scores(
 
 /// The motions that return.
 fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
-    let mut all: Vec<(Vec<usize>, Folds)> = Vec::new();
+    let (mut all, mut owners) = (Vec::new(), Vec::<Vec<usize>>::new());
     for (number, run) in runs.iter().enumerate() {
-        let motion = |folds: &Folds| folds.first().map(|fold| fold.phases.motion);
         if run.folds.is_empty() {
             continue;
         }
-        let same = |one: &&mut (Vec<usize>, Folds)| motion(&one.1) == motion(&run.folds);
-        match all.iter_mut().find(same) {
-            Some((runs, folds)) => {
-                runs.push(number);
-                let both = folds.iter_mut().zip(&run.folds);
-                both.for_each(|(all, own)| all.merge(own));
-            }
-            None => all.push((vec![number], run.folds.clone())),
-        }
+        let place = fold::add(&mut all, run.folds.clone());
+        owners.resize(all.len(), Vec::new());
+        owners[place].push(number);
     }
     let split = |_, rows: DMatrix<f64>| {
         let last = rows.ncols() - 1;
@@ -155,7 +148,7 @@ fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
         )
     };
     let mean = |(runs, folds): (Vec<usize>, Folds)| Some((runs, Mean::new(&folds, split)?));
-    all.into_iter().filter_map(mean).collect()
+    owners.into_iter().zip(all).filter_map(mean).collect()
 }
 
 /// By how many times narrower the band of the equations is than that of the estimate, for a model of so

@@ -1,0 +1,36 @@
+//! What stands in words above and below the tables.
+
+use super::{element, full, identification, parsed, text};
+
+#[test]
+fn what_would_go_unseen_stands_before_what_no_data_can_show() {
+    let mut own = identification();
+    let without = full(&own);
+    own.unseen = vec![String::from(
+        "delay of the torques: 1 ms would move `a<b>` by 5 deviations",
+    )];
+    own.assumptions = vec![String::from("the clock is right")];
+    let html = full(&own);
+    let document = parsed(&html);
+    let after = |id: &str| {
+        let list = element(&document, id).next_sibling_element();
+        let list = list.and_then(|words| words.next_sibling_element());
+        text(list.expect("a list behind the heading and its words"))
+    };
+    assert!(after("unseen").contains("Delay of the torques: 1 ms would move a<b> by 5 deviations"));
+    assert!(after("assumptions").contains("The clock is right"));
+    assert!(html.find("id=\"unseen\"") < html.find("id=\"assumptions\""));
+    assert!(!without.contains("id=\"unseen\""));
+}
+
+#[test]
+fn the_first_figures_keep_their_units_beside_them() {
+    let html = full(&identification());
+    let document = parsed(&html);
+    let mut all = document.descendants();
+    let facts = all.find(|node| node.attribute("class") == Some("facts"));
+    let told = text(facts.expect("the result in a few numbers"));
+    for (unit, apart) in [("\u{a0}%", " %"), ("\u{a0}s, ", " s, ")] {
+        assert!(told.contains(unit) && !told.contains(apart), "{told:?}");
+    }
+}
