@@ -126,6 +126,9 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         harmful.max_by(|a, b| a.moves.total_cmp(&b.moves))
     };
     let told = KINDS.iter().filter_map(|kind| {
+        if let Some(never) = never(checks, kind) {
+            return Some(never);
+        }
         let worst = worst_of(kind)?;
         let of = match (worst.name.as_str(), kind.check) {
             ("", CheckKind::EncoderOffset) => String::from(" of all drives"),
@@ -150,6 +153,22 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         ))
     });
     told.collect()
+}
+
+/// The actuators of which these data would show no fault of a kind, in words.
+fn never(checks: &[Check], kind: &Kind) -> Option<String> {
+    let own = checks.iter().filter(|one| one.kind == kind.check);
+    let hidden = own
+        .flat_map(|one| &one.detectable)
+        .filter(|one| one.size.is_infinite());
+    let names: Vec<String> = hidden.map(|one| format!("`{}`", one.name)).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{}: nothing in these data tells that of {}",
+            kind.name,
+            names.join(", ")
+        )
+    })
 }
 
 #[cfg(test)]
@@ -193,6 +212,16 @@ mod tests {
             "sampling frequency: 100 % would move `zz_1` by 200 deviations",
         ];
         assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn a_drive_whose_gain_nothing_tells_is_named_before_all_others() {
+        let mut gains = check(CheckKind::WrongGain, &[("left", "", 0.03, 7.0)]);
+        gains.detectable.push(Detectable::never("right"));
+        assert_eq!(
+            unseen(&[gains]),
+            ["gain of one drive: nothing in these data tells that of `right`"]
+        );
     }
 
     #[test]

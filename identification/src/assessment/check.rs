@@ -65,12 +65,27 @@ pub struct Detectable {
     pub is_length: bool,
     /// Standard deviation of its size.
     pub deviation: f64,
-    /// The size that nine of ten such data would have shown, were it there.
+    /// The size that nine of ten such data would have shown, were it there; infinite where they would show none.
     pub size: f64,
     /// The parameter that a fault of this size moves most, of those that are estimated.
     pub parameter: String,
     /// By how many of the parameter's standard deviations it moves it: what may be hidden in data that show nothing.
     pub moves: f64,
+}
+
+impl Detectable {
+    /// A part of one of an actuator's that no size of which these data would show.
+    pub(crate) fn never(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: "",
+            is_length: false,
+            deviation: f64::INFINITY,
+            size: f64::INFINITY,
+            parameter: String::new(),
+            moves: f64::INFINITY,
+        }
+    }
 }
 
 /// What a check is about.
@@ -142,6 +157,8 @@ pub enum CheckKind {
     Standstill,
     /// Positions look like degrees, not radians, or like those of motors before their gears.
     Degrees,
+    /// Samples of one run stand in another one, too.
+    RepeatedSamples,
     /// Two columns of a log are one.
     DuplicateColumns,
     /// A torque is zero throughout.
@@ -196,6 +213,7 @@ impl CheckKind {
             Self::DroppedSamples => "dropped samples",
             Self::Standstill => "standstill",
             Self::Degrees => "degrees",
+            Self::RepeatedSamples => "repeated samples",
             Self::DuplicateColumns => "duplicate columns",
             Self::ZeroTorque => "zero torque",
             Self::Closure => "closure",

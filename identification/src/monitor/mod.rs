@@ -2,6 +2,7 @@
 //! right.
 //!
 //! - `watch`: stuck encoders, lost samples, a robot that stands still;
+//! - `marks`: samples by which a run is known again;
 //! - `peaks`: torques that are flat at their extremes;
 //! - `clipping`: what is told of them;
 //! - `roughness`: noise of signals, and signals that are equal;
@@ -9,6 +10,7 @@
 //! - `statistics`: what is kept of numbers that pass.
 
 mod clipping;
+mod marks;
 mod peaks;
 mod roughness;
 mod statistics;

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 
 use super::{
     clipping::clipping,
+    marks::{Marks, Shared},
     peaks,
     roughness::Roughness,
     statistics::{Extreme, Histogram, Means},
@@ -57,6 +58,8 @@ pub(crate) struct Monitor {
     roughness: [Roughness; 2],
     /// The last [`SPEED_SAMPLES`] + 1 rows of positions, the newest last.
     recent: VecDeque<Vec<f64>>,
+    /// By what the run is known again.
+    marks: Marks,
 }
 
 /// What is known of the positions of an actuator.
@@ -106,6 +109,7 @@ impl Monitor {
             means: Means::new(actuators, frequency),
             roughness: [Roughness::new(actuators), Roughness::new(actuators)],
             recent: VecDeque::new(),
+            marks: Marks::default(),
         }
     }
 
@@ -117,6 +121,7 @@ impl Monitor {
             for (position, actuator) in self.positions.iter_mut().zip(0..) {
                 position.take(actuator, self.samples, positions, &self.recent);
             }
+            self.marks.take(positions, torques);
             self.means.take(torques);
             self.roughness[0].take(positions);
             self.roughness[1].take(torques);
@@ -132,6 +137,11 @@ impl Monitor {
             }
             self.samples += 1;
         }
+    }
+
+    /// What another run has of this one, sample by sample.
+    pub(crate) fn shared(&self, other: &Self) -> Option<Shared> {
+        self.marks.shared(&other.marks)
     }
 
     /// Ends the rests that last until the end.

@@ -210,3 +210,15 @@ fn a_run_that_is_too_short_may_not_be_used() {
     println!("{}", check.words);
     assert!(!check.passed && check.grade == Grade::DoNotUse);
 }
+
+#[test]
+fn cuts_of_one_log_that_overlap_are_named() {
+    let run = |number: usize| log(RECORDS[number].clone(), |_, _| {});
+    let cut = run(1).beginning(run(1).samples() / 2).expect("a cut");
+    let runs = [run(0), run(1), cut, run(2), run(3)];
+    let result = identified(&runs).expect("an identification");
+    let repeated = check(&result, CheckKind::RepeatedSamples);
+    assert_eq!(result.grade(), Grade::DoNotUse);
+    assert!(!repeated.passed && repeated.words.contains("they count twice"));
+    assert!((repeated.statistic - 100.0).abs() < 1.0, "{repeated:?}");
+}

@@ -14,7 +14,7 @@ use crate::{
     text::escape,
     units::with_unit,
 };
-use overact_identification::{Axis as EvidenceAxis, Check, Evidence, Grade, Identification};
+use overact_identification::{Axis as EvidenceAxis, Check, Curve, Evidence, Grade, Identification};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
@@ -206,17 +206,31 @@ fn shown(number: usize, check: &Check) -> String {
     )
 }
 
-/// The curves of an evidence: lines, then points.
+/// The curves of an evidence: lines, then points. Where there are more points than looks, the largest keep theirs, and
+/// all others share one.
 fn curves(evidence: &Evidence) -> Vec<Line> {
-    let lines = evidence.lines.iter().map(|curve| (curve, false));
-    let points = evidence.points.iter().map(|curve| (curve, true));
-    let curves = lines.chain(points).enumerate();
-    curves
-        .map(|(order, (curve, is_points))| {
-            let line = Line::new(Look::nth(order), &curve.name, &curve.x, &curve.y);
-            if is_points { line.dots_alone() } else { line }
-        })
-        .collect()
+    let mut lines: Vec<Line> = Vec::new();
+    for curve in &evidence.lines {
+        let look = Look::nth(lines.len());
+        lines.push(Line::new(look, &curve.name, &curve.x, &curve.y));
+    }
+    let size = |curve: &Curve| curve.y.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+    let mut points: Vec<&Curve> = evidence.points.iter().collect();
+    if points.len() > Look::DISTINCT {
+        points.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    }
+    let (named, others) = points.split_at(points.len().min(Look::DISTINCT));
+    for curve in named {
+        let look = Look::nth(lines.len());
+        lines.push(Line::new(look, &curve.name, &curve.x, &curve.y).dots_alone());
+    }
+    let all = |of: fn(&Curve) -> &[f64]| others.iter().flat_map(move |curve| of(curve)).copied();
+    let (x, y): (Vec<f64>, Vec<f64>) = (all(|one| &one.x).collect(), all(|one| &one.y).collect());
+    if !others.is_empty() {
+        let name = format!("{} others", others.len());
+        lines.insert(0, Line::new(Look::Other, name, &x, &y).dots_alone());
+    }
+    lines
 }
 
 /// The label of an axis.

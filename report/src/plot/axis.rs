@@ -63,14 +63,19 @@ impl Axis {
         tight: bool,
     ) -> Scale {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut least_step = 1.0;
         for value in values.chain(self.includes.iter().copied()) {
             let fits = value.abs() < LARGEST && (self.kind == Kind::Linear || value > 0.0);
             if fits {
                 (low, high) = (low.min(value), high.max(value));
+                // Whole numbers have no ticks between them.
+                if value.fract() != 0.0 {
+                    least_step = 0.0;
+                }
             }
         }
         let (low, high, ticks) = match self.kind {
-            Kind::Linear => linear(low, high, count, tight),
+            Kind::Linear => linear(low, high, (count, least_step), tight),
             Kind::Logarithmic => logarithmic(low, high, count),
         };
         Scale {
@@ -112,15 +117,20 @@ impl Scale {
     }
 }
 
-/// Range and ticks of a linear scale; no data at all give the range from 0 to 1.
-fn linear(low: f64, high: f64, count: usize, tight: bool) -> (f64, f64, Vec<(f64, String)>) {
+/// Range and ticks of a linear scale, which have at least a step between them; no data at all give the range from 0 to 1.
+fn linear(
+    low: f64,
+    high: f64,
+    (count, least_step): (usize, f64),
+    tight: bool,
+) -> (f64, f64, Vec<(f64, String)>) {
     let (mut low, mut high) = if low <= high { (low, high) } else { (0.0, 1.0) };
     let size = low.abs().max(high.abs());
     if high - low <= NARROWEST * size || high == low {
         let half = if size > 0.0 { 0.5 * size } else { 1.0 };
         (low, high) = (low - half, high + half);
     }
-    let step = round_step((high - low) / count.max(1) as f64);
+    let step = round_step((high - low) / count.max(1) as f64).max(least_step);
     if !tight {
         low = (low / step + NARROWEST).floor() * step;
         high = (high / step - NARROWEST).ceil() * step;
@@ -237,6 +247,7 @@ mod tests {
             labels(&Axis::logarithmic("x"), &[0.02, 300.0]),
             ["10⁻²", "0.1", "1", "10", "100", "1000"]
         );
+        assert_eq!(labels(&axis, &[1.0, 2.0, 3.0]), ["1", "2", "3"]);
         assert_eq!(scientific(-2.5e5), "−2.5·10⁵");
     }
 

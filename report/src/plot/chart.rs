@@ -9,8 +9,11 @@ use super::{
 };
 use crate::text::{escape, fitted};
 
-/// Characters that stand side by side above a chart.
+/// Characters that stand side by side above a chart, in one line.
 const TITLE_CHARACTERS: usize = 46;
+
+/// Height of a line for the title alone, where the unit needs the one below.
+const TITLE_LINE: f64 = 15.0;
 
 /// Height of a chart in SVG units.
 const HEIGHT: f64 = 230.0;
@@ -50,6 +53,9 @@ pub(crate) enum Look {
 }
 
 impl Look {
+    /// How many looks differ from each other.
+    pub(crate) const DISTINCT: usize = 7;
+
     /// How many lines of equal standing a chart of the page has at most.
     pub(crate) const EQUALS: usize = 4;
 
@@ -186,7 +192,8 @@ impl Chart {
         let x = self.x.scale(places, (left, right), 6, true);
         let heights = points().map(|point| point.1).chain(rules(false));
         let y = self.y.scale(heights, (bottom, top), 5, false);
-        let mut svg = opening(WIDTH, HEIGHT, &self.title, &self.description);
+        let above = self.above();
+        let mut svg = opening((WIDTH, HEIGHT, above), &self.title, &self.description);
         svg.push_str(&self.axes(&x, &y));
         let across = |rule: &&Rule| !rule.is_vertical;
         for rule in &self.rules {
@@ -205,16 +212,25 @@ impl Chart {
         svg
     }
 
+    /// Height of what stands above the chart's own place: a line where title and unit do not fit in one.
+    fn above(&self) -> f64 {
+        let length = |text: &str| text.chars().count();
+        let beside = length(&self.title) + length(&self.y.label);
+        if beside < TITLE_CHARACTERS || self.y.label.is_empty() {
+            0.0
+        } else {
+            TITLE_LINE
+        }
+    }
+
     /// Grid, ticks, labels and title.
     fn axes(&self, x: &Scale, y: &Scale) -> String {
         let [left, right, _, bottom] = FRAME;
         let mut svg = format!(
-            "<text class=\"head\" x=\"{}\" y=\"15\">{}</text>",
+            "<text class=\"head\" x=\"{}\" y=\"{}\">{}</text>",
             short(left),
-            escape(&fitted(
-                &self.title,
-                TITLE_CHARACTERS.saturating_sub(self.y.label.chars().count())
-            ))
+            short(15.0 - self.above()),
+            escape(&fitted(&self.title, TITLE_CHARACTERS))
         );
         for (value, label) in &y.ticks {
             let Some(at) = y.at(*value) else { continue };
@@ -252,12 +268,17 @@ impl Chart {
     }
 }
 
-/// The opening tag of a plot with its names for those who can't see it.
-pub(super) fn opening(width: f64, height: f64, title: &str, description: &str) -> String {
+/// The opening tag of a plot, which reaches so far `above` its own place, with its names for those who can't see it.
+pub(super) fn opening(
+    (width, height, above): (f64, f64, f64),
+    title: &str,
+    description: &str,
+) -> String {
     format!(
-        "<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\" aria-label=\"{}: {}\"><title>{}</title>",
+        "<svg class=\"plot\" viewBox=\"0 {} {} {}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\" aria-label=\"{}: {}\"><title>{}</title>",
+        short(-above),
         short(width),
-        short(height),
+        short(height + above),
         escape(title),
         escape(description),
         escape(description)
@@ -427,6 +448,16 @@ mod tests {
                 "{places:?}"
             );
         }
+    }
+
+    #[test]
+    fn a_title_that_leaves_no_room_for_the_unit_has_a_line_of_its_own() {
+        let mut chart = chart(vec![(0.0, 1.0), (1.0, 10.0)]);
+        assert!(chart.svg().contains("viewBox=\"0 0 400 230\""));
+        chart.title = String::from("Residual of the held-out run beside others");
+        let svg = chart.svg();
+        assert!(svg.contains("viewBox=\"0 -15 400 245\""), "{svg}");
+        assert!(svg.contains("y=\"0\">Residual of the held-out run beside others</text>"));
     }
 
     #[test]

@@ -78,7 +78,7 @@ impl Forest {
         let x = self.x.scale(ends, (LEFT, RIGHT), 5, false);
         let height: f64 = self.rows.iter().map(|(_, bars)| row_height(bars)).sum();
         let bottom = HEAD + height;
-        let mut svg = opening(WIDTH, bottom + FOOT, &self.title, &self.description);
+        let mut svg = opening((WIDTH, bottom + FOOT, 0.0), &self.title, &self.description);
         svg.push_str(&self.axes(&x, bottom));
         let mut top = HEAD;
         for (name, bars) in &self.rows {

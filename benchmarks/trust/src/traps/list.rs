@@ -123,6 +123,12 @@ fn drives() -> Vec<Trap> {
             run.torques.iter_mut().for_each(|torque| *torque *= 1e3);
         })
         .assumed("gains that are wrong by one factor"),
+        Trap::each("torque of drive 2 alone in mN m", |run| {
+            alter::torque(run, 1, |torque| 1e3 * torque);
+        }),
+        Trap::each("torque of drive 2 ten times as large", |run| {
+            alter::torque(run, 1, |torque| 10.0 * torque);
+        }),
         Trap::each("torque of drive 2 reversed", |run| {
             alter::torque(run, 1, |torque| -torque);
         }),

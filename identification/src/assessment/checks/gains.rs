@@ -8,7 +8,7 @@ use super::{
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Detectable},
-        suspects::{Group, Suspect},
+        suspects::{Group, Scores, Suspect},
     },
     error::Error,
     significant,
@@ -23,56 +23,84 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(Vec::new());
     };
     let names = context.model.info().actuators;
-    let gains = scores.suspects.iter().enumerate();
-    let gains: Vec<(usize, usize)> = gains
-        .filter_map(|(place, one)| match one {
-            Suspect::Gain(actuator) => Some((place, *actuator)),
-            _ => None,
-        })
-        .collect();
-    let level = level(gains.len());
-    let mut found: Vec<(usize, Tested)> = Vec::new();
-    for (place, actuator) in &gains {
-        let own = tested(scores, std::iter::once(Group::suspect(*place)));
-        found.extend(own.into_iter().map(|one| (*actuator, one)));
+    let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
+    let (mut actuators, mut found, mut untold) = (Vec::new(), Vec::new(), Vec::new());
+    for (place, suspect) in scores.suspects.iter().enumerate() {
+        let Suspect::Gain(actuator) = *suspect else {
+            continue;
+        };
+        match tested(scores, std::iter::once(Group::suspect(place))).pop() {
+            Some(one) => {
+                actuators.push(actuator);
+                found.push(one);
+            }
+            None => untold.push(actuator),
+        }
     }
     if found.is_empty() {
-        return Ok(Vec::new());
+        return Ok(none_told(names).into_iter().collect());
     }
-    let percent = |value: f64| significant(100.0 * value, 3);
-    let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
-    let (actuators, found): (Vec<usize>, Vec<Tested>) = found.into_iter().unzip();
-    let detectable: Vec<Detectable> = actuators
+    let level = level(found.len() + untold.len());
+    let told = actuators.iter().zip(&found).map(|(actuator, one)| {
+        let own = (name(*actuator).to_owned(), "");
+        one.detectable((context, scores), own, one.accused.visible(level))
+    });
+    let hidden = untold
         .iter()
-        .zip(&found)
-        .map(|(actuator, one)| {
-            let own = (name(*actuator).to_owned(), "");
-            one.detectable((context, scores), own, one.accused.visible(level))
+        .map(|actuator| Detectable::never(name(*actuator)));
+    let detectable: Vec<Detectable> = told.chain(hidden).collect();
+    let worst = guilty(&found, level);
+    let said = worst.map_or_else(
+        || innocent(&found, &detectable),
+        |worst| {
+            let place = found.iter().position(|one| std::ptr::eq(one, worst));
+            let actuator = place.map_or("", |place| name(actuators[place]));
+            unlike((context, scores), (&found, worst), actuator, level)
+        },
+    );
+    let limit = worst
+        .or(found.first())
+        .map(|one| one.accused.quantile(level));
+    let count = found.len() + untold.len();
+    Ok(vec![
+        said.against(limit.unwrap_or_default(), origin(count))
+            .detecting(detectable),
+    ])
+}
+
+/// A part of one in percent.
+fn percent(value: f64) -> String {
+    significant(100.0 * value, 3)
+}
+
+/// What is said where no drive is unlike the others.
+fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
+    let visible: Vec<String> = detectable
+        .iter()
+        .map(|one| match one.size.is_finite() {
+            true => format!("`{}` {} %", one.name, percent(one.size)),
+            false => format!("`{}` not at all", one.name),
         })
         .collect();
-    let Some(worst) = guilty(&found, level) else {
-        let visible: Vec<String> = detectable
-            .iter()
-            .map(|one| format!("`{}` {} %", one.name, percent(one.size)))
-            .collect();
-        let words = format!(
-            "no drive has a gain unlike the others'; an error of one drive would have been seen from so much on: {}",
-            visible.join(", ")
-        );
-        let largest = found
-            .iter()
-            .map(|one| one.accused.size().abs() / one.accused.deviation)
-            .fold(0.0, f64::max);
-        return Ok(vec![
-            Check::new(CheckKind::WrongGain, About::Model, words)
-                .measured(largest, "standard deviations")
-                .against(found[0].accused.quantile(level), origin(gains.len()))
-                .detecting(detectable),
-        ]);
-    };
-    let place = found.iter().position(|one| std::ptr::eq(one, worst));
-    let actuator = place.map_or("", |place| name(actuators[place]));
-    let harm = worst_harm(context, scores, (&found, worst), level);
+    let words = format!(
+        "no drive has a gain unlike the others'; an error of one drive would have been seen from so much on: {}",
+        visible.join(", ")
+    );
+    let largest = found
+        .iter()
+        .map(|one| one.accused.size().abs() / one.accused.deviation)
+        .fold(0.0, f64::max);
+    Check::new(CheckKind::WrongGain, About::Model, words).measured(largest, "standard deviations")
+}
+
+/// What is said of a drive that is unlike the others.
+fn unlike(
+    (context, scores): (&Context<'_>, &Scores),
+    (found, worst): (&[Tested], &Tested),
+    actuator: &str,
+    level: f64,
+) -> Check {
+    let harm = worst_harm(context, scores, (found, worst), level);
     let size = worst.accused.size();
     let by = match size {
         // Far from the others the first order, in which it was looked for, tells no size.
@@ -81,21 +109,25 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         size => format!("{} % too large beside", percent(size)),
     };
     let words = format!(
-        "the torque of `{actuator}` is measured {by} those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant and its gear ratio",
+        "the torque of `{actuator}` is measured {by} those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant, its gear ratio and whether it is filtered unlike the others",
         percent(worst.accused.deviation),
         harm.words()
     );
-    Ok(vec![
-        Check::new(CheckKind::WrongGain, About::Model, words)
-            .of_actuator(actuator)
-            .measured(size.abs() / worst.accused.deviation, "standard deviations")
-            .against(worst.accused.quantile(level), origin(gains.len()))
-            .because(&harm)
-            .shown_by(parabola(
-                &worst.accused,
-                &format!("Residual for other gains of {actuator}"),
-                ("error of the gain", "%", 100.0),
-            ))
-            .detecting(detectable),
-    ])
+    Check::new(CheckKind::WrongGain, About::Model, words)
+        .of_actuator(actuator)
+        .measured(size.abs() / worst.accused.deviation, "standard deviations")
+        .because(&harm)
+        .shown_by(parabola(
+            &worst.accused,
+            &format!("Residual for other gains of {actuator}"),
+            ("error of the gain", "%", 100.0),
+        ))
+}
+
+/// What is said where the data tell no drive from its own parameters; a single drive is right or wrong as a whole.
+fn none_told(names: &[&str]) -> Option<Check> {
+    let words = "nothing in these data tells whether the gain of one drive is unlike the others'";
+    let check = || Check::new(CheckKind::WrongGain, About::Model, words);
+    let never = names.iter().map(|name| Detectable::never(name)).collect();
+    (names.len() > 1).then(|| check().detecting(never))
 }

@@ -16,6 +16,7 @@ mod payload_labels;
 pub(crate) mod raw_numbers;
 mod regressor_errors;
 mod relative_error;
+mod repeated;
 mod residual_correlation;
 pub(super) mod smoothing;
 mod suspected;
@@ -97,8 +98,9 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 17] = [
+const CHECKS: [Function; 18] = [
     raw_numbers::check,
+    repeated::check,
     course::check,
     closure::check,
     torque_faults::check,

@@ -19,6 +19,9 @@ use crate::{
 };
 use overact_identification::{Estimate, Identification, ParameterEstimate, Stage, significant};
 
+/// Half an interval's width beyond so many percent of its parameter says no more than that the parameter is not known.
+const LARGEST_PERCENT: f64 = 1000.0;
+
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
@@ -130,7 +133,7 @@ fn header(estimates: &[&Estimate], truth: bool) -> Vec<Vec<Cell>> {
     for estimate in estimates {
         let heading = Cell::text(case_heading(estimate.model)).over(3);
         groups.push(heading.class("group"));
-        let last = if truth { "error" } else { "± %" };
+        let last = if truth { "error" } else { "±\u{a0}%" };
         let titles = ["estimate", "95 % interval", last];
         columns.extend(titles.map(|title| Cell::text(title).class("n")));
     }
@@ -156,7 +159,10 @@ fn estimated(parameter: Option<&ParameterEstimate>, truth: bool) -> Vec<Cell> {
         })
     } else {
         half_width_percent(one).map_or_else(Cell::nothing, |percent| {
-            Cell::number(significant(percent, 2))
+            Cell::number(match percent < LARGEST_PERCENT {
+                true => significant(percent, 2),
+                false => format!("> {LARGEST_PERCENT:.0}"),
+            })
         })
     };
     vec![

@@ -1,0 +1,60 @@
+//! Whether samples stand among the runs twice: cuts of one log that overlap, a log that was given twice. What counts
+//! twice seems to be known better than it is, and a held-out run that was identified from tests nothing.
+
+use super::{Context, Watched};
+use crate::{
+    assessment::check::{About, Check, CheckKind, Grade},
+    data::Log,
+    error::Error,
+    significant,
+};
+
+/// Part of the shorter of two runs up to which what they share does no harm: intervals are too narrow by a fortieth.
+const HARMLESS: f64 = 0.05;
+
+/// Looks at all pairs of runs of which one at least was identified from.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let runs: Vec<(&Log, &Watched)> = context.runs().collect();
+    let identified = context.dataset.runs.len();
+    let mut found = Vec::new();
+    for (number, (log, watched)) in runs.iter().enumerate() {
+        for (first, other) in runs.iter().take(identified.min(number)) {
+            let Some(shared) = other.monitor.shared(&watched.monitor) else {
+                continue;
+            };
+            let seconds = shared.samples as f64 / log.sampling_frequency();
+            let of = format!(
+                "about {} s of this run are samples of `{}`",
+                significant(seconds, 2),
+                first.name()
+            );
+            let (about, words) = match number < identified {
+                true => (
+                    About::Data,
+                    format!(
+                        "{of}: they count twice, and all intervals are too narrow. Give each sample once: cut the runs where they do not overlap"
+                    ),
+                ),
+                false => (
+                    About::Extrapolation,
+                    format!(
+                        "{of}, though the run is held out: it says nothing of motions that were not identified from. Hold out another run"
+                    ),
+                ),
+            };
+            let grade = match shared.part > HARMLESS {
+                true => Grade::DoNotUse,
+                false => Grade::Use,
+            };
+            let check = Check::new(CheckKind::RepeatedSamples, about, words)
+                .in_run(log.name())
+                .measured(100.0 * shared.part, "% of the shorter run")
+                .against(
+                    100.0 * HARMLESS,
+                    "intervals that are too narrow by a fortieth",
+                );
+            found.push(check.found().allowing(grade));
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,122 @@
+//! Samples by which a run is known again, should it or a part of it stand among the runs twice.
+//!
+//! Which samples are kept depends on their numbers alone, so that two runs that share samples keep the same of them,
+//! wherever they begin.
+
+use std::collections::HashMap;
+
+/// Marks that are kept of a run, at most.
+const MOST: usize = 1 << 14;
+
+/// Marks that two runs have in common at one distance in time, at least, where one holds samples of the other.
+const FEWEST: usize = 10;
+
+/// An odd number with well mixed bits: 2⁶⁴ by the golden ratio.
+const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The marks of a run: one in 2^level of its samples, those whose hashes end in so many zeros.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Marks {
+    level: u32,
+    samples: usize,
+    last: u64,
+    /// Hashes, and the samples that have them first.
+    kept: HashMap<u64, usize>,
+}
+
+/// What two runs have in common.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shared {
+    /// About so many samples.
+    pub(crate) samples: usize,
+    /// The part of the shorter run.
+    pub(crate) part: f64,
+}
+
+impl Marks {
+    /// Takes the next sample. One that is as the last is none that tells anything.
+    pub(super) fn take(&mut self, positions: &[f64], torques: &[f64]) {
+        let all = positions.iter().chain(torques);
+        let hash = all.fold(MIX, |hash, value| {
+            let mixed = (hash ^ value.to_bits()).wrapping_mul(MIX);
+            mixed ^ (mixed >> 32)
+        });
+        if hash != self.last && hash.trailing_zeros() >= self.level {
+            self.kept.entry(hash).or_insert(self.samples);
+            while self.kept.len() > MOST {
+                self.level += 1;
+                let level = self.level;
+                self.kept.retain(|hash, _| hash.trailing_zeros() >= level);
+            }
+        }
+        self.last = hash;
+        self.samples += 1;
+    }
+
+    /// What another run has of this one, sample by sample; none where that is nothing.
+    pub(crate) fn shared(&self, other: &Self) -> Option<Shared> {
+        let level = self.level.max(other.level);
+        let mut distances: HashMap<i128, usize> = HashMap::new();
+        for (hash, own) in &self.kept {
+            if let Some(place) = other
+                .kept
+                .get(hash)
+                .filter(|_| hash.trailing_zeros() >= level)
+            {
+                *distances.entry(*own as i128 - *place as i128).or_default() += 1;
+            }
+        }
+        let most = distances
+            .into_values()
+            .max()
+            .filter(|count| *count >= FEWEST)?;
+        let shorter = self.samples.min(other.samples);
+        let samples = (most << level).min(shorter);
+        Some(Shared {
+            samples,
+            part: samples as f64 / shorter.max(1) as f64,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST, Marks};
+
+    /// Samples of two actuators, each unlike all others.
+    fn marks(samples: std::ops::Range<usize>) -> Marks {
+        let mut marks = Marks::default();
+        for sample in samples {
+            let x = (sample as f64).sin();
+            marks.take(&[x, x * x], &[1.0 - x, x.powi(3)]);
+        }
+        marks
+    }
+
+    #[test]
+    fn cuts_of_one_log_are_known_by_what_they_share() {
+        let shared = marks(0..3000).shared(&marks(2000..4000)).expect("shared");
+        assert_eq!(shared.samples, 1000);
+        assert!((shared.part - 0.5).abs() < 1e-12);
+        let all = 4 * MOST;
+        let shared = marks(0..all)
+            .shared(&marks(all / 2..2 * all))
+            .expect("shared");
+        let expected = all as f64 / 2.0;
+        assert!(
+            (shared.samples as f64 / expected - 1.0).abs() < 0.1,
+            "{shared:?}"
+        );
+    }
+
+    #[test]
+    fn runs_that_share_a_rest_or_nothing_are_two() {
+        assert_eq!(marks(0..3000).shared(&marks(3000..6000)), None);
+        let resting = |first: usize| {
+            let mut marks = marks(first..first + 1000);
+            (0..1000).for_each(|_| marks.take(&[0.0, 0.0], &[1.0, 2.0]));
+            marks
+        };
+        assert_eq!(resting(0).shared(&resting(5000)), None);
+    }
+}
