@@ -89,7 +89,7 @@ fn of_estimate(
                 ),
             )
             .shown_by(Evidence {
-                title: String::from("Residual of the held-out run beside those identified from"),
+                title: String::from("The held-out run beside those identified from"),
                 x: Axis::new("number of the part", ""),
                 y: Axis::new("residual by the usual one", ""),
                 points: vec![
