@@ -245,7 +245,10 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
     let mut text = String::new();
     if verdict.grade == Grade::UseListed {
         let listed: Vec<&str> = verdict.listed.iter().map(String::as_str).collect();
-        let told = format!("To be used: {}.", list(&listed, extent));
+        let told = format!(
+            "To be used, if the fault is the one that is named: {}.",
+            list(&listed, extent)
+        );
         paragraph(&mut text, "  ", &told);
         let estimate = of(identification, verdict.model, verdict.stage);
         let names = estimate.iter().flat_map(|one| &one.parameters);

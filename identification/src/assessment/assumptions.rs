@@ -98,15 +98,23 @@ const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> Kind {
 }
 
 /// All kinds of faults whose sizes are told.
-const KINDS: [Kind; 7] = [
+const KINDS: [Kind; 8] = [
     kind(CheckKind::EncoderOffset, false, "zero of an encoder"),
     kind(CheckKind::EncoderOffset, true, "scale of an encoder"),
     kind(CheckKind::Length, false, "length"),
     kind(CheckKind::WrongGain, true, "gain of one drive"),
     kind(CheckKind::Delay, false, "delay of the torques"),
     kind(CheckKind::Filters, false, "smoothing of the torques"),
+    kind(
+        CheckKind::Reversals,
+        false,
+        "smoothing of all signals alike",
+    ),
     kind(CheckKind::Clock, true, "sampling frequency"),
 ];
+
+/// An error of a part of one by as much as this is as good as any.
+const WHOLE: f64 = 1.0;
 
 /// What the checks would have missed though it spoils parameters: of each kind the fault that does most harm at the
 /// size that would just have been seen.
@@ -136,7 +144,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
             (name, _) => format!(" of `{name}`"),
         };
         // Of a part of one more than the whole means nothing.
-        let most = if kind.is_part { 1.0 } else { f64::INFINITY };
+        let most = if kind.is_part { WHOLE } else { f64::INFINITY };
         let moves = worst.moves * (most / worst.size).min(1.0);
         let size = match worst.unit {
             "" => format!("{} %", significant(100.0 * worst.size.min(most), 2)),
@@ -155,12 +163,15 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
     told.collect()
 }
 
-/// The actuators of which these data would show no fault of a kind, in words.
+/// The drives of which these data would show no wrong gain, or none that is not far beyond the first order, in words.
 fn never(checks: &[Check], kind: &Kind) -> Option<String> {
-    let own = checks.iter().filter(|one| one.kind == kind.check);
+    let own = checks
+        .iter()
+        .filter(|one| one.kind == kind.check && one.passed);
     let hidden = own
+        .filter(|one| one.kind == CheckKind::WrongGain)
         .flat_map(|one| &one.detectable)
-        .filter(|one| one.size.is_infinite());
+        .filter(|one| one.size >= WHOLE && one.moves > HARMFUL);
     let names: Vec<String> = hidden.map(|one| format!("`{}`", one.name)).collect();
     (!names.is_empty()).then(|| {
         format!(

@@ -187,6 +187,8 @@ pub enum CheckKind {
     ShortMotion,
     /// The filters do not suit the motion.
     Filters,
+    /// Dry friction around reversals.
+    Reversals,
     /// The residual holds something that the model lacks.
     MissingParameter,
     /// A parameter that can't be negative is.
@@ -228,6 +230,7 @@ impl CheckKind {
             Self::Outliers => "outliers",
             Self::ShortMotion => "short motion",
             Self::Filters => "filters",
+            Self::Reversals => "friction at reversals",
             Self::MissingParameter => "missing parameter",
             Self::NegativeParameter => "negative parameter",
             Self::Partition => "partition",

@@ -102,6 +102,9 @@ pub(super) fn capital(text: &str) -> String {
     })
 }
 
+/// Decimals that a value has at most beyond those of its interval.
+const MOST_MORE: usize = 3;
+
 /// A value and the interval of the truth, both rounded where the width of the interval says:
 /// `0.044641` and `0.044570 … 0.044712`. The interval is none where it is not known.
 pub(super) fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, Option<String>) {
@@ -121,14 +124,23 @@ pub(super) fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, Optio
         (10_f64.powi(exponent), exponent - last)
     };
     let decimals = usize::try_from(decimals).unwrap_or(0);
-    let digits = |value: f64| format!("{:.decimals$}", value / scale).replace('-', "−");
+    let rounded =
+        |value: f64, decimals: usize| format!("{:.decimals$}", value / scale).replace('-', "−");
+    let digits = |value: f64| rounded(value, decimals);
     let interval = format!("{} … {}", digits(low), digits(high));
+    // A value far below the width of its interval keeps two digits all the same.
+    let first = (value / scale).abs().log10().floor();
+    let own = match first.is_finite() {
+        true => usize::try_from(1 - first as i32).unwrap_or(0),
+        false => 0,
+    };
+    let value = rounded(value, decimals.max(own.min(decimals + MOST_MORE)));
     if fixed {
-        return (digits(value), Some(interval));
+        return (value, Some(interval));
     }
     let power = power_of_ten(&exponent.to_string());
     let interval = format!("({interval})·{power}");
-    (format!("{}·{power}", digits(value)), Some(interval))
+    (format!("{value}·{power}"), Some(interval))
 }
 
 #[cfg(test)]
@@ -166,7 +178,8 @@ mod tests {
             both(1.234e-6, [1.13e-6, 1.336e-6]),
             "1.23·10⁻⁶ in (1.13 … 1.34)·10⁻⁶"
         );
-        assert_eq!(both(12.0, [-588.0, 612.0]), "0.1·10² in (−5.9 … 6.1)·10²");
+        assert_eq!(both(12.0, [-588.0, 612.0]), "0.12·10² in (−5.9 … 6.1)·10²");
+        assert_eq!(both(-0.346, [-12.1, 11.4]), "−0.35 in −12 … 11");
         assert_eq!(both(1.5, [1.5, 1.5]), "1.5 in ");
         assert_eq!(both(f64::NAN, [0.0, 1.0]), "undefined in ");
     }

@@ -135,7 +135,7 @@ fn no_name_reaches_the_terminal_but_as_text() {
     assert!(!told.contains(hidden), "{told:?}");
     for words in [
         "case 1 (torques projected on the platform): USE IT FOR WHAT IS LISTED",
-        "  To be used: m_platformR.\n",
+        "  To be used, if the fault is the one that is named: m_platformR.\n",
         "DO NOT USE IT",
         "leg1: clipped",
         "The evidence behind each line, with plots: report.html",
@@ -245,7 +245,7 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
     let verdict = text(element(&document, "verdict"));
     for words in [
         "Case 1, recommended parameters: use it for what is listed. Case 2, recommended parameters: do not use it.",
-        "To be used: m_platformR.",
+        "To be used, if the fault is the one that is named: m_platformR.",
         "One parameter is biased. Shown here.",
         "leg1: clipped. Shown here.",
         "All base parameters: use it.",

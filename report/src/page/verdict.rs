@@ -78,7 +78,10 @@ fn listed(names: &[String]) -> String {
         return String::new();
     }
     let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    format!("<p>To be used: {}.</p>", prose(&names.join(", ")))
+    format!(
+        "<p>To be used, if the fault is the one that is named: {}.</p>",
+        prose(&names.join(", "))
+    )
 }
 
 /// What speaks against a model, each with a link to what shows it; else that nothing does.

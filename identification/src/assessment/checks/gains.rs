@@ -82,8 +82,12 @@ fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
             false => format!("`{}` not at all", one.name),
         })
         .collect();
+    let which = match detectable.iter().all(|one| one.size.is_finite()) {
+        true => "no drive",
+        false => "no drive of which these data tell",
+    };
     let words = format!(
-        "no drive has a gain unlike the others'; an error of one drive would have been seen from so much on: {}",
+        "{which} has a gain unlike the others'; an error of one drive would have been seen from so much on: {}",
         visible.join(", ")
     );
     let largest = found

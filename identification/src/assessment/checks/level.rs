@@ -6,9 +6,9 @@
 /// The part of the reports on faultless data that may have a false alarm.
 pub(crate) const FALSE_ALARMS: f64 = 0.01;
 
-/// Families of tests: closure, delay, smoothing, clock, gains, geometry, labels, missing parameters, held-out runs,
+/// Families of tests: closure, delay, smoothing, friction at reversals, clock, gains, geometry, labels, missing parameters, held-out runs,
 /// errors in the regressor, residuals that hang together.
-const FAMILIES: f64 = 11.0;
+const FAMILIES: f64 = 12.0;
 
 /// The level of each of so many tests of a family.
 pub(crate) fn level(tests: usize) -> f64 {

@@ -4,13 +4,13 @@
 use super::{
     Context,
     level::{level, origin},
-    suspected::{Tested, guilty, tested, worst_harm},
+    suspected::{Harm, Tested, guilty, harm, tested, worst_harm},
 };
 use crate::{
     assessment::{
-        check::{About, Check, CheckKind},
+        check::{About, Check, CheckKind, Grade},
         evidence::{Axis, Curve, Evidence},
-        suspects::{Group, Shape, Suspect},
+        suspects::{Group, Scores, Shape, Suspect},
     },
     called::called,
     error::Error,
@@ -36,10 +36,12 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(Vec::new());
     }
     let (tests, level) = (found.len(), level(found.len()));
-    let check = Check::new(CheckKind::MissingParameter, About::Model, "")
-        .shown_by(evidence(&suspects, &found, level));
     let ratio = |one: &Tested| one.accused.strength();
-    let Some(worst) = guilty(&found, level) else {
+    let worst = guilty(&found, level);
+    let limit = worst.unwrap_or(&found[0]).accused.quantile(level);
+    let check = Check::new(CheckKind::MissingParameter, About::Model, "")
+        .shown_by(evidence(&suspects, &found, limit));
+    let Some(worst) = worst else {
         let largest = found.iter().map(ratio).fold(0.0, f64::max);
         let words = format!(
             "what is left unexplained depends on no velocity, acceleration, position or time that the model lacks ({tests} columns tried)"
@@ -47,7 +49,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(vec![
             Check { words, ..check }
                 .measured(largest, "standard deviations")
-                .against(found[0].accused.quantile(level), origin(tests)),
+                .against(limit, origin(tests)),
         ]);
     };
     let info = context.model.info();
@@ -62,15 +64,20 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         _ => ("", None),
     };
     let name = name.copied().unwrap_or_default();
-    let harm = worst_harm(context, scores, (&found, worst), level);
+    let mut harm = worst_harm(context, scores, (&found, worst), level);
+    let others = others((context, scores), (&suspects, &found, place), level);
+    for (_, other) in &others {
+        harm.with(context, other);
+    }
     let told = Told {
         what: format!("{what} {}", called(name)),
         size: worst.accused.largest(),
         strength: ratio(worst),
         rest: format!(
-            "which explains {} % of the residual's square; {}",
+            "which explains {} % of the residual's square; {}{}",
             significant(100.0 * worst.accused.explained, 2),
-            harm.words()
+            harm.words(),
+            too(&others)
         ),
     };
     let words = match suspect {
@@ -83,12 +90,56 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let check = Check { words, ..check }
         .measured(ratio(worst), "standard deviations")
-        .against(worst.accused.quantile(level), origin(tests))
+        .against(limit, origin(tests))
         .because(&harm);
     Ok(vec![match suspect {
         Suspect::Torque(..) => check.of_actuator(name),
         _ => check,
     }])
+}
+
+/// Of every other drive and coordinate what is worst of it, where that spoils parameters: a fault that all drives have
+/// in common is the worst of one of them only by chance.
+fn others(
+    (context, scores): (&Context<'_>, &Scores),
+    (suspects, found, worst): (&[(Suspect, Shape)], &[Tested], usize),
+    level: f64,
+) -> Vec<(String, Harm)> {
+    let info = context.model.info();
+    let place = |suspect: Suspect| match suspect {
+        Suspect::Torque(actuator, _) => (0, actuator),
+        Suspect::Force(line, _) => (1, line),
+        _ => (2, 0),
+    };
+    let mut places: Vec<(usize, usize)> = suspects.iter().map(|(one, _)| place(*one)).collect();
+    let own = places[worst];
+    places.sort_unstable();
+    places.dedup();
+    places.retain(|one| *one != own);
+    let worst_of = |at: (usize, usize)| {
+        let all = suspects.iter().zip(found);
+        let beyond = all
+            .filter(|((one, _), tested)| place(*one) == at && tested.accused.probability < level);
+        let explained = |one: &Tested| one.accused.explained;
+        let (_, tested) = beyond.max_by(|a, b| explained(a.1).total_cmp(&explained(b.1)))?;
+        let harm = harm(context, scores, tested);
+        let names = match at.0 {
+            0 => info.actuators,
+            _ => info.coordinates,
+        };
+        let name = names.get(at.1).copied().unwrap_or_default();
+        (harm.grade > Grade::Use).then(|| (name.to_owned(), harm))
+    };
+    places.into_iter().filter_map(worst_of).collect()
+}
+
+/// The others, as the end of a sentence.
+fn too(others: &[(String, Harm)]) -> String {
+    let names: Vec<String> = others.iter().map(|(name, _)| format!("`{name}`")).collect();
+    match names.is_empty() {
+        true => String::new(),
+        false => format!("; the same test finds {}, too", names.join(", ")),
+    }
 }
 
 /// What was found.
@@ -106,12 +157,16 @@ struct Told {
 impl Told {
     /// The sentences on a shape whose size has a unit.
     fn words(&self, shape: Shape, unit: &str) -> String {
-        let size = format!("{} {unit}", significant(self.size, 3));
+        let size = format!(", by {} {unit}", significant(self.size, 3));
+        let by = match shape {
+            // Waves that are nearly combinations of others have no size of their own.
+            Shape::Waves => "",
+            _ => size.trim_end(),
+        };
         format!(
-            "the {} depends on {} beyond the model, by {} ({:.1} standard deviations), {}. Add what is missing to the description, or look for what else differs from it",
+            "the {} depends on {} beyond the model{by} ({:.1} standard deviations), {}. Add what is missing to the description, or look for what else differs from it",
             self.what,
             shape.words(),
-            size.trim_end(),
             self.strength,
             self.rest
         )
@@ -158,7 +213,7 @@ impl Told {
 }
 
 /// Size by deviation of all that was tried, shape by shape.
-fn evidence(suspects: &[(Suspect, Shape)], found: &[Tested], level: f64) -> Evidence {
+fn evidence(suspects: &[(Suspect, Shape)], found: &[Tested], limit: f64) -> Evidence {
     let mut points: Vec<(Shape, Curve)> = Vec::new();
     for ((suspect, shape), one) in suspects.iter().zip(found) {
         let (Suspect::Torque(number, _) | Suspect::Force(number, _)) = *suspect else {
@@ -175,7 +230,6 @@ fn evidence(suspects: &[(Suspect, Shape)], found: &[Tested], level: f64) -> Evid
             .y
             .push(one.accused.strength() * one.accused.largest().signum());
     }
-    let limit = found.first().map_or(0.0, |one| one.accused.quantile(level));
     Evidence {
         title: String::from("What the model may lack"),
         x: Axis::new("number of the actuator or coordinate", ""),

@@ -18,6 +18,7 @@ mod regressor_errors;
 mod relative_error;
 mod repeated;
 mod residual_correlation;
+mod reversals;
 pub(super) mod smoothing;
 mod suspected;
 mod torque_faults;
@@ -98,7 +99,7 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order in which they are told.
-const CHECKS: [Function; 18] = [
+const CHECKS: [Function; 19] = [
     raw_numbers::check,
     repeated::check,
     course::check,
@@ -106,6 +107,7 @@ const CHECKS: [Function; 18] = [
     torque_faults::check,
     delay::check,
     smoothing::check,
+    reversals::check,
     clock::check,
     gains::check,
     geometry::check,

@@ -91,7 +91,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         ("the motion is", "the torques")
     };
     let words = format!(
-        "{what} smoother than {beside}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log that one of the two has passed, or for samples that were interpolated: log both without, or let both pass the same one",
+        "{what} smoother than {beside}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log that one of the two has passed, or for samples that were interpolated: log both without",
         time(accused.size()),
         harm.words()
     );

@@ -28,6 +28,8 @@ pub(super) struct Tested {
     pub(super) accused: Accused,
     /// What its size is, where another one tells it better.
     pub(super) size: Option<f64>,
+    /// By how many times more than in its own test it moves parameters in the estimate, whose band is wider.
+    pub(super) more: f64,
 }
 
 impl Tested {
@@ -66,7 +68,7 @@ impl Tested {
         let mut recommended = context.estimates_of(Stage::Recommended);
         let smaller = recommended.find(|one| one.model == base.model);
         let of_size = |accused: &Accused| -> Vec<(usize, f64)> {
-            let factor = self.size.map_or(1.0, |size| size / accused.size());
+            let factor = self.more * self.size.map_or(1.0, |size| size / accused.size());
             let moves = accused.moves.iter();
             moves.map(|(column, by)| (*column, by * factor)).collect()
         };
@@ -107,6 +109,7 @@ pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Ve
                 group,
                 accused,
                 size,
+                more: 1.0,
             })
         })
         .collect()
@@ -226,6 +229,18 @@ impl Harm {
             if !self.spoiled.contains(&name) {
                 self.spoiled.push(name);
             }
+        }
+    }
+
+    /// Together with what another fault spoils.
+    pub(super) fn with(&mut self, context: &Context<'_>, other: &Self) {
+        self.spoil(other.spoiled.clone());
+        let base = context.estimates_of(Stage::Base).next();
+        let count = base.map_or(0, |one| one.parameters.len());
+        self.grade = self.grade.max(Self::grade(self.spoiled.len(), count));
+        if other.worst > self.worst {
+            self.worst = other.worst;
+            self.parameter.clone_from(&other.parameter);
         }
     }
 

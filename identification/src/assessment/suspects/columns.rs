@@ -21,6 +21,8 @@ pub(crate) enum Suspect {
     Smoothing,
     /// The same with what it does to dry friction, which tells the harm.
     Rounding,
+    /// Dry friction is smoother by this time squared (s²) than the signs of the velocities.
+    Dulled,
     /// The torque of one actuator is late by so many seconds.
     Late(usize),
     /// The measured torque of an actuator is too large by this part of itself.
@@ -112,6 +114,7 @@ pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Ve
         Suspect::Delay,
         Suspect::Smoothing,
         Suspect::Rounding,
+        Suspect::Dulled,
         Suspect::Clock,
     ];
     // Of one drive alone that is the delay of all.
@@ -216,6 +219,11 @@ impl Sample<'_> {
                 };
                 let bends = bends.iter().enumerate();
                 bends.map(|(i, bend)| share(i) * bend).sum::<f64>()
+            }
+            Suspect::Dulled => {
+                let both = self.torque_turns.iter().zip(self.torque_bends);
+                let friction = both.enumerate().map(|(i, (all, rest))| (i, all - rest));
+                friction.map(|(i, bend)| share(i) * bend).sum::<f64>()
             }
             Suspect::Late(i) => -share(i) * self.torque_rates[i],
             Suspect::Gain(i) => share(i) * self.torques[i],

@@ -56,6 +56,8 @@ pub(crate) struct Scores {
     pub(super) runs: Vec<RunScores>,
     /// Motions that return, each with the runs that have it.
     pub(super) means: Vec<(Vec<usize>, Mean)>,
+    /// By how many times narrower the band of the equations is than that of the estimate.
+    pub(crate) narrower: usize,
     /// What was found beside the estimate's own columns.
     pub(super) own: Found,
 }
@@ -123,6 +125,7 @@ pub(crate) fn scores(
         layout,
         selected,
         means: means(&scores),
+        narrower,
         runs: scores,
         suspects,
         own: Found::default(),

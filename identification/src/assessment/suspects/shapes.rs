@@ -17,6 +17,8 @@ pub(crate) enum Shape {
     Stribeck,
     /// The magnitude of the torque with the sign of the velocity: friction that grows with the load.
     Load,
+    /// The magnitude of the torque: a gain that differs by the torque's sign.
+    Magnitude,
     /// The acceleration.
     Acceleration,
     /// The position: a spring.
@@ -41,7 +43,7 @@ pub(crate) enum Shape {
 pub(super) const WAVES: usize = 16;
 
 /// Shapes of an actuator that are one column each.
-pub(super) const SHAPES: [Shape; 15] = [
+pub(super) const SHAPES: [Shape; 16] = [
     Shape::Constant,
     Shape::Velocity,
     Shape::Sign,
@@ -49,6 +51,7 @@ pub(super) const SHAPES: [Shape; 15] = [
     Shape::Drag,
     Shape::Stribeck,
     Shape::Load,
+    Shape::Magnitude,
     Shape::Acceleration,
     Shape::Position,
     Shape::PositionSign,
@@ -124,6 +127,7 @@ impl Shape {
             Self::Load => {
                 "the magnitude of the torque and the sign of the velocity, as friction that grows with the load"
             }
+            Self::Magnitude => "the magnitude of the torque, as a gain that differs by its sign",
             Self::Acceleration => "the acceleration, as inertia",
             Self::Position => "the position, as a spring",
             Self::PositionSign => {
@@ -162,7 +166,7 @@ impl Shape {
             (Self::Time | Self::TimeSign, true) => "N m/s",
             (Self::Time | Self::TimeSign, false) => "N/s",
             (Self::GainTime, _) => "1/s",
-            (Self::Load, _) => "",
+            (Self::Load | Self::Magnitude, _) => "",
         }
     }
 
@@ -192,6 +196,7 @@ impl Shape {
                 sign * (-velocity.abs() / (STRIBECK * reach.speed)).exp()
             }
             Self::Load => sign * torque.abs(),
+            Self::Magnitude => torque.abs(),
             Self::Acceleration => acceleration,
             Self::Position => position,
             Self::PositionSign => position * sign,
