@@ -27,24 +27,40 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         .map(|run| chart(run, identification.thresholds.partition_condition))
         .collect();
     if !plots.is_empty() {
-        let caption = "Condition number of the actuators’ Jacobian along each run, the platform’s coordinates scaled to be comparable. Case 2 rests on the kept actuators alone: where its line rises above the dashed limit, they hardly determine the platform’s motion, and case 2 amplifies noise.";
-        let keys = [
-            ("first", "all actuators (case 1)"),
-            ("second", "kept actuators (case 2)"),
-        ];
+        let mut caption = String::from(
+            "Condition number of the actuators’ Jacobian along each run, the platform’s coordinates scaled to be comparable.",
+        );
+        let mut keys = String::new();
+        let has_kept = has_kept(identification);
+        if has_kept {
+            caption.push_str(" Case 2 rests on the kept actuators alone: where its line rises above the dashed limit, they hardly determine the platform’s motion, and case 2 amplifies noise.");
+            keys = key(&[
+                ("first", "all actuators (case 1)"),
+                ("second", "kept actuators (case 2)"),
+            ]);
+        }
         body.push_str(&figure(
             "figure-conditioning",
             &plots,
-            &key(&keys),
-            &escape(caption),
+            &keys,
+            &escape(&caption),
         ));
-        body.push_str(&paragraph(&crossings(identification)));
+        if has_kept {
+            body.push_str(&paragraph(&crossings(identification)));
+        }
     }
     Section {
         id: "conditioning",
         title: "Conditioning",
         body,
     }
+}
+
+/// Whether actuators were kept in a model of their own.
+fn has_kept(identification: &Identification) -> bool {
+    let series = identification.figures.runs.iter();
+    let mut series = series.flat_map(|run| &run.conditions);
+    series.any(|one| !is_platform(one))
 }
 
 /// Condition numbers of the systems, and the worst of the kept actuators.

@@ -38,6 +38,10 @@ fn of_model(told: &ErrorsInRegressor) -> String {
         (None, None) => String::from("Not tested."),
     };
     let mut html = heading + &paragraph(&outcome);
+    let differs = told.agreement.as_ref().is_some_and(|one| one.differs);
+    if differs && !told.parameters.iter().any(|one| one.spoiled) {
+        html.push_str(&paragraph("No difference exceeds the deviation that least squares has already, so that nothing is spoiled by it."));
+    }
     let (differing, rest): (Vec<_>, Vec<_>) = told.parameters.iter().partition(|one| one.differs);
     if !differing.is_empty() {
         html.push_str(&table("Base parameters that differ", &differing));

@@ -12,6 +12,7 @@ use crate::{
     },
     data::Log,
     error::Error,
+    result::{ParameterEstimate, Stage},
     significant,
 };
 
@@ -28,7 +29,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(Vec::new());
     }
     let level = level(runs.len());
-    let mut checks = Vec::new();
+    let mut checks: Vec<Check> = nothing_carried(context).into_iter().collect();
     for (number, log) in runs.iter().enumerate() {
         let group = Group::payload(scores, number);
         for one in tested(scores, std::iter::once(group)) {
@@ -36,6 +37,34 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         }
     }
     Ok(checks)
+}
+
+/// What is said where nothing is told of a payload that is said to be there.
+fn nothing_carried(context: &Context<'_>) -> Option<Check> {
+    let loads = context.columns.indices(true);
+    let base = context.estimates_of(Stage::Base).next()?;
+    let is_load = |one: &&ParameterEstimate| {
+        let column = context.base.columns.get(one.column);
+        column.is_some_and(|column| loads.contains(column))
+    };
+    let of_load: Vec<&ParameterEstimate> = base.parameters.iter().filter(is_load).collect();
+    let holds_zero = |one: &&ParameterEstimate| {
+        let [low, high] = one.interval_95;
+        low <= 0.0 && 0.0 <= high
+    };
+    if of_load.is_empty() || !of_load.iter().all(holds_zero) {
+        return None;
+    }
+    let told = of_load.iter().map(|one| {
+        let half = 0.5 * (one.interval_95[1] - one.interval_95[0]);
+        let (value, half) = (significant(one.value, 2), significant(half, 2));
+        format!("`{}` = {value} ± {half} {}", one.name, one.unit)
+    });
+    let words = format!(
+        "what is estimated of the payload may as well be zero ({}): check that it was mounted in the runs that are labelled so",
+        told.collect::<Vec<_>>().join(", ")
+    );
+    Some(Check::new(CheckKind::PayloadLabel, About::Model, words).found())
 }
 
 fn of_run(
