@@ -50,9 +50,20 @@ pub(crate) fn fitted(text: &str, most: usize) -> String {
     begin.chain(['…']).chain(end).collect()
 }
 
+/// The last part of a name that is a path: what tells runs apart in a place with little room.
+pub(crate) fn last_part(name: &str) -> &str {
+    name.rsplit(['/', '\\']).next().unwrap_or(name)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{escape, fitted, visible};
+    use super::{escape, fitted, last_part, visible};
+
+    #[test]
+    fn a_path_is_called_by_its_file() {
+        assert_eq!(last_part("logs/a/run.csv"), "run.csv");
+        assert_eq!(last_part("loaded 1"), "loaded 1");
+    }
 
     #[test]
     fn no_text_becomes_markup() {

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     choice::{case_heading, projection, stage_name},
     plot::{Axis, Chart, Line, Look, Rule},
-    text::escape,
+    text::{escape, last_part},
 };
 use overact_identification::{ConditionSeries, Identification, ModelKind, RunFigures};
 
@@ -127,7 +127,7 @@ fn chart(run: &RunFigures, threshold: f64) -> String {
         Line::new(look, label, &run.time, &series.condition)
     });
     Chart {
-        title: run.run.clone(),
+        title: last_part(&run.run).to_owned(),
         description: format!("condition numbers along the run {}", run.run),
         x: Axis::linear("t (s)"),
         y: Axis::logarithmic("condition number").including(&[1.0]),

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     choice::{case_heading, is_answer, stage_name},
     plot::{Axis, Chart, Line, Look, Rule},
-    text::escape,
+    text::{escape, last_part},
     units::Units,
 };
 use overact_identification::{LineResidual, ResidualFigures, ResidualSeries, significant};
@@ -99,7 +99,7 @@ fn over_time(one: &ResidualFigures, line: &LineResidual, units: &Units) -> Optio
         .max_by(|a, b| size(a).total_cmp(&size(b)))?;
     Some(
         Chart {
-            title: format!("{}: {}", line.name, worst.run),
+            title: format!("{}: {}", line.name, last_part(&worst.run)),
             description: format!(
                 "residual of {} over time in the run {}",
                 line.name, worst.run

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     plot::{Axis, Chart, Line, Look},
-    text::escape,
+    text::{escape, last_part},
     units::Units,
     units::with_unit,
 };
@@ -124,7 +124,7 @@ fn charts(run: &RunFigures, units: &Units) -> Vec<String> {
                 Some(Line::new(Look::nth(order), name(*index), &run.time, values))
             });
         Chart {
-            title: format!("{}{payload}", run.run),
+            title: format!("{}{payload}", last_part(&run.run)),
             description: format!("{} over time in the run {}", names.join(", "), run.run),
             x: Axis::linear("t (s)"),
             y: Axis::linear(with_unit(&names.join(", "), group.unit)),
