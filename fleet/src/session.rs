@@ -67,9 +67,26 @@ const LOST: [&str; 7] = [
 /// What is said of a query that takes too long.
 const LATE: &str = "the query did not end within";
 
+/// What the engine says of a file that can't be had. No executor is lost where one of them says so.
+const NO_FILE: &str = "Object Store error";
+
 fn lost(error: &DataFusionError) -> bool {
     let text = error.to_string();
-    LOST.iter().any(|own| text.contains(own))
+    LOST.iter().any(|own| text.contains(own)) && !text.contains(NO_FILE)
+}
+
+/// An error of a cluster; of a file with a way out, for this machine could read it.
+fn of_cluster(error: DataFusionError) -> DataFusionError {
+    let text = error.strip_backtrace();
+    if !text.contains(NO_FILE) {
+        return error;
+    }
+    DataFusionError::Execution(format!(
+        "{}\n  scheduler and executors read files by themselves: a folder has to be there under the same path on each, \
+         and for a bucket each needs AWS_ENDPOINT_URL, AWS_REGION, AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, and \
+         AWS_ALLOW_HTTP=true where the address is http://, in its environment",
+        text.trim_end()
+    ))
 }
 
 /// A fleet that is asked.
@@ -157,6 +174,7 @@ impl Fleet {
                         last = Some(error);
                         tokio::time::sleep(PAUSE).await;
                     }
+                    other if attempts > 1 => return other.map_err(of_cluster),
                     other => return other,
                 }
             }

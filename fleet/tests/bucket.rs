@@ -55,15 +55,22 @@ async fn server(root: &Path) -> Option<SocketAddr> {
     Some(address)
 }
 
+/// What tells a process where the bucket is.
+fn environment(server: SocketAddr, secret: &str) -> [(&'static str, String); 5] {
+    [
+        ("AWS_ENDPOINT_URL", format!("http://{server}")),
+        ("AWS_ALLOW_HTTP", "true".to_owned()),
+        ("AWS_REGION", "us-east-1".to_owned()),
+        ("AWS_ACCESS_KEY_ID", KEYS[0].to_owned()),
+        ("AWS_SECRET_ACCESS_KEY", secret.to_owned()),
+    ]
+}
+
 /// The program, which finds the bucket by its environment.
 fn program(server: SocketAddr, secret: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_overact-fleet"));
     command
-        .env("AWS_ENDPOINT_URL", format!("http://{server}"))
-        .env("AWS_ALLOW_HTTP", "true")
-        .env("AWS_REGION", "us-east-1")
-        .env("AWS_ACCESS_KEY_ID", KEYS[0])
-        .env("AWS_SECRET_ACCESS_KEY", secret)
+        .envs(environment(server, secret))
         .stdin(Stdio::null());
     command
 }
@@ -164,6 +171,39 @@ async fn factor_files_of_a_bucket_answer_as_those_of_a_folder() {
         assert!(
             !told.status.success() && said.contains(word),
             "{place}: {said}"
+        );
+    }
+}
+
+#[cfg(feature = "distributed")]
+#[tokio::test(flavor = "multi_thread")]
+async fn three_executors_read_a_bucket_by_themselves() {
+    let bench = Bench::new();
+    let folder = bench.factor_files("factors");
+    let root = bench.path("buckets");
+    copied(&folder, &root.join("fleet/below"));
+    let Some(server) = server(&root).await else {
+        return;
+    };
+    let place = folder.display().to_string();
+    let here = asked(server, KEYS[1], &[QUERY, "--factors", &place]).await;
+    for secrets in [[KEYS[1]; 2], ["another", KEYS[1]], [KEYS[1], "another"]] {
+        let [own, theirs] = secrets.map(|secret| environment(server, secret));
+        let Some(cluster) = common::cluster::cluster(bench.folder.path(), &own, &theirs) else {
+            return;
+        };
+        let there = ["--factors", "s3://fleet/below", "--scheduler", &cluster.url];
+        let more = ["--partitions", "6", "--limit", "120"];
+        let told = asked(server, KEYS[1], &[&[QUERY][..], &there, &more].concat()).await;
+        if secrets == [KEYS[1]; 2] {
+            assert_same(&rows(&here, ""), &rows(&told, ""));
+            continue;
+        }
+        // It is they who read, for the client's key is right.
+        let said = text(&told.stderr);
+        assert!(
+            !told.status.success() && said.contains("403") && said.contains("in its environment"),
+            "{secrets:?}: {said}"
         );
     }
 }

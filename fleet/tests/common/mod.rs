@@ -1,6 +1,9 @@
 //! A small fleet of five-bars: logs and factor files.
 #![allow(dead_code)]
 
+#[cfg(feature = "distributed")]
+pub(crate) mod cluster;
+
 use overact_identification::{
     Log,
     factors::{RunFactors, write_factors},
