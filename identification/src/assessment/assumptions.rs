@@ -49,7 +49,7 @@ pub(crate) fn assumptions(
             "the lengths of the description are right as a whole: angles alone fix no scale",
         ),
         String::from(
-            "the torques of the logs are the whole torques of the drives: nothing was subtracted, as a friction or gravity compensation, and no filter of the drive smoothed them",
+            "the torques of the logs are the whole torques of the drives: nothing was subtracted, as a friction or gravity compensation, no filter of the drive smoothed them, and none holds a part of another's",
         ),
         String::from("parameters that the description leaves out are zero"),
         String::from(
@@ -70,7 +70,7 @@ pub(crate) fn assumptions(
     let mut friction = columns.as_slice().iter();
     if friction.any(|column| column.symbol.follows_rate()) {
         all.push(String::from(
-            "friction is viscous and Coulomb friction as in the model, at speeds that the runs do not reach, too",
+            "friction is viscous and Coulomb friction as in the model at all speeds, also at those that the runs do not reach",
         ));
     }
     if models.contains(&ModelKind::Platform) && model.info().sizes.actuators > 1 {
