@@ -73,8 +73,10 @@ class Logs {
   }
 
   tell(found) {
-    // The report has no script, and the frame would run none.
-    const frame = element('iframe', { sandbox: 'allow-downloads', title: 'Report of the identification', srcdoc: found.page });
+    // The report has no script, and the frame would run none. In a frame without an address of its own a link to a place on
+    // the page would lead to this one's.
+    const page = found.page.replaceAll('href="#', 'href="about:srcdoc#');
+    const frame = element('iframe', { sandbox: 'allow-downloads', title: 'Report of the identification', srcdoc: page });
     this.result.replaceChildren(
       element('p', { class: 'bar' }, saving('report.html', 'text/html', found.page), saving('report.json', 'application/json', found.document), saving('report.csv', 'text/csv', found.numbers)),
       frame,

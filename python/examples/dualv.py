@@ -10,9 +10,11 @@ import numpy as np
 
 import overact
 
-ROBOTS = pathlib.Path(__file__).resolve().parents[2] / "robots"
-robot = overact.Robot(ROBOTS / "dualv.toml")
+# A notebook beside this file has no `__file__`.
+EXAMPLES = pathlib.Path(globals().get("__file__", "dualv.ipynb")).resolve().parent
+robot = overact.Robot(EXAMPLES.parents[1] / "robots" / "dualv.toml")
 print(robot)
+robot  # in a notebook: its drawing
 
 # %% Look: parameters, what is regrouped, what functions cost
 print(len(robot.base_parameters), "base parameters, among them")
@@ -37,7 +39,8 @@ for run in runs:
 held = [run for run in runs if run.name in robot.held_out]
 own = [run for run in runs if run.name not in robot.held_out]
 result = overact.identify(robot, own, validation=held)
-print(result)  # what the command line prints; a notebook shows the report
+print(result)  # what the command line prints
+result  # in a notebook: the report
 
 # %% Show: estimates with their intervals
 for name in list(result.recommended)[:5]:

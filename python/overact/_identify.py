@@ -68,6 +68,8 @@ def identify(
         DataError: Runs or settings that can't be used, data that determine nothing.
         DescriptionError: A virtual experiment that can't be made.
     """
+    if not isinstance(robot, Robot):
+        raise TypeError(f"`robot` is a {type(robot).__name__}: give a Robot, as Robot(\"my.toml\") makes it")
     own = [*_runs(robot, data, False, "data"), *_runs(robot, payload_data, True, "payload_data")]
     others = [
         *_runs(robot, validation, False, "validation"),

@@ -288,8 +288,9 @@ class Identification:
 
     def _repr_html_(self) -> str:
         """The report in a frame of its own, so that its style stays its own."""
-        page = html.escape(self.report(), quote=True)
+        # In a frame without an address of its own a link to a place on the page would lead to the notebook's.
+        page = html.escape(self.report().replace('href="#', 'href="about:srcdoc#'), quote=True)
         return (
             f'<iframe title="Identification of {html.escape(self.robot, quote=True)}" srcdoc="{page}" '
-            'sandbox="allow-downloads" style="width: 100%; height: 40em; border: 1px solid gray"></iframe>'
+            'sandbox="allow-downloads" style="width: 100%; height: 40em; box-sizing: border-box; border: 1px solid gray; color-scheme: light"></iframe>'
         )

@@ -292,7 +292,7 @@ fn next(identification: &Identification, page: Option<&str>) -> String {
     if identification.cross_validation.is_empty() {
         line(
             &mut text,
-            "No run was held out: --cross-validate holds them out in turn, and the verdict knows more.",
+            "No run was held out: with --cross-validate and a run that was not identified from, the verdict knows more.",
         );
     }
     line(

@@ -164,6 +164,22 @@ impl VirtualExperiment<'_> {
         }
     }
 
+    /// Looks whether runs to identify from are left beside those `held_out`.
+    pub(crate) fn check_some_left(&self, held_out: &[String]) -> Result<(), Error> {
+        let mut runs = self.plan.runs.iter();
+        if runs.any(|run| !held_out.contains(&run.name)) {
+            return Ok(());
+        }
+        let problem = Problem::new(
+            Code::NO_EXPERIMENT,
+            "all runs of the experiment are held out, and none is left to identify from",
+        );
+        let help = "hold out fewer of them";
+        Err(Error::Problems(vec![
+            problem.file(self.robot.file()).help(help),
+        ]))
+    }
+
     /// Makes all runs. `progress` hears the part that is done, from 0 to 1, and the name of a run.
     ///
     /// # Errors

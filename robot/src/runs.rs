@@ -187,9 +187,10 @@ impl VirtualExperiment<'_> {
     /// Makes all runs; those named in `held_out` are to validate with.
     ///
     /// # Errors
-    /// Names that no run has, or as [`records`](Self::records).
+    /// Names that no run has, no run that is left to identify from, or as [`records`](Self::records).
     pub fn runs(&self, held_out: &[String], progress: &dyn Fn(f64, &str)) -> Result<Runs, Error> {
         self.check_runs(held_out)?;
+        self.check_some_left(held_out)?;
         let records = self.records(progress)?.into_iter();
         let (validation, identified): (Vec<Record>, Vec<Record>) =
             records.partition(|record| held_out.contains(&record.name));

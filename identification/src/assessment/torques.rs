@@ -8,7 +8,7 @@
 //! torques. Faults of positions that the loops do not tell need a pass of their own each.
 
 use nalgebra::{DMatrix, DVector};
-use overact::{Function, Model};
+use overact::{Function, Model, StandardParameter};
 use rayon::prelude::*;
 
 use super::{
@@ -21,7 +21,10 @@ use crate::{
     error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
     kinematics::Motions,
-    regression::{columns::ColumnSet, factor::Factor},
+    regression::{
+        columns::ColumnSet,
+        factor::{Factor, Reduced},
+    },
     settings::Settings,
 };
 
@@ -30,6 +33,9 @@ const EXPLAINED: f64 = 0.5;
 
 /// ... and takes away this part of the inputs, at least; of those of one line, where it is one of a drive.
 const WORTHWHILE: f64 = 0.03;
+
+/// One that leaves no more than so many times as much explains them as well.
+const AS_GOOD: f64 = 1.2;
 
 /// Gains by which a drive may be wrong; the first is the wrong sign.
 const GAINS: [f64; 11] = [
@@ -97,8 +103,17 @@ fn of_one(model: &dyn Model, runs: &[Log], doubt: &Doubt<'_>, before: f64) -> Op
         };
         *after < EXPLAINED * before && taken > WORTHWHILE
     };
-    let best = errors.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
-    let (fault, after) = best.filter(explains)?;
+    let best = errors.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1));
+    let (mut fault, after) = best.filter(explains)?;
+    if let Fault::Label(_) = fault {
+        // Of two runs that differ by a payload either may be the one with it: a mass that is positive tells which.
+        let as_good = errors
+            .iter()
+            .filter(|(other, error)| matches!(other, Fault::Label(_)) && *error <= AS_GOOD * after);
+        let heavy = as_good.map(|(other, _)| *other);
+        let mut heavy = heavy.filter(|other| doubt.mass(*other).is_some_and(|mass| mass > 0.0));
+        fault = heavy.next().unwrap_or(fault);
+    }
     let told = told(model, runs, fault, &so(before, after));
     Some(measured(told, (before, after), EXPLAINED))
 }
@@ -293,6 +308,27 @@ impl Doubt<'_> {
     /// The part of the inputs that is left unexplained when a fault is taken back, each line being
     /// divided by its norm.
     fn error(&self, fault: Option<Fault>) -> f64 {
+        let (all, lines) = self.stacked(fault);
+        let selected: Vec<usize> = (0..self.columns.base.columns.len()).collect();
+        all.smallest_residual(&selected) / f64::from(lines.max(1)).sqrt()
+    }
+
+    /// The payload's mass when a fault is taken back; none where it has none or these data do not tell it.
+    fn mass(&self, fault: Fault) -> Option<f64> {
+        let Columns { columns, base, .. } = self.columns;
+        let is_mass = |place: &&usize| {
+            let column = columns.as_slice().get(base.columns[**place]);
+            column.is_some_and(|column| column.symbol == StandardParameter::M)
+        };
+        let place = *self.columns.payload.iter().find(is_mass)?;
+        let selected: Vec<usize> = (0..base.columns.len()).collect();
+        let Reduced { triangle, rhs, .. } = self.stacked(Some(fault)).0.reduced(&selected);
+        let solved = triangle.solve_upper_triangular(&rhs)?;
+        solved.get(place).copied().filter(|mass| mass.is_finite())
+    }
+
+    /// The factor of all lines, each divided by its norm, when a fault is taken back, and how many lines there are.
+    fn stacked(&self, fault: Option<Fault>) -> (Factor, u32) {
         let p = self.columns.base.columns.len();
         let share = self.share(fault);
         let lines = self.factors.first().map_or(0, Vec::len);
@@ -329,8 +365,7 @@ impl Doubt<'_> {
         }
         let mut all = Factor::new(p);
         stacked.iter().for_each(|rows| all.push(rows));
-        let selected: Vec<usize> = (0..p).collect();
-        all.smallest_residual(&selected) / f64::from(count.max(1)).sqrt()
+        (all, count)
     }
 }
 

@@ -1,5 +1,7 @@
 //! Whether each run carries what its label says.
 
+use overact::StandardParameter;
+
 use super::{
     Context,
     level::{level, origin},
@@ -39,7 +41,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(checks)
 }
 
-/// What is said where nothing is told of a payload that is said to be there.
+/// What is said where a payload that is said to be there may be none, or is lighter than nothing.
 fn nothing_carried(context: &Context<'_>) -> Option<Check> {
     let loads = context.columns.indices(true);
     let base = context.estimates_of(Stage::Base).next()?;
@@ -52,6 +54,25 @@ fn nothing_carried(context: &Context<'_>) -> Option<Check> {
         let [low, high] = one.interval_95;
         low <= 0.0 && 0.0 <= high
     };
+    let is_mass = |one: &&&ParameterEstimate| {
+        let column = context.base.columns.get(one.column);
+        let column = column.and_then(|&column| context.columns.as_slice().get(column));
+        column.is_some_and(|column| column.symbol == StandardParameter::M)
+    };
+    let negative = of_load
+        .iter()
+        .filter(is_mass)
+        .find(|one| one.interval_95[1] < 0.0);
+    if let Some(mass) = negative {
+        let words = format!(
+            "the payload's mass comes out negative (`{}` = {} {}), as if the runs with the payload were those without it and the other way round: check the labels",
+            mass.name,
+            significant(mass.value, 3),
+            mass.unit
+        );
+        let check = Check::new(CheckKind::PayloadLabel, About::Model, words);
+        return Some(check.found().allowing(Grade::DoNotUse));
+    }
     if of_load.is_empty() || !of_load.iter().all(holds_zero) {
         return None;
     }
