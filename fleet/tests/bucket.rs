@@ -85,12 +85,14 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("a text")
 }
 
-/// Of an answer the rows of one robot, or of all.
+/// Of an answer the rows of one robot, or of all, by their names: the engine orders none of them.
 fn rows(output: &Output, serial: &str) -> Vec<String> {
     assert!(output.status.success(), "{}", text(&output.stderr));
     let all = text(&output.stdout);
     let own = all.lines().filter(|row| row.starts_with(serial));
-    own.map(str::to_owned).collect()
+    let mut own: Vec<String> = own.map(str::to_owned).collect();
+    own.sort_unstable();
+    own
 }
 
 /// Names are the same, numbers to a few digits of their last.
