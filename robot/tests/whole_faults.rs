@@ -3,6 +3,7 @@
 
 use overact_identification::{Check, CheckKind, Grade, Identification, Log};
 use overact_robot::{Identifier, Robot};
+use std::cell::Cell;
 
 const TEMPLATE: &str = include_str!("../../cli/templates/serial-2r.toml");
 
@@ -61,6 +62,82 @@ fn a_position_that_stands_for_two_joints_behind_their_gears_is_named() {
     });
     let words = refused(&result, CheckKind::DuplicateColumns).join("\n");
     assert!(words.contains("one column was taken twice"), "{words}");
+}
+
+#[test]
+fn the_torque_of_one_drive_in_another_unit_is_named() {
+    let result = identified(TEMPLATE, |_, torques| torques[0] *= 1e3);
+    let words = refused(&result, CheckKind::WrongGain).join("\n");
+    assert!(words.contains("about 0.001 times as large"), "{words}");
+}
+
+/// The check of a kind that found something.
+fn found(result: &Identification, kind: CheckKind) -> &Check {
+    let mut own = result.checks.iter().filter(|one| !one.passed);
+    let told = || format!("{:?}", result.warnings);
+    own.find(|one| one.kind == kind)
+        .unwrap_or_else(|| panic!("{}", told()))
+}
+
+#[test]
+fn a_gain_that_differs_by_the_sign_of_the_torque_is_named() {
+    let result = identified(TEMPLATE, |_, torques| torques[0] += 0.03 * torques[0].abs());
+    let check = found(&result, CheckKind::MissingParameter);
+    assert!(
+        check.grade > Grade::Use && check.words.contains("differs by its sign"),
+        "{check:?}"
+    );
+}
+
+#[test]
+fn what_all_drives_have_in_common_is_told_of_each() {
+    let result = identified(TEMPLATE, |positions, torques| {
+        for (position, torque) in positions.iter().zip(torques) {
+            *torque += 0.05 * (3.0 * position).sin();
+        }
+    });
+    let check = found(&result, CheckKind::MissingParameter);
+    assert!(check.words.contains("the same test finds"), "{check:?}");
+    for drive in ["1", "2"] {
+        let own = |name: &String| name.ends_with(drive) || name.ends_with(&format!("{drive}R"));
+        assert!(check.spoiled.iter().any(own), "{check:?}");
+    }
+}
+
+#[test]
+fn a_filter_that_all_signals_have_passed_is_told_by_dry_friction() {
+    // A lag of the first order of 10 ms at 1 kHz.
+    let last = Cell::new(None::<[f64; 4]>);
+    let result = identified(TEMPLATE, |positions, torques| {
+        let now = [positions[0], positions[1], torques[0], torques[1]];
+        let before = last.get().unwrap_or(now);
+        let lagged: [f64; 4] = std::array::from_fn(|i| before[i] + (now[i] - before[i]) / 11.0);
+        positions.copy_from_slice(&lagged[..2]);
+        torques.copy_from_slice(&lagged[2..]);
+        last.set(Some(lagged));
+    });
+    let check = found(&result, CheckKind::Reversals);
+    let fs = |name: &&String| name.starts_with("fs_");
+    assert!(check.spoiled.iter().any(|name| fs(&name)), "{check:?}");
+}
+
+#[test]
+fn an_experiment_of_which_all_runs_are_held_out_is_refused() {
+    let robot = Robot::from_text("described.toml", TEMPLATE).expect("the robot");
+    let experiment = robot.experiment().expect("an experiment");
+    let all: Vec<String> = experiment
+        .plan()
+        .runs
+        .iter()
+        .map(|run| run.name.clone())
+        .collect();
+    let error = experiment
+        .runs(&all, &|_, _| {})
+        .expect_err("no run is left");
+    assert!(
+        error.to_string().contains("none is left to identify from"),
+        "{error}"
+    );
 }
 
 #[test]

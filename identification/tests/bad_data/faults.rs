@@ -223,3 +223,34 @@ fn a_gain_that_falls_is_named() {
     assert!(!check.passed && check.words.contains("a gain that drifts"));
     assert_eq!(check.actuator.as_deref(), Some("leg1"));
 }
+
+#[test]
+fn labels_that_are_exchanged_are_told_by_a_mass_below_zero() {
+    let exchanged =
+        |(record, loaded): (&Record, bool)| log(record.clone(), |_, _| {}).with_payload(loaded);
+    let runs: Vec<Log> = RECORDS
+        .iter()
+        .zip([true, true, false, false])
+        .map(exchanged)
+        .collect();
+    let result = identified(&runs).expect("an identification");
+    assert_eq!(result.grade(), Grade::DoNotUse);
+    assert!(
+        failed(&result)
+            .iter()
+            .any(|one| one.kind == CheckKind::PayloadLabel
+                && one.words.contains("comes out negative"))
+    );
+}
+
+#[test]
+fn a_payload_that_was_not_mounted_is_told() {
+    let runs = [(0, false), (1, true)];
+    let runs = runs.map(|(number, loaded): (usize, bool)| {
+        log(RECORDS[number].clone(), |_, _| {}).with_payload(loaded)
+    });
+    let result = identified(&runs).expect("an identification");
+    assert!(failed(&result).iter().any(
+        |one| one.kind == CheckKind::PayloadLabel && one.words.contains("may as well be zero")
+    ));
+}

@@ -3,12 +3,12 @@
 use super::{
     Context,
     level::{level, origin},
-    suspected::{harm, parabola, tested},
+    suspected::{harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::{Group, Suspect},
+        suspects::Suspect,
     },
     error::Error,
     significant,
@@ -22,11 +22,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let place = scores
-        .suspects
-        .iter()
-        .position(|one| *one == Suspect::Clock);
-    let found = tested(scores, place.into_iter().map(Group::suspect));
+    let found = only(scores, Suspect::Clock);
     let level = level(1);
     let checks = found.iter().map(|one| {
         let accused = &one.accused;

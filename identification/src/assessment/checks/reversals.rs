@@ -10,12 +10,12 @@ use super::{
     Context,
     level::{level, origin},
     smoothing::{OF_MEAN, UNIT},
-    suspected::{Tested, harm, parabola, tested},
+    suspected::{Tested, harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::{Group, Suspect},
+        suspects::Suspect,
     },
     error::Error,
     significant,
@@ -26,11 +26,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let place = scores
-        .suspects
-        .iter()
-        .position(|one| *one == Suspect::Dulled);
-    let Some(one) = tested(scores, place.into_iter().map(Group::suspect)).pop() else {
+    let Some(one) = only(scores, Suspect::Dulled) else {
         return Ok(Vec::new());
     };
     // A step w that is smoothed loses the part s Σ ẇ²/Σ w² of itself, and Σ ẇ² grows with the band.

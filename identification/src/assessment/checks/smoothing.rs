@@ -7,12 +7,12 @@
 use super::{
     Context,
     level::{level, origin},
-    suspected::{Tested, dry_friction, harm, parabola, tested},
+    suspected::{Tested, dry_friction, harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::{Group, Suspect},
+        suspects::Suspect,
     },
     error::Error,
     significant,
@@ -32,15 +32,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let of = |wanted: Suspect| {
-        let place = scores.suspects.iter().position(|one| *one == wanted);
-        tested(scores, place.into_iter().map(Group::suspect)).pop()
-    };
-    let Some(one) = of(Suspect::Smoothing) else {
+    let Some(one) = only(scores, Suspect::Smoothing) else {
         return Ok(Vec::new());
     };
     // What it does to the parameters, dry friction among them, if it is as large as the other tells.
-    let whole = of(Suspect::Rounding).map(|whole| Tested {
+    let whole = only(scores, Suspect::Rounding).map(|whole| Tested {
         size: Some(one.accused.size()),
         ..whole
     });

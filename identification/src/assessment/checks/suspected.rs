@@ -5,7 +5,7 @@ use crate::{
     assessment::{
         check::{Check, Detectable, Grade},
         evidence::{Axis, Curve, Evidence},
-        suspects::{Accused, Group, Scores},
+        suspects::{Accused, Group, Scores, Suspect},
     },
     result::{Estimate, ParameterEstimate, Stage},
 };
@@ -113,6 +113,12 @@ pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Ve
             })
         })
         .collect()
+}
+
+/// Tests one suspect beside the base parameters; none where there is no such one, or the data can't tell it.
+pub(super) fn only(scores: &Scores, wanted: Suspect) -> Option<Tested> {
+    let place = scores.suspects.iter().position(|one| *one == wanted)?;
+    tested(scores, std::iter::once(Group::suspect(place))).pop()
 }
 
 /// The one that explains most of the residual, of those that chance explains less often than `level`.
