@@ -22,16 +22,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let mut suspects = Vec::new();
-    let mut found: Vec<Tested> = Vec::new();
-    for (place, suspect) in scores.suspects.iter().enumerate() {
-        if let Suspect::Torque(_, shape) | Suspect::Force(_, shape) = *suspect {
-            for one in tested(scores, std::iter::once(Group::suspect(place))) {
-                suspects.push((*suspect, shape));
-                found.push(one);
-            }
-        }
-    }
+    let (suspects, found) = all_tested(scores);
     if found.is_empty() {
         return Ok(Vec::new());
     }
@@ -52,50 +43,75 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 .against(limit, origin(tests)),
         ]);
     };
-    let info = context.model.info();
-    let place = found
-        .iter()
-        .position(|one| std::ptr::eq(one, worst))
-        .unwrap_or(0);
-    let (suspect, shape) = suspects[place];
-    let (what, name) = match suspect {
-        Suspect::Force(line, _) => ("force on", info.coordinates.get(line)),
-        Suspect::Torque(actuator, _) => ("torque of", info.actuators.get(actuator)),
-        _ => ("", None),
-    };
-    let name = name.copied().unwrap_or_default();
+    let place = found.iter().position(|one| std::ptr::eq(one, worst));
+    let place = place.unwrap_or(0);
     let mut harm = worst_harm(context, scores, (&found, worst), level);
     let others = others((context, scores), (&suspects, &found, place), level);
     for (_, other) in &others {
         harm.with(context, other);
     }
-    let told = Told {
-        what: format!("{what} {}", called(name)),
-        size: worst.accused.largest(),
-        strength: ratio(worst),
-        rest: format!(
-            "which explains {} % of the residual's square; {}{}",
-            significant(100.0 * worst.accused.explained, 2),
-            harm.words(),
-            too(&others)
-        ),
+    let rest = format!(
+        "which explains {} % of the residual's square; {}{}",
+        significant(100.0 * worst.accused.explained, 2),
+        harm.words(),
+        too(&others)
+    );
+    let words = words(context, suspects[place], worst, rest);
+    let check = Check { words, ..check }
+        .measured(ratio(worst), "standard deviations")
+        .against(limit, origin(tests))
+        .because(&harm);
+    let actuator = match suspects[place].0 {
+        Suspect::Torque(actuator, _) => context.model.info().actuators.get(actuator),
+        _ => None,
     };
-    let words = match suspect {
+    Ok(vec![match actuator {
+        Some(name) => check.of_actuator(name),
+        None => check,
+    }])
+}
+
+/// All torques and forces that the data can tell, with their shapes.
+fn all_tested(scores: &Scores) -> (Vec<(Suspect, Shape)>, Vec<Tested>) {
+    let (mut suspects, mut found) = (Vec::new(), Vec::new());
+    for (place, suspect) in scores.suspects.iter().enumerate() {
+        if let Suspect::Torque(_, shape) | Suspect::Force(_, shape) = *suspect {
+            for one in tested(scores, std::iter::once(Group::suspect(place))) {
+                suspects.push((*suspect, shape));
+                found.push(one);
+            }
+        }
+    }
+    (suspects, found)
+}
+
+/// The sentences on the worst of them; `rest` says what follows from it.
+fn words(
+    context: &Context<'_>,
+    (suspect, shape): (Suspect, Shape),
+    worst: &Tested,
+    rest: String,
+) -> String {
+    let info = context.model.info();
+    let (what, name) = match suspect {
+        Suspect::Force(line, _) => ("force on", info.coordinates.get(line)),
+        Suspect::Torque(actuator, _) => ("torque of", info.actuators.get(actuator)),
+        _ => ("", None),
+    };
+    let told = Told {
+        what: format!("{what} {}", called(name.copied().unwrap_or_default())),
+        size: worst.accused.largest(),
+        strength: worst.accused.strength(),
+        rest,
+    };
+    match suspect {
         Suspect::Torque(actuator, Shape::Stribeck) => told.near_standstill(context, actuator),
         Suspect::Torque(actuator, _) => {
             let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
             told.words(shape, shape.unit(revolute))
         }
         _ => told.words(shape, ""),
-    };
-    let check = Check { words, ..check }
-        .measured(ratio(worst), "standard deviations")
-        .against(limit, origin(tests))
-        .because(&harm);
-    Ok(vec![match suspect {
-        Suspect::Torque(..) => check.of_actuator(name),
-        _ => check,
-    }])
+    }
 }
 
 /// Of every other drive and coordinate what is worst of it, where that spoils parameters: a fault that all drives have
