@@ -40,7 +40,7 @@ class Engine:
                 self.place(q, name, value[0])
                 continue
             # A ball stands for three joints about x, y and z that have its name in theirs.
-            row = [n for n in self.model.names if n.startswith(name + "_")]
+            row = [n for n in self.model.names if n.startswith(name + "_") and "_" not in n[len(name) + 1 :]]
             turn = pinocchio.exp3(value)
             angles = np.arctan2(-turn[1, 2], turn[2, 2]), np.arcsin(turn[0, 2]), np.arctan2(-turn[0, 1], turn[0, 0])
             assert len(row) == 3, f"{name} is {row}"

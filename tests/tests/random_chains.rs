@@ -24,7 +24,7 @@ fn random_trees_with_chains() -> Result<(), Failure> {
     let own = std::env::var("OVERACT_RANDOM_SEED");
     let own: Option<u64> = own.ok().and_then(|seed| seed.parse().ok());
     let count = if own.is_some() { 1 } else { by_tier(COUNT) };
-    let (mut compared, mut nested, mut errors) = (0, 0, Vec::new());
+    let (mut compared, mut nested, mut branched, mut errors) = (0, 0, 0, Vec::new());
     let mut seed = own.unwrap_or(0);
     while compared < count {
         let text = skeleton(seed);
@@ -36,6 +36,7 @@ fn random_trees_with_chains() -> Result<(), Failure> {
             Ok(failures) => {
                 compared += 1;
                 nested += usize::from(text.contains("body = \"chain"));
+                branched += usize::from(text.contains("[leg.branch"));
                 errors.extend(
                     failures
                         .into_iter()
@@ -64,9 +65,10 @@ fn random_trees_with_chains() -> Result<(), Failure> {
             "hardly a draw closes: {compared} of {drawn}"
         );
     }
-    println!("{compared} robots, {nested} with chains on chains, of {seed} draws");
+    println!("{compared} robots, {nested} with chains or branches on chains, {branched} with branches, of {seed} draws");
     assert!(errors.is_empty(), "{}", errors.join("\n"));
     assert!(own.is_some() || nested > 0, "no chain on a chain was drawn");
+    assert!(own.is_some() || branched > 0, "no branch was drawn");
     Ok(())
 }
 

@@ -30,8 +30,8 @@ pub struct Configuration<'a> {
     positions: Vec<(usize, Expr<'a>)>,
     /// For every joint of q_t: its leg's name and its own name.
     names: Vec<(String, String)>,
-    /// How many joints of q_t are the pose: those of a skeleton.
-    in_pose: usize,
+    /// The joints of q_t that are the pose, in its order: those of a skeleton and of branches.
+    in_pose: Vec<usize>,
 }
 
 impl<'a> Configuration<'a> {
@@ -52,7 +52,7 @@ impl<'a> Configuration<'a> {
             known: Vec::new(),
             positions: Vec::new(),
             names: names.collect(),
-            in_pose: mechanism.skeleton().map_or(0, |_| mechanism.dof()),
+            in_pose: (mechanism.skeleton()).map_or_else(Vec::new, |_| mechanism.coordinate_joints()),
         }
     }
 
@@ -87,22 +87,26 @@ impl<'a> Configuration<'a> {
         Some(unknown)
     }
 
-    /// The input array that a joint's position is in.
-    const fn array(&self, index: usize) -> &'static str {
-        if index < self.in_pose { POSE } else { JOINTS }
+    /// The input array that a joint's position is in, and where in it.
+    fn place(&self, index: usize) -> (&'static str, usize) {
+        match self.in_pose.iter().position(|&own| own == index) {
+            Some(at) => (POSE, at),
+            None => (JOINTS, index),
+        }
     }
 
     /// The angle of a revolute joint.
     #[must_use]
     pub(crate) fn joint_angle(&self, index: usize) -> Direction {
-        self.arena.input_angle(self.array(index), index)
+        let (array, at) = self.place(index);
+        self.arena.input_angle(array, at)
     }
 
     /// The position of a prismatic joint, m; `None` if it is not known from the pose.
     #[must_use]
     pub(crate) fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
-        if index < self.in_pose {
-            return Some(self.arena.input(POSE, index));
+        if let (POSE, at) = self.place(index) {
+            return Some(self.arena.input(POSE, at));
         }
         match self.from {
             MotionInput::Joints => Some(self.arena.input(JOINTS, index)),
@@ -165,11 +169,11 @@ impl<'a> Configuration<'a> {
         (element.array == JOINTS).then_some(element.index)
     }
 
-    /// The joint of a skeleton that a symbol is the position of.
+    /// The joint of a skeleton, or of a branch, that a symbol is the position of.
     fn pose_joint(&self, symbol: SymbolId) -> Option<usize> {
         let element = self.arena.input_element(symbol)?;
-        let is_own = element.array == POSE && element.index < self.in_pose;
-        is_own.then_some(element.index)
+        let own = self.in_pose.get(element.index).copied();
+        own.filter(|_| element.array == POSE)
     }
 
     /// Whether the angle holds no joint.

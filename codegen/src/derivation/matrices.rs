@@ -52,9 +52,11 @@ impl<'a> Sheet<'a, '_> {
         let mut errors = Vec::new();
         for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
             let (Some(closure), Some(platform)) = (&state.closure, &state.platform) else {
-                // The skeleton's joints are the pose.
-                let own = |i: usize| arena.input("pose", i) - arena.input("joints", i);
-                errors.extend((0..state.rows.len()).map(own));
+                // The joints of legs without an end are the pose.
+                let places = mechanism.coordinate_range(index).zip(mechanism.leg_range(index));
+                errors.extend(places.map(|(in_pose, in_joints)| {
+                    arena.input("pose", in_pose) - arena.input("joints", in_joints)
+                }));
                 continue;
             };
             let frames = self.robot.base_frames(index);
@@ -94,8 +96,9 @@ impl<'a> Sheet<'a, '_> {
         for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
             let (Some(closure), Some(frames)) = (&state.closure, self.robot.base_frames(index))
             else {
-                // The rates of the skeleton's joints are the independent ones.
-                for (i, row) in state.rows.iter().enumerate() {
+                // The rates of joints of legs without an end are independent ones.
+                let own = mechanism.leg_range(index).len();
+                for (i, row) in state.rows[..own].iter().enumerate() {
                     let mut entries = vec![arena.zero(); total];
                     entries[state.first_joint + i] = arena.one();
                     legs.push(entries);

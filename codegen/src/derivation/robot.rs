@@ -94,7 +94,8 @@ impl<'a> Robot<'a> {
     }
 
     fn derive_leg(&mut self, index: usize, formulation: &Formulation) -> Result<(), Underivable> {
-        let (arena, leg) = (self.arena, &self.mechanism.legs[index]);
+        let (arena, mechanism) = (self.arena, self.mechanism);
+        let leg = &mechanism.legs[index];
         arena.enter(&leg.name);
         let station = formulation.stations.get(index).copied().unwrap_or_default();
         let first_joint = self.mechanism.leg_range(index).start;
@@ -124,7 +125,7 @@ impl<'a> Robot<'a> {
         let (closure, mut rows) = match &platform {
             None => (
                 None,
-                self.identity_rows(first_joint, leg.independent().count()),
+                self.identity_rows(mechanism.coordinate_range(index)),
             ),
             Some(platform) => {
                 let home = |e: Expr<'a>| self.at_home(e);
@@ -220,11 +221,11 @@ impl<'a> Robot<'a> {
         }
     }
 
-    fn identity_rows(&self, first: usize, count: usize) -> Rows<'a> {
+    /// The rates of joints that are independent coordinates, per independent coordinate.
+    fn identity_rows(&self, own: std::ops::Range<usize>) -> Rows<'a> {
         let dof = self.mechanism.dof();
-        let entry = |i: usize, j: usize| self.arena.integer(i64::from(first + i == j));
-        (0..count)
-            .map(|i| (0..dof).map(|j| entry(i, j)).collect())
+        let entry = |i: usize, j: usize| self.arena.integer(i64::from(i == j));
+        own.map(|i| (0..dof).map(|j| entry(i, j)).collect())
             .collect()
     }
 
@@ -280,7 +281,7 @@ impl<'a> Robot<'a> {
                     (u, u_dot)
                 }
                 _ => {
-                    let range = state.first_joint..state.first_joint + leg.independent().count();
+                    let range = self.mechanism.coordinate_range(motion.u.len());
                     (twist[range.clone()].to_vec(), acceleration[range].to_vec())
                 }
             };

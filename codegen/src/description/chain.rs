@@ -1,6 +1,6 @@
 //! Chains: legs that start from, or end on, a body of the skeleton or of a chain that is placed before. The
 //! skeleton is the leg without an end of a robot without platform; it is placed first, and its joints are the
-//! independent coordinates.
+//! independent coordinates, together with those of branches: legs without an end on bodies of chains.
 
 use super::model::{BodyIndex, Leg, Spanned};
 use super::reader::Context;
@@ -46,7 +46,7 @@ pub(super) fn attach(
             continue;
         };
         let bodies = Bodies { before, after };
-        let (Some(shape), true) = (shapes.get(leg.shape), leg.end.is_some()) else {
+        let Some(shape) = shapes.get(leg.shape) else {
             continue;
         };
         let is_new = !told.contains(&leg.shape);

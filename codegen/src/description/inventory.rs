@@ -47,17 +47,9 @@ impl Inventory<'_> {
         if let Some(platform) = self.platform {
             return platform_coordinates(platform.motion.value);
         }
-        // Those of chains follow from those of the skeleton.
-        let joints = self
-            .legs
-            .iter()
-            .filter(|leg| leg.end.is_none())
-            .flat_map(|leg| leg.joints.iter().enumerate());
-        let independent = joints.filter(|(index, joint)| joint.is_independent(*index));
-        let named = |(_, j): (usize, &super::Joint)| {
-            Some((j.name.value.clone(), joint::dimension(j.kind.value)?))
-        };
-        independent.filter_map(named).collect()
+        let own = independent_joints(self.legs).into_iter();
+        own.filter_map(|(name, joint)| Some((name, joint::dimension(joint.kind.value)?)))
+            .collect()
     }
 
     /// Names of all standard parameters with their bodies.
@@ -142,6 +134,25 @@ impl Inventory<'_> {
         let single = self.platform.is_none() && self.legs.len() == 1;
         ActuatorNames::new(single, actuators(self.legs).into_iter().filter_map(name))
     }
+}
+
+/// The independent joints of a robot without a platform under the names of its coordinates: those of the first leg
+/// by their own, those of branches with their leg's. Joints of chains follow from them.
+#[must_use]
+pub fn independent_joints(legs: &[Leg]) -> Vec<(String, &super::Joint)> {
+    let mut all = Vec::new();
+    let free = legs.iter().enumerate().filter(|(_, leg)| leg.end.is_none());
+    for (at, leg) in free {
+        let own = leg.joints.iter().enumerate();
+        for (_, joint) in own.filter(|(index, joint)| joint.is_independent(*index)) {
+            let name = &joint.name.value;
+            all.push(match at {
+                0 => (name.clone(), joint),
+                _ => (format!("{}.{name}", leg.name.value), joint),
+            });
+        }
+    }
+    all
 }
 
 fn platform_coordinates(motion: Motion) -> Vec<(String, Dimension)> {

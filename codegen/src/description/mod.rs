@@ -60,7 +60,7 @@ pub use excitation::Excitation;
 pub use experiment::{Experiment, Run, Term, TrueParameter};
 pub use formula::{Formula, Spring};
 pub use gravity::GAINS_AND_GRAVITY;
-pub use inventory::Body;
+pub use inventory::{Body, independent_joints};
 pub use known::{COUPLED_MOTORS, KNOWN_TORQUES};
 pub(crate) use model::SIX;
 pub use model::{

@@ -255,10 +255,18 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
         };
         table.context.report(diagnostic);
     }
+    // Bodies of chains may carry branches of their own.
+    let has_chains = legs.iter().any(|leg| leg.end.is_some());
+    let is_branch = |leg: &&Leg| {
+        has_chains && (shapes.get(leg.shape)).is_some_and(|shape| shape.base_body.is_some())
+    };
     let mut endless = legs.iter().filter(|leg| leg.end.is_none());
-    if let (false, Some(second)) = (platform, endless.nth(1)) {
-        let message = "a robot without platform has one leg without an end";
-        let help = "branches of a tree are joints whose `antecedent` is not the joint before them";
+    let _ = endless.next();
+    let second = endless.find(|leg| !is_branch(leg));
+    if let (false, Some(second)) = (platform, second) {
+        let message = "a robot without platform has one leg without an end, and others only on bodies of chains";
+        let help = "branches of a tree are joints whose `antecedent` is not the joint before them; \
+                    those on a body of a chain are legs whose `base.body` names it";
         table
             .context
             .report(Diagnostic::new(Code::STRUCTURE, message, second.span.clone()).help(help));

@@ -72,10 +72,12 @@ fn on_body(
     let leg = &mechanism.legs[body.leg];
     let frames = mechanism.frames_of(body.leg, pose, joints);
     let own = leg.body_jacobian(&frames, body.joint, point);
-    let Some(shared) = shared_velocities(mechanism, body.leg, pose, joints) else {
-        return Some(own);
+    let rates = match shared_velocities(mechanism, body.leg, pose, joints) {
+        Some(shared) => {
+            rates_per_velocity(leg, &joints[mechanism.leg_range(body.leg)])? * shared
+        }
+        None => mechanism.coordinate_rates(body.leg),
     };
-    let rates = rates_per_velocity(leg, &joints[mechanism.leg_range(body.leg)])? * shared;
     let carried = leg.base_body;
     let carried = carried.map_or_else(
         || Some(DMatrix::zeros(6, mechanism.dof())),
@@ -120,6 +122,14 @@ pub(super) fn rates_per_velocity(leg: &Leg, joints: &[f64]) -> Option<DMatrix<f6
 }
 
 impl Mechanism {
+    /// The rates of the joints of a leg without an end, per independent coordinate, which they are.
+    fn coordinate_rates(&self, leg: usize) -> DMatrix<f64> {
+        let own = self.coordinate_range(leg);
+        DMatrix::from_fn(own.len(), self.dof(), |row, column| {
+            f64::from(u8::from(own.start + row == column))
+        })
+    }
+
     /// The rates of all joints per twist coordinate at the home configuration, n_t x r; `None` if a
     /// leg is not regular there.
     #[must_use]
@@ -132,7 +142,8 @@ impl Mechanism {
             let range = self.leg_range(index);
             let (pose, joints) = (&self.home.pose, &self.home.joints);
             let Some(velocities) = shared_velocities(self, index, pose, joints) else {
-                all.rows_mut(range.start, range.len()).fill_with_identity();
+                all.rows_mut(range.start, range.len())
+                    .copy_from(&self.coordinate_rates(index));
                 continue;
             };
             let rates = rates_per_velocity(leg, &joints[range.clone()])? * velocities;

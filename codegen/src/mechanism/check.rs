@@ -303,26 +303,17 @@ pub(super) fn rough_home(description: &Description) -> Home {
     });
     let joints: Vec<f64> = joints.collect();
     let pose = match &description.platform {
-        // Of a robot with chains, those of its skeleton.
-        None => joints[..coordinates(description, joints.len())].to_vec(),
+        // Of a robot with chains, those of its skeleton and branches.
+        None => {
+            let own = plain(description).coordinate_joints().into_iter();
+            own.map(|at| joints[at]).collect()
+        }
         Some(platform) => home_pose(platform),
     };
     Home {
         pose,
         joints,
         actuators: Vec::new(),
-    }
-}
-
-/// How many of the joints are independent coordinates of a robot without platform.
-fn coordinates(description: &Description, joints: usize) -> usize {
-    let has_chains = description.legs.iter().any(|leg| leg.end.is_some());
-    match description.legs.first().filter(|_| has_chains) {
-        Some(skeleton) => {
-            let own = skeleton.joints.iter().enumerate();
-            own.filter(|(i, joint)| joint.is_independent(*i)).count()
-        }
-        None => joints,
     }
 }
 

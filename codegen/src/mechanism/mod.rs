@@ -4,7 +4,8 @@
 //! frame to frame j: Rot(z, γ) Trans(z, b) Rot(x, α) Trans(x, d) Rot(z, θ) Trans(z, r). The joint's
 //! position is θ (revolute) or r (prismatic), plus a constant. Every leg starts at a base frame and
 //! ends on the platform: its last frame is fixed on the platform (`Rigid`), or its origin coincides
-//! with a platform point (`Point`). A robot without platform is a tree: one leg without an end.
+//! with a platform point (`Point`). A robot without platform is a tree, one leg without an end, or a skeleton
+//! with chains: legs that end on bodies of other legs, some of which may carry branches, legs without an end.
 
 mod actuation;
 mod check;
@@ -188,22 +189,35 @@ impl Mechanism {
         self.platform.is_none() && self.skeleton().is_none()
     }
 
-    /// The leg whose joints are the independent coordinates and whose bodies carry the chains: the first
-    /// of a robot without platform whose other legs have ends.
+    /// The leg that the chains hang on, and whose joints are independent coordinates: the first of a robot without
+    /// platform that has legs with ends.
     #[must_use]
     pub fn skeleton(&self) -> Option<&Leg> {
         let has_chains = self.platform.is_none() && self.legs.iter().any(|leg| leg.end.is_some());
         self.legs.first().filter(|_| has_chains)
     }
 
-    /// The joints that are the independent coordinates, of a robot without a platform: the first of
-    /// [`Self::joints`].
+    /// Which of [`Self::joints`] are the independent coordinates, of a robot without a platform: those of legs
+    /// without an end, the skeleton and the branches that bodies of chains carry.
+    #[must_use]
+    pub fn coordinate_joints(&self) -> Vec<usize> {
+        let free = (0..self.legs.len()).filter(|&leg| self.legs[leg].end.is_none());
+        free.flat_map(|leg| self.leg_range(leg)).collect()
+    }
+
+    /// The joints of a leg without an end among the independent coordinates.
+    #[must_use]
+    pub fn coordinate_range(&self, leg: usize) -> std::ops::Range<usize> {
+        let before = self.legs[..leg].iter().filter(|own| own.end.is_none());
+        let start = before.map(|own| own.independent().count()).sum::<usize>();
+        start..start + self.legs[leg].independent().count()
+    }
+
+    /// The joints that are the independent coordinates, of a robot without a platform.
     fn independent_joints(&self) -> Vec<JointIndex> {
-        let mut all = self.joints();
-        if let Some(skeleton) = self.skeleton() {
-            all.truncate(skeleton.independent().count());
-        }
-        all
+        let all = self.joints();
+        let own = self.coordinate_joints().into_iter();
+        own.map(|at| all[at]).collect()
     }
 
     /// r, the number of independent platform coordinates; for a tree, of its joints, and of those of a
@@ -285,8 +299,8 @@ impl Mechanism {
     fn own_names(&self, form: impl Fn(String) -> String) -> Vec<String> {
         let joints = self.independent_joints().into_iter();
         let name = |j: JointIndex| match self.skeleton() {
-            Some(_) => self.joint(j).name.clone(),
-            None => self.joint_name(j),
+            Some(_) if j.leg == 0 => self.joint(j).name.clone(),
+            _ => self.joint_name(j),
         };
         joints.map(|j| form(name(j))).collect()
     }

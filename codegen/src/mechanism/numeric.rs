@@ -194,7 +194,7 @@ impl Mechanism {
         self.frames_of(body.leg, pose, joints)[body.joint]
     }
 
-    /// The frames of a leg's joints in the robot's base frame. The joints of a skeleton are the pose.
+    /// The frames of a leg's joints in the robot's base frame. The joints of legs without an end are the pose.
     #[must_use]
     pub(crate) fn frames_of(
         &self,
@@ -203,7 +203,7 @@ impl Mechanism {
         joints: &[f64],
     ) -> Vec<Isometry3<f64>> {
         let own = match self.legs[leg].end {
-            None => pose,
+            None => &pose[self.coordinate_range(leg)],
             Some(_) => &joints[self.leg_range(leg)],
         };
         let ground = self.ground_of(leg, pose, joints);

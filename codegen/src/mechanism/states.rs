@@ -169,14 +169,12 @@ pub fn pose_towards(
     pose
 }
 
-/// The skeleton's joints at a length from home in a direction.
+/// The independent joints at a length from home in a direction.
 fn joints_towards(mechanism: &Mechanism, direction: &[f64], length: f64) -> Vec<f64> {
     let scale = mechanism.length_scale();
-    let kinds = mechanism.skeleton().into_iter().flat_map(|skeleton| {
-        skeleton
-            .independent()
-            .map(|joint| skeleton.joints[joint].kind)
-    });
+    let joints = mechanism.joints();
+    let own = mechanism.coordinate_joints().into_iter();
+    let kinds = own.map(|at| mechanism.joint(joints[at]).kind);
     let home = mechanism.home.pose.iter().zip(kinds);
     let moved = home.zip(direction).map(|((home, kind), d)| {
         let unit = if kind == JointKind::Prismatic {
@@ -214,8 +212,8 @@ fn follow(mechanism: &Mechanism, pose: &[f64], is_lenient: bool) -> Option<Vec<f
         for (index, leg) in mechanism.legs.iter().enumerate() {
             let range = mechanism.leg_range(index);
             let Some(target) = mechanism.target(index, &at, &joints) else {
-                // The skeleton's own joints are the pose.
-                joints[range].copy_from_slice(&at);
+                // The joints of legs without an end are the pose.
+                joints[range].copy_from_slice(&at[mechanism.coordinate_range(index)]);
                 continue;
             };
             let mut closed = close_within(leg, &joints[range.clone()], &target, limits[index])?;

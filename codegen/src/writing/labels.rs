@@ -143,6 +143,11 @@ impl Labels {
     }
 }
 
+/// A coordinate's name as a part of a word: joints of branches are called with their leg's, `foot.pitch`.
+fn word(name: &str) -> String {
+    name.replace('.', "_")
+}
+
 /// The elements of an input.
 fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
     let plain = |what: String| Label {
@@ -170,8 +175,8 @@ fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
     let actuated = model.mechanism.actuated();
     match name {
         "pose" => {
-            let names = model.mechanism.pose_coordinates();
-            names.into_iter().map(plain).collect()
+            let names = model.mechanism.pose_coordinates().into_iter();
+            names.map(|name| plain(word(&name))).collect()
         }
         "twist" => coordinates(""),
         "acceleration" => coordinates("d"),
@@ -206,7 +211,7 @@ fn twist(model: &RobotModel) -> Vec<String> {
     const AXES: [&str; 3] = ["x", "y", "z"];
     let Some(platform) = &model.mechanism.platform else {
         let names = model.mechanism.coordinates().into_iter();
-        return names.map(|name| format!("qd_{name}")).collect();
+        return names.map(|name| format!("qd_{}", word(&name))).collect();
     };
     let coordinates = platform.motion.twist();
     let label = |coordinate: TwistCoordinate| match coordinate {

@@ -2,7 +2,8 @@
 //!
 //! The skeleton grows from the ground. Whatever chain is determined by the bodies that are known is taken as soon as
 //! it is; where there is none, the skeleton takes one more joint, and of all ways to do so the one is kept whose
-//! chains are cheapest to solve.
+//! chains are cheapest to solve. Bodies that others hang on alone are kept for the skeleton at first; only where no
+//! skeleton does, chains may carry branches, whose joints are coordinates as well.
 
 use super::{
     ears::{Ear, cheapest, follows, freedoms},
@@ -12,15 +13,39 @@ use super::{
 use crate::{files::Files, model::Kind, options::Options};
 use nalgebra::{DMatrix, Vector3};
 
-/// Skeleton and chains.
+/// Edges of a tree in their order, each with the group that it starts from.
+pub(crate) type Tree = Vec<(usize, usize)>;
+
+/// A leg beside the skeleton.
+#[derive(Debug, Clone)]
+pub(crate) enum Piece {
+    /// A chain, which follows from what it joins.
+    Chain(Ear),
+    /// A tree on a body of a chain.
+    Branch(Tree),
+}
+
+/// Skeleton, branches and chains.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
-    /// Edges of the skeleton in their order, each with the group that it starts from.
-    pub(crate) skeleton: Vec<(usize, usize)>,
-    /// The chains in the order in which they are solved.
-    pub(crate) chains: Vec<Ear>,
+    /// The tree on the ground.
+    pub(crate) skeleton: Tree,
+    /// Chains in the order in which they are solved, and branches behind what carries them.
+    pub(crate) pieces: Vec<Piece>,
     /// Edges that follow from all others.
     pub(crate) redundant: Vec<usize>,
+}
+
+impl Layout {
+    /// All edges whose joints are coordinates, in the order of the description.
+    pub(crate) fn coordinates(&self) -> Tree {
+        let branches = self.pieces.iter().filter_map(|piece| match piece {
+            Piece::Branch(tree) => Some(tree),
+            Piece::Chain(_) => None,
+        });
+        let trees = std::iter::once(&self.skeleton).chain(branches);
+        trees.flatten().copied().collect()
+    }
 }
 
 /// Ways to grow the skeleton that are tried.
@@ -32,26 +57,22 @@ pub(crate) fn find(files: &Files, network: &Network<'_>, options: &Options) -> O
         None => None,
         Some(names) => Some(wanted(files, network, names)?),
     };
-    let count = network.groups.len();
     let mut search = Search {
         network,
         kept: required(network),
+        may_branch: false,
         wanted,
         best: None,
         furthest: Vec::new(),
         tries: 0,
     };
-    let mut solved = vec![false; count];
-    solved[0] = true;
-    let start = Partial {
-        in_skeleton: solved.clone(),
-        solved,
-        used: vec![false; network.edges.len()],
-        skeleton: Vec::new(),
-        chains: Vec::new(),
-        cost: 0,
-    };
-    search.grow(start);
+    search.grow(Partial::start(network));
+    if search.best.is_none() {
+        search.kept.fill(false);
+        search.may_branch = true;
+        search.tries = 0;
+        search.grow(Partial::start(network));
+    }
     let Search {
         best,
         furthest,
@@ -124,19 +145,78 @@ fn required(network: &Network<'_>) -> Vec<bool> {
         .collect()
 }
 
+/// The tree that a group is part of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// That on the ground.
+    Skeleton,
+    /// The piece of this number.
+    Branch(usize),
+}
+
 #[derive(Debug, Clone)]
 struct Partial {
     solved: Vec<bool>,
-    in_skeleton: Vec<bool>,
+    /// Of each group that is part of a tree, which.
+    part: Vec<Option<Part>>,
     used: Vec<bool>,
-    skeleton: Vec<(usize, usize)>,
-    chains: Vec<Ear>,
+    skeleton: Tree,
+    pieces: Vec<Piece>,
     cost: usize,
+}
+
+impl Partial {
+    /// The ground alone.
+    fn start(network: &Network<'_>) -> Self {
+        let count = network.groups.len();
+        let mut own = Self {
+            solved: vec![false; count],
+            part: vec![None; count],
+            used: vec![false; network.edges.len()],
+            skeleton: Tree::new(),
+            pieces: Vec::new(),
+            cost: 0,
+        };
+        own.solved[0] = true;
+        own.part[0] = Some(Part::Skeleton);
+        own
+    }
+
+    /// Puts an edge on a tree: on that of the group that it starts from, or on a new branch.
+    fn push(&mut self, edge: usize, from: usize, to: usize) {
+        let part = self.part[from].unwrap_or_else(|| {
+            self.pieces.push(Piece::Branch(Tree::new()));
+            Part::Branch(self.pieces.len() - 1)
+        });
+        match part {
+            Part::Skeleton => self.skeleton.push((edge, from)),
+            Part::Branch(at) => {
+                if let Piece::Branch(tree) = &mut self.pieces[at] {
+                    tree.push((edge, from));
+                }
+            }
+        }
+        self.used[edge] = true;
+        self.solved[to] = true;
+        self.part[to] = Some(part);
+    }
+
+    /// The layout, of which some edges follow from all others.
+    fn layout(&self) -> Layout {
+        let unused = self.used.iter().enumerate().filter(|(_, used)| !**used);
+        Layout {
+            skeleton: self.skeleton.clone(),
+            pieces: self.pieces.clone(),
+            redundant: unused.map(|(edge, _)| edge).collect(),
+        }
+    }
 }
 
 struct Search<'s, 'm> {
     network: &'s Network<'m>,
     kept: Vec<bool>,
+    /// Whether bodies of chains may carry branches.
+    may_branch: bool,
     wanted: Option<Vec<usize>>,
     best: Option<(usize, Layout)>,
     /// What was solved where most was.
@@ -155,7 +235,7 @@ impl Search<'_, '_> {
                 partial.used[edge] = true;
             }
             partial.cost += ear.cost();
-            partial.chains.push(ear);
+            partial.pieces.push(Piece::Chain(ear));
         }
         let is_dear = self
             .best
@@ -174,13 +254,10 @@ impl Search<'_, '_> {
         }
         for (edge, from, to) in self.candidates(&partial) {
             let mut next = partial.clone();
-            next.skeleton.push((edge, from));
-            if !independent(self.network, &next.skeleton) {
+            next.push(edge, from, to);
+            if !independent(self.network, &next.layout().coordinates()) {
                 continue;
             }
-            next.used[edge] = true;
-            next.solved[to] = true;
-            next.in_skeleton[to] = true;
             // Among equals the skeleton whose bodies carry less is taken.
             next.cost += 1;
             self.grow(next);
@@ -203,7 +280,8 @@ impl Search<'_, '_> {
                 (edge.groups[0], edge.groups[1]),
                 (edge.groups[1], edge.groups[0]),
             ] {
-                if partial.in_skeleton[from] && !partial.solved[to] {
+                let may = partial.part[from].is_some() || self.may_branch && partial.solved[from];
+                if may && !partial.solved[to] {
                     if is_bridge(self.network, index) {
                         return vec![(index, from, to)];
                     }
@@ -226,20 +304,13 @@ impl Search<'_, '_> {
     }
 
     fn finish(&mut self, partial: Partial) {
-        let coordinates: usize = skeleton_freedoms(self.network, &partial.skeleton)
+        let layout = partial.layout();
+        let coordinates: usize = skeleton_freedoms(self.network, &layout.coordinates())
             .iter()
             .sum();
-        if coordinates != self.network.mobility {
-            return;
+        if coordinates == self.network.mobility {
+            self.best = Some((partial.cost, layout));
         }
-        let unused = partial.used.iter().enumerate().filter(|(_, used)| !**used);
-        let redundant = unused.map(|(edge, _)| edge).collect();
-        let layout = Layout {
-            skeleton: partial.skeleton,
-            chains: partial.chains,
-            redundant,
-        };
-        self.best = Some((partial.cost, layout));
     }
 }
 

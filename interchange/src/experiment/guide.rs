@@ -122,7 +122,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// The rates of the coordinates for each motion.
     fn own_rates(&self, state: &State, groups: &[DMatrix<f64>]) -> Option<DMatrix<f64>> {
         let mut rows: Vec<Vec<f64>> = Vec::new();
-        for step in &self.layout.skeleton {
+        for step in &self.layout.coordinates() {
             match self.balls.iter().find(|(edge, _)| *edge == step.0) {
                 Some((_, ball)) => rows.extend(ball.rates(self.network, state, groups)?),
                 None => {
@@ -165,7 +165,7 @@ impl<'g, 'm> Guide<'g, 'm> {
                 Origin::Closure(_) => vec![None; count],
             }
         };
-        self.layout.skeleton.iter().flat_map(of).collect()
+        self.layout.coordinates().iter().flat_map(of).collect()
     }
 
     /// The joint that stands beyond its limits.
@@ -207,7 +207,7 @@ impl<'g, 'm> Guide<'g, 'm> {
 fn balls(network: &Network<'_>, layout: &Layout, plan: &Plan) -> Option<Vec<(usize, Ball)>> {
     let mut axes = plan.axes.iter();
     let mut balls = Vec::new();
-    for &(index, from) in &layout.skeleton {
+    for (index, from) in layout.coordinates() {
         let edge = &network.edges[index];
         let to = edge.groups[usize::from(edge.groups[0] == from)];
         let count = if edge.kind == Kind::Ball {

@@ -155,15 +155,21 @@ pub(crate) fn design(
 
 /// The coordinates of the description: joints of its skeleton, and whether they are angles.
 fn coordinates(plan: &Plan) -> Vec<(String, bool)> {
-    let moved = plan
-        .legs
-        .iter()
-        .filter(|leg| leg.end.is_none())
-        .flat_map(|leg| &leg.joints);
-    let moved = moved.filter(|joint| joint.kind != "fixed" && joint.follows.is_none());
-    moved
-        .map(|joint| (joint.name.clone(), joint.kind == "revolute"))
-        .collect()
+    let trees = plan.legs.iter().enumerate();
+    let trees = trees.filter(|(_, leg)| leg.end.is_none());
+    let of_tree = |(at, leg): (usize, &'_ Leg)| {
+        let moved = leg.joints.iter();
+        let moved = moved.filter(|joint| joint.kind != "fixed" && joint.follows.is_none());
+        let named = moved.map(|joint| {
+            let name = match at {
+                0 => joint.name.clone(),
+                _ => format!("{}.{}", leg.name, joint.name),
+            };
+            (name, joint.kind == "revolute")
+        });
+        named.collect::<Vec<_>>()
+    };
+    trees.flat_map(of_tree).collect()
 }
 
 /// The joints of the file that are driven, in the order of the description.

@@ -6,7 +6,7 @@ mod names;
 use crate::{
     assembly::{
         ears::{Ear, Ending},
-        layout::Layout,
+        layout::{Layout, Piece, Tree},
         network::Network,
     },
     files::Files,
@@ -84,12 +84,18 @@ impl Plan {
     pub(crate) fn new(files: &Files, network: &Network<'_>, layout: &Layout) -> Option<Self> {
         let mut bodies: Bodies = vec![None; network.groups.len()];
         bodies[0] = Some(("ground".to_owned(), Pose::identity()));
-        let is_tree = layout.chains.is_empty();
-        let mut leg_names = Names::default();
-        let (leg, axes) = skeleton(files, network, layout, is_tree, &mut bodies, &mut leg_names);
+        let mut names = Names::default();
+        let (leg, mut axes) = skeleton(files, network, layout, &mut bodies, &mut names);
         let mut legs = vec![leg];
-        for ear in &layout.chains {
-            legs.push(chain(files, network, ear, &mut bodies, &mut leg_names)?);
+        for piece in &layout.pieces {
+            legs.push(match piece {
+                Piece::Chain(ear) => chain(files, network, ear, &mut bodies, &mut names)?,
+                Piece::Branch(tree) => {
+                    let (leg, own) = branch(files, network, tree, &mut bodies, &mut names)?;
+                    axes.extend(own);
+                    leg
+                }
+            });
         }
         let notes = notes(network, layout);
         Some(Self { legs, axes, notes })
@@ -100,15 +106,11 @@ fn skeleton(
     files: &Files,
     network: &Network<'_>,
     layout: &Layout,
-    is_tree: bool,
     bodies: &mut Bodies,
     names: &mut Names,
 ) -> (Leg, Vec<Vector3<f64>>) {
-    let mut draft = Draft::new(files, network);
-    for &(edge, from) in &layout.skeleton {
-        let groups = network.edges[edge].groups;
-        draft.push(edge, from, groups[usize::from(groups[0] == from)], !is_tree);
-    }
+    let is_tree = layout.pieces.is_empty();
+    let draft = drafted(files, network, &layout.skeleton, !is_tree);
     let framed = leg::framed(&draft.nodes, &Pose::identity(), None);
     for (at, group) in draft.groups.iter().enumerate() {
         if let Some(group) = group {
@@ -118,10 +120,7 @@ fn skeleton(
     let name = names.unique(if is_tree { "robot" } else { "skeleton" });
     let comment = match is_tree {
         true => Vec::new(),
-        false => vec![format!(
-            "The skeleton: its joints are the {} independent coordinates, from which the chains follow.",
-            network.mobility
-        )],
+        false => vec![independent(network, layout)],
     };
     let joints = draft.joints(&framed, !is_tree);
     let axes = draft.nodes.iter().map(|node| node.direction).collect();
@@ -133,6 +132,73 @@ fn skeleton(
         end: None,
     };
     (leg, axes)
+}
+
+/// What the head of the skeleton says of the coordinates.
+fn independent(network: &Network<'_>, layout: &Layout) -> String {
+    let has_branches = layout.coordinates().len() > layout.skeleton.len();
+    let branches = if has_branches {
+        " and those of branches"
+    } else {
+        ""
+    };
+    format!(
+        "The skeleton: its joints{branches} are the {} independent coordinates, from which the chains follow.",
+        network.mobility
+    )
+}
+
+/// The joints of a tree.
+fn drafted<'d, 'm>(
+    files: &'d Files,
+    network: &'d Network<'m>,
+    tree: &Tree,
+    may_shorten: bool,
+) -> Draft<'d, 'm> {
+    let mut draft = Draft::new(files, network);
+    for &(edge, from) in tree {
+        let groups = network.edges[edge].groups;
+        let to = groups[usize::from(groups[0] == from)];
+        draft.push(edge, from, to, may_shorten);
+    }
+    draft
+}
+
+/// A tree on a body of a chain, and the axes of its joints.
+fn branch(
+    files: &Files,
+    network: &Network<'_>,
+    tree: &Tree,
+    bodies: &mut Bodies,
+    names: &mut Names,
+) -> Option<(Leg, Vec<Vector3<f64>>)> {
+    let &(first, carrier) = tree.first()?;
+    let draft = drafted(files, network, tree, true);
+    let (base_name, base_frame) = bodies[carrier].clone()?;
+    let base = leg::base(&draft.nodes, &base_frame, None);
+    let framed = leg::framed(&draft.nodes, &base, None);
+    let groups = network.edges[first].groups;
+    let carried = groups[usize::from(groups[0] == carrier)];
+    let name = names.unique(network.group_name(carried));
+    for (at, group) in draft.groups.iter().enumerate() {
+        if let Some(group) = group {
+            bodies[*group] = Some((format!("{name}.{}", draft.names[at]), framed[at].frame));
+        }
+    }
+    let joints = draft.joints(&framed, true);
+    let axes = draft.nodes.iter().map(|node| node.direction).collect();
+    let comment = format!(
+        "A branch on `{}`, a body of a chain: its joints are independent coordinates too.",
+        network.group_name(carrier)
+    );
+    let leg = Leg {
+        name,
+        comment: vec![comment],
+        base: Some((Some(base_name), base_frame.inv_mul(&base))),
+        joints,
+        end: None,
+    };
+    Some((leg, axes))
 }
 
 fn chain(

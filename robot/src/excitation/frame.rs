@@ -1,6 +1,6 @@
 //! What is fixed of a run before its motion is searched, and its motion as a Fourier series.
 
-use overact_codegen::description::{Description, JointKind};
+use overact_codegen::description::{Description, JointKind, independent_joints};
 use overact_simulation::{Term, Trajectory};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -135,20 +135,9 @@ pub(super) fn coordinates(description: &Description) -> Vec<(String, bool)> {
             .map(|name| (name.to_owned(), matches!(name, "x" | "y" | "z")))
             .collect();
     }
-    // Those of chains follow from those of the skeleton.
-    let joints = description
-        .legs
-        .iter()
-        .filter(|leg| leg.end.is_none())
-        .flat_map(|leg| leg.joints.iter().enumerate());
-    let free = joints.filter(|(index, joint)| joint.is_independent(*index));
-    free.map(|(_, joint)| {
-        (
-            joint.name.value.clone(),
-            joint.kind.value == JointKind::Prismatic,
-        )
-    })
-    .collect()
+    let own = independent_joints(&description.legs).into_iter();
+    own.map(|(name, joint)| (name, joint.kind.value == JointKind::Prismatic))
+        .collect()
 }
 
 /// Fourier series of a run: numbers without unit to terms of coordinates that keep their limits.

@@ -78,11 +78,11 @@ fn cuts(mechanism: &Mechanism, q: &DVector<f64>) -> DMatrix<f64> {
 
 /// The equations of the cuts above those of the independent joints.
 fn equations(mechanism: &Mechanism, cuts: &DMatrix<f64>) -> DMatrix<f64> {
-    let dof = mechanism.dof();
-    let mut all = DMatrix::zeros(cuts.nrows() + dof, cuts.ncols());
+    let own = mechanism.independent();
+    let mut all = DMatrix::zeros(cuts.nrows() + own.len(), cuts.ncols());
     all.rows_mut(0, cuts.nrows()).copy_from(cuts);
-    for at in 0..dof {
-        all[(cuts.nrows() + at, at)] = 1.0;
+    for (row, at) in own.into_iter().enumerate() {
+        all[(cuts.nrows() + row, at)] = 1.0;
     }
     all
 }
@@ -130,7 +130,8 @@ pub fn jacobians(mechanism: &Mechanism, q: &DVector<f64>) -> Result<Jacobians, E
     {
         let count = end_components(leg).len();
         let (square, kept) = if count == 0 {
-            (DMatrix::identity(dof, dof), DMatrix::identity(dof, dof))
+            let own = all.joints.rows(range.start, range.len()).into_owned();
+            (DMatrix::identity(range.len(), range.len()), own)
         } else {
             let own = all.ends.rows(first, count).select_rows(&end_rows(k, leg)?);
             let square = own.columns(range.start, range.len()).into_owned();
@@ -221,23 +222,25 @@ fn newton(
     near: &DVector<f64>,
     enough: f64,
 ) -> (DVector<f64>, f64) {
-    let dof = mechanism.dof();
+    let own = mechanism.independent();
     let mut q = near.clone();
-    q.rows_mut(0, dof)
-        .copy_from(&DVector::from_column_slice(pose));
+    for (&at, &position) in own.iter().zip(pose) {
+        q[at] = position;
+    }
+    let chains: Vec<usize> = (0..q.len()).filter(|at| !own.contains(at)).collect();
     let mut gap = gaps(mechanism, &q);
     for _ in 0..60 {
         if gap.norm() < enough {
             break;
         }
-        let chains = q.len() - dof;
-        let jacobian = cuts(mechanism, &q).columns(dof, chains).into_owned();
+        let jacobian = cuts(mechanism, &q).select_columns(&chains);
         let mut step = pseudo_inverse(&jacobian) * -&gap;
         step *= (0.5 / step.amax()).min(1.0);
         let better = (0..12).find_map(|halvings| {
             let mut moved = q.clone();
-            let mut own = moved.rows_mut(dof, chains);
-            own += 0.5_f64.powi(halvings) * &step;
+            for (&at, change) in chains.iter().zip(&step) {
+                moved[at] += 0.5_f64.powi(halvings) * change;
+            }
             let left = gaps(mechanism, &moved);
             (left.norm() < gap.norm()).then_some((moved, left))
         });

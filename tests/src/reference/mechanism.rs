@@ -296,6 +296,16 @@ impl Mechanism {
         }
     }
 
+    /// Which of the variables are the independent coordinates where loops close between bodies: those of legs that
+    /// end nowhere.
+    #[must_use]
+    pub fn independent(&self) -> Vec<usize> {
+        let free = self.legs.iter().zip(self.leg_ranges());
+        free.filter(|(leg, _)| leg.end == End::Free)
+            .flat_map(|(_, range)| range)
+            .collect()
+    }
+
     /// Number of actuators, n.
     #[must_use]
     pub fn actuators(&self) -> usize {

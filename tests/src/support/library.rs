@@ -145,8 +145,9 @@ pub fn workspace(model: &RobotModel) -> Vec<f64> {
             JointKind::Revolute => turn,
             _ => slide,
         };
-        let joints = mechanism.joints().into_iter().take(mechanism.dof());
-        return joints.map(reach).collect();
+        let joints = mechanism.joints();
+        let own = mechanism.coordinate_joints().into_iter();
+        return own.map(|at| reach(joints[at])).collect();
     };
     let reach = |c: &TwistCoordinate| match c {
         TwistCoordinate::Linear(_) => 0.1 * mechanism.length_scale(),

@@ -63,7 +63,7 @@ x = 1
         "12:1 a placement has no `x`; the leg `a` leaves this value to its placements",
         "15:1 unknown key `y`; known keys: name, shape, home, x",
         "16:10 unknown key `7`; known keys: 1",
-        "17:1 a robot without platform has one leg without an end; branches of a tree are joints whose `antecedent` is not the joint before them",
+        "17:1 a robot without platform has one leg without an end, and others only on bodies of chains; branches of a tree are joints whose `antecedent` is not the joint before them; those on a body of a chain are legs whose `base.body` names it",
         "18:8 there are two legs `l`",
     ];
     let found = listed(text);

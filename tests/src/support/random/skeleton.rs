@@ -3,7 +3,8 @@
 //! Every joint of the skeleton has a motor, so the actuators determine the motion whatever the chains do; some
 //! chains have motors, too. A chain is a drive of two crossing axes and a slide, an arm of three revolute joints,
 //! or three slides: three joints that follow the point that they end in. It starts near its home, and closes by
-//! itself or not at all; what does not close, or is nearly singular, is for the caller to throw away.
+//! itself or not at all; what does not close, or is nearly singular, is for the caller to throw away. Some bodies of
+//! chains carry a branch, whose joints are independent coordinates too, and from which later chains may start.
 
 use super::Dice;
 use std::fmt::Write;
@@ -17,7 +18,12 @@ pub fn skeleton(seed: u64) -> String {
     let mut bodies = tree(&mut dice, &mut text, &mut places);
     let chains = 1 + dice.below(3);
     for index in 0..chains {
-        bodies.extend(chain(&mut dice, &mut text, &mut places, index, &bodies));
+        let own = chain(&mut dice, &mut text, &mut places, index, &bodies);
+        if dice.chance(0.4) {
+            let carrier = &own[dice.below(own.len())];
+            bodies.extend(branch(&mut dice, &mut text, &mut places, index, carrier));
+        }
+        bodies.extend(own);
     }
     text + &places
 }
@@ -46,6 +52,31 @@ fn tree(dice: &mut Dice, text: &mut String, places: &mut String) -> Vec<String> 
     }
     place(places, "tree", &home);
     (0..count).map(|index| format!("j{index}")).collect()
+}
+
+/// Writes a branch of one or two joints on a body of a chain; the names of its bodies.
+fn branch(
+    dice: &mut Dice,
+    text: &mut String,
+    places: &mut String,
+    index: usize,
+    carrier: &str,
+) -> Vec<String> {
+    let name = format!("branch{index}");
+    write(
+        text,
+        format_args!("[leg.{name}]\n{}", base(dice, Some(carrier))),
+    );
+    let mut home = Vec::new();
+    let count = 1 + dice.below(2);
+    for joint_index in 0..count {
+        let slides = dice.chance(0.25);
+        joint(text, dice, &name, &format!("j{joint_index}"), slides, None);
+        let unit = if slides { "m" } else { "rad" };
+        home.push(format!("j{joint_index} = \"{:?} {unit}\"", dice.angle(0.8)));
+    }
+    place(places, &name, &home);
+    (0..count).map(|joint| format!("{name}.j{joint}")).collect()
 }
 
 /// Writes a chain between two bodies; the names of its own.
