@@ -109,7 +109,7 @@ impl<'a> Robot<'a> {
 
 impl<'a> Chain<'_, 'a> {
     /// Adds up bodies from the tips to the base.
-    fn add_up(&mut self) {
+    pub(super) fn add_up(&mut self) {
         for j in (0..self.links.len()).rev() {
             let link = &self.links[j];
             let behind = link.next.iter().map(|&c| &self.links[c]);
@@ -121,6 +121,24 @@ impl<'a> Chain<'_, 'a> {
             self.links[j].whole = whole;
             self.links[j].turned = turned;
         }
+    }
+
+    /// All bodies in the axes of the leg's base, about its origin, once they are added up.
+    pub(super) fn at_base(&self) -> Inertia<'a> {
+        let first = self.roots().map(|j| &self.links[j]);
+        first.fold(Inertia::zero(self.arena), |sum, link| {
+            link.turned.moved_onto(&sum, link.at)
+        })
+    }
+
+    /// Makes another inertia, in a body's frame, a part of the body.
+    pub(super) fn carry(&mut self, j: usize, other: &Inertia<'a>) {
+        let still = Vector3::zero(self.arena);
+        self.links[j].own = other.moved_onto(&self.links[j].own, still);
+    }
+
+    pub(super) const fn arena(&self) -> &'a Arena {
+        self.arena
     }
 
     /// The bodies, each by itself.
@@ -150,14 +168,60 @@ impl<'a> Chain<'_, 'a> {
         [force, moment, link.at.cross(force)]
     }
 
-    /// The forces on the quasi-velocities up to k for the quasi-acceleration k.
-    fn column(&self, k: usize) -> Vec<Expr<'a>> {
+    /// Force and moment about the base's origin, in its axes, for the quasi-acceleration k. `None` where nothing
+    /// moves.
+    pub(super) fn base_wrench(&self, k: usize) -> Option<[Vector3<'a>; 2]> {
+        let mut on = vec![self.nothing(); self.links.len()];
+        let still = [Vector3::zero(self.arena); 2];
+        let moved = self.roots().filter_map(|first| {
+            let [force, moment] = self.wrench(first, k, still, &mut on)?;
+            Some([force, moment + self.links[first].at.cross(force)])
+        });
+        moved.reduce(|sum, one| [sum[0] + one[0], sum[1] + one[1]])
+    }
+
+    /// What a wrench on a body, about its frame's origin, puts on the quasi-velocities on its way to the base, and
+    /// what arrives there.
+    pub(super) fn read_along(
+        &self,
+        body: usize,
+        [mut force, mut moment]: [Vector3<'a>; 2],
+    ) -> (Vec<Expr<'a>>, [Vector3<'a>; 2]) {
+        let rates = &self.state.rates;
+        let count = self.leg.independent().count();
+        let mut forces = vec![self.arena.zero(); count];
+        let mut about_axis = moment.z();
+        let mut at = Some(body);
+        while let Some(j) = at {
+            for (i, sum) in forces.iter_mut().enumerate() {
+                *sum = *sum + about_axis * rates.turning[j].coefficient(i);
+                if self.kind(j) == JointKind::Prismatic {
+                    *sum = *sum + force.z() * rates.joint[j].coefficient(i);
+                }
+            }
+            let [handed, turned, lever] = self.handed_down(j, [force, moment]);
+            about_axis = match rates.run[j] {
+                None => lever.z() + turned.z(),
+                Some(_) => lever.z(),
+            };
+            (force, moment) = (handed, turned + lever);
+            at = self.antecedent(j);
+        }
+        (forces, [force, moment])
+    }
+
+    fn nothing(&self) -> OnJoint<'a> {
         let zero = self.arena.zero();
-        let nothing = OnJoint {
+        OnJoint {
             moment: zero,
             force: zero,
-        };
-        let mut on = vec![nothing; self.links.len()];
+        }
+    }
+
+    /// The forces on the quasi-velocities up to k for the quasi-acceleration k.
+    pub(super) fn column(&self, k: usize) -> Vec<Expr<'a>> {
+        let zero = self.arena.zero();
+        let mut on = vec![self.nothing(); self.links.len()];
         let still = [Vector3::zero(self.arena); 2];
         for first in self.roots() {
             let _ = self.wrench(first, k, still, &mut on);

@@ -13,12 +13,15 @@ use super::names::{Names, name_matrix};
 use super::parameter::BodyParameter;
 use super::robot::Robot;
 use crate::cas::{Expr, Matrix3, Vector3};
-use crate::description::StandardParameter;
 use crate::mechanism::TwistCoordinate;
 
 impl<'a> Robot<'a> {
     /// M of given parameters. `None` if a sine or cosine does not follow from the configuration.
     pub(super) fn masses(&self, values: &[(BodyParameter, Expr<'a>)]) -> Option<Rows<'a>> {
+        // Platforms carry no legs.
+        if self.mechanism.legs.iter().any(|leg| leg.base_body.is_some()) {
+            return self.tree_masses(values);
+        }
         let dof = self.mechanism.dof();
         let square = |size: usize| vec![vec![self.arena.zero(); size]; size];
         let mut sum = square(dof);
@@ -27,10 +30,7 @@ impl<'a> Robot<'a> {
         for (index, state) in self.legs.iter().enumerate() {
             let name = &self.mechanism.legs[index].name;
             self.arena.enter(name);
-            let upper = match self.mechanism.legs[index].base_body {
-                Some(_) => self.moving_masses(index, values)?,
-                None => self.leg_masses(index, values)?,
-            };
+            let upper = self.leg_masses(index, values)?;
             if upper.is_empty() {
                 continue;
             }
@@ -83,39 +83,6 @@ impl<'a> Robot<'a> {
         let entry = |a: usize, b: usize| sum[a.min(b)][a.max(b)];
         let row = |a: usize| (0..dof).map(|b| entry(a, b)).collect();
         Some((0..dof).map(row).collect())
-    }
-
-    /// The upper triangle of the mass matrix of a chain that starts from a moving body, in the chain's
-    /// quasi-velocities and those of what carries it: Σ Vᵀ m V + … of the bodies' partial velocities.
-    fn moving_masses(
-        &self,
-        index: usize,
-        values: &[(BodyParameter, Expr<'a>)],
-    ) -> Option<Vec<Vec<Expr<'a>>>> {
-        let state = &self.legs[index];
-        let still = vec![self.arena.zero(); self.mechanism.dof()];
-        let motion = self.motion(&still, &still)?;
-        let count = state.rows.len();
-        let mut sum = vec![vec![self.arena.zero(); count]; count];
-        for (joint, body) in motion.bodies[index].iter().enumerate() {
-            let own = |p: BodyParameter| p.of_joint(index, joint);
-            let inertia = Inertia::of(self.arena, values, &own);
-            let rotor = values
-                .iter()
-                .filter(|(p, _)| own(*p) == Some(StandardParameter::Ia));
-            let rotor = rotor.fold(self.arena.zero(), |sum, (_, value)| sum + *value);
-            let rate = &state.rates.joint[joint];
-            for (j, [v, o]) in body.partials.iter().enumerate() {
-                // Momentum and angular momentum of a unit of u_j.
-                let momentum = v.scaled(inertia.mass) + o.cross(inertia.first);
-                let angular = inertia.first.cross(*v) + inertia.second * *o;
-                for (i, [v, o]) in body.partials.iter().enumerate().take(j + 1) {
-                    let turned = rotor * rate.coefficient(i) * rate.coefficient(j);
-                    sum[i][j] = sum[i][j] + v.dot(momentum) + o.dot(angular) + turned;
-                }
-            }
-        }
-        Some((0..count).map(|i| sum[i][i..].to_vec()).collect())
     }
 
     /// The mass matrix of all that moves with the platform.

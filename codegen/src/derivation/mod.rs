@@ -61,6 +61,7 @@ mod robot;
 mod selection;
 mod sheet;
 mod spring;
+mod tree_masses;
 mod turn;
 mod underivable;
 

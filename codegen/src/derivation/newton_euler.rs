@@ -4,6 +4,9 @@
 //! Before that, what a joint leaves as it is of the body behind it is counted to the body before it: a
 //! revolute joint mass, first moment along its axis and the inertia of a rod along it, a prismatic one the
 //! inertia. Which torques the robot needs does not change, and the bodies behind have fewer parameters.
+//!
+//! Legs that stand on a body of another, chains and branches, hand their whole wrench down to it: legs are
+//! taken from the last to the first, for a body that carries one belongs to a leg before.
 
 use super::actuators::OwnForces;
 use super::body::BodyMotion;
@@ -11,11 +14,13 @@ use super::composite::Chain;
 use super::inertia::Inertia;
 use super::motion::RobotMotion;
 use super::names::{coordinate_label, joined};
+use super::orientation::constant_rotation;
 use super::parameter::BodyParameter;
 use super::regressor::add;
 use super::robot::Robot;
-use crate::cas::{Expr, Vector3};
-use crate::mechanism::JointKind;
+use super::tree_masses::on_carrier;
+use crate::cas::{Arena, Expr, Vector3};
+use crate::mechanism::{JointKind, Leg};
 
 impl<'a> Robot<'a> {
     /// Γ¹ of given parameters; what acts on actuated joints alone goes to `actuators`. `None` if a sine or cosine
@@ -29,13 +34,15 @@ impl<'a> Robot<'a> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
         // Of a platform that moves aside: what all put on its six components, which goes to the others at once.
         let mut free = vec![self.arena.zero(); self.free.len()];
-        for (index, leg) in self.mechanism.legs.iter().enumerate() {
+        let mut hung = Hung::of(self, values)?;
+        let mut of_legs = Vec::new();
+        for index in (0..self.legs.len()).rev() {
+            self.arena.enter(&self.mechanism.legs[index].name);
+            of_legs.push(self.summed_leg_forces(motion, values, index, &mut hung));
+        }
+        let of_legs = of_legs.into_iter().rev();
+        for (index, (leg, mut forces)) in self.mechanism.legs.iter().zip(of_legs).enumerate() {
             self.arena.enter(&leg.name);
-            // What a chain hands down to a body that moves is projected body by body.
-            let mut forces = match leg.base_body {
-                Some(_) => self.leg_forces(motion, values, index, &mut []),
-                None => self.summed_leg_forces(motion, values, index)?,
-            };
             for (joint, force) in leg.independent().zip(&forces) {
                 let what = format!("force_on_u{}", leg.joints[joint].name);
                 let _ = force.named(&joined(&[&what, &leg.name]));
@@ -48,7 +55,10 @@ impl<'a> Robot<'a> {
                     add(&mut free, closure.project_at_end(&forces));
                 }
                 Some(closure) => add(&mut total, closure.project_at_end(&forces)),
-                None => add(&mut total, self.combine(&state.rows, &forces)),
+                None => {
+                    let rows = state.rows[..forces.len()].to_vec();
+                    add(&mut total, self.combine(&rows, &forces));
+                }
             }
         }
         self.arena.enter("platform");
@@ -72,37 +82,41 @@ impl<'a> Robot<'a> {
         Some(total)
     }
 
-    /// The forces on the quasi-velocities of a leg.
+    /// The forces on the quasi-velocities of a leg; its base hands its wrench on to the body that it stands on.
     fn summed_leg_forces(
         &self,
         motion: &RobotMotion<'a>,
         values: &[(BodyParameter, Expr<'a>)],
         index: usize,
-    ) -> Option<Vec<Expr<'a>>> {
-        let chain = self.chain(index, values)?;
-        let bodies = chain.grouped();
+        hung: &mut Hung<'_, 'a>,
+    ) -> Vec<Expr<'a>> {
         let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
         let count = leg.joints.len();
         let mut wrenches: Vec<[Vector3<'a>; 2]> = Vec::new();
         let mut about_axes = Vec::new();
-        for (body, motion) in bodies.iter().zip(&motion.bodies[index]) {
-            let wrench = motion.wrench(body);
+        for (joint, body) in hung.bodies[index].iter().enumerate() {
+            let own = motion.bodies[index][joint].wrench(body);
+            let carried = hung.wrenches[index][joint];
+            let wrench = [own[0] + carried[0], own[1] + carried[1]];
             about_axes.push(wrench[1].z());
             wrenches.push(wrench);
         }
-        let mut forces = vec![arena.zero(); state.rows.len()];
+        let mut at_base = [Vector3::zero(arena); 2];
+        let mut forces = vec![arena.zero(); leg.independent().count()];
         for j in (0..count).rev() {
             let joint = &leg.joints[j];
             let wrench = wrenches[j];
             self.name_wrench(wrench, &joint.name, &leg.name);
+            let [force, moment, lever] = hung.chains[index].handed_down(j, wrench);
             if let Some(before) = joint.antecedent {
-                let [force, moment, lever] = chain.handed_down(j, wrench);
                 about_axes[before] = about_axes[before] + lever.z();
                 if state.rates.run[j].is_none() {
                     about_axes[before] = about_axes[before] + moment.z();
                 }
                 let sum = &mut wrenches[before];
                 *sum = [sum[0] + force, sum[1] + (moment + lever)];
+            } else {
+                at_base = [at_base[0] + force, at_base[1] + (moment + lever)];
             }
             let on_joint = values.iter().filter_map(|(p, value)| {
                 let symbol = p.of_joint(index, j).filter(|s| !s.is_inertial())?;
@@ -119,7 +133,53 @@ impl<'a> Robot<'a> {
             let shares = (0..forces.len()).map(share).collect();
             add(&mut forces, shares);
         }
-        Some(forces)
+        hung.hand_on(arena, leg, at_base);
+        forces
+    }
+}
+
+/// What legs hand down to the bodies that they stand on.
+struct Hung<'c, 'a> {
+    chains: Vec<Chain<'c, 'a>>,
+    /// Of every leg its bodies, with what the joints behind leave as it is.
+    bodies: Vec<Vec<Inertia<'a>>>,
+    /// Of every leg the wrenches that carried legs put on its bodies.
+    wrenches: Vec<Vec<[Vector3<'a>; 2]>>,
+}
+
+impl<'c, 'a> Hung<'c, 'a> {
+    /// The bodies of all legs, without any wrench yet. `None` if a sine or cosine does not follow from the
+    /// configuration.
+    fn of(robot: &'c Robot<'a>, values: &[(BodyParameter, Expr<'a>)]) -> Option<Self> {
+        let (arena, legs) = (robot.arena, &robot.mechanism.legs);
+        let chains = (0..legs.len()).map(|index| robot.chain(index, values));
+        let chains = chains.collect::<Option<Vec<_>>>()?;
+        let mut bodies: Vec<Vec<Inertia<'a>>> = chains.iter().map(Chain::bodies).collect();
+        for (index, leg) in legs.iter().enumerate().rev() {
+            arena.enter(&leg.name);
+            let kept = chains[index].group(&mut bodies[index]);
+            if let Some(carrier) = leg.base_body {
+                let still = Vector3::zero(arena);
+                let onto = &mut bodies[carrier.leg][carrier.joint];
+                *onto = on_carrier(arena, leg, &kept).moved_onto(onto, still);
+            }
+        }
+        let none = [Vector3::zero(arena); 2];
+        Some(Self {
+            chains,
+            bodies,
+            wrenches: legs.iter().map(|leg| vec![none; leg.joints.len()]).collect(),
+        })
+    }
+
+    /// Puts the wrench at a leg's base on the body that it stands on.
+    fn hand_on(&mut self, arena: &'a Arena, leg: &Leg, [force, moment]: [Vector3<'a>; 2]) {
+        let Some(carrier) = leg.base_body else { return };
+        let turn = constant_rotation(arena, leg.base.rotation);
+        let (force, moment) = (turn * force, turn * moment);
+        let lever = Vector3::constant(arena, leg.base.at).cross(force);
+        let sum = &mut self.wrenches[carrier.leg][carrier.joint];
+        *sum = [sum[0] + force, sum[1] + (moment + lever)];
     }
 }
 
@@ -133,9 +193,10 @@ impl<'a> BodyMotion<'a> {
 }
 
 impl<'a> Chain<'_, 'a> {
-    /// The bodies with what each joint leaves as it is moved onto the body before it.
-    fn grouped(&self) -> Vec<Inertia<'a>> {
-        let mut bodies = self.bodies();
+    /// Moves what each joint leaves as it is onto the body before it; what the first ones leave, in the axes of
+    /// the leg's base.
+    fn group(&self, bodies: &mut [Inertia<'a>]) -> Inertia<'a> {
+        let mut at_base = Inertia::zero(self.arena());
         for j in (0..bodies.len()).rev() {
             let [kept, rest] = match self.kind(j) {
                 JointKind::Revolute => bodies[j].split_about_z(),
@@ -143,10 +204,11 @@ impl<'a> Chain<'_, 'a> {
                 JointKind::Fixed => [bodies[j], Inertia::zero(bodies[j].mass.arena())],
             };
             bodies[j] = rest;
-            if let Some(before) = self.antecedent(j) {
-                bodies[before] = self.moved_onto(&kept, &bodies[before], j);
+            match self.antecedent(j) {
+                Some(before) => bodies[before] = self.moved_onto(&kept, &bodies[before], j),
+                None => at_base = self.moved_onto(&kept, &at_base, j),
             }
         }
-        bodies
+        at_base
     }
 }
