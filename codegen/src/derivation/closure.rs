@@ -171,8 +171,14 @@ impl<'a> LegClosure<'a> {
     #[must_use]
     pub(crate) fn project_at_end(&self, forces: &[Expr<'a>]) -> Vec<Expr<'a>> {
         let zero = Vector3::zero(self.determinant.arena());
-        let parts = self.forces.iter().zip(forces);
-        let force = parts.fold(zero, |sum, (f, s)| sum + f.scaled(*s));
+        let force = if self.is_in_base() {
+            let parts = self.forces.iter().zip(forces);
+            parts.fold(zero, |sum, (f, s)| sum + f.scaled(*s))
+        } else {
+            let parts = self.wrenches.iter().zip(forces);
+            let own = parts.fold(zero, |sum, (w, s)| sum + w.force.scaled(w.factor * *s));
+            self.axes * own
+        };
         self.directions.components(self.arm, [force, zero])
     }
 

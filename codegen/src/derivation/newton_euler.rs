@@ -50,7 +50,7 @@ impl<'a> Robot<'a> {
             actuators.take(index, &mut forces);
             let state = &self.legs[index];
             let at_end = state.closure.as_ref().filter(|c| c.feels_no_moment());
-            match at_end.filter(|_| self.platform.is_some()) {
+            match at_end.filter(|_| self.platform.is_some() || self.at_end) {
                 Some(closure) if self.aside.is_some() => {
                     add(&mut free, closure.project_at_end(&forces));
                 }

@@ -45,6 +45,8 @@ pub struct Robot<'a> {
     pub(super) aside: Option<Aside<'a>>,
     /// The legs.
     pub legs: Vec<LegState<'a>>,
+    /// Whether what acts on a chain's joints goes to the skeleton as one force at the chain's end.
+    pub(super) at_end: bool,
     /// Conditions for the model to have a value.
     pub guards: Vec<Guard<'a>>,
     /// The motions that were asked for, whose quantities are named when all is derived.
@@ -80,6 +82,7 @@ impl<'a> Robot<'a> {
             free: Self::free_coordinates(motion),
             aside: None,
             legs: Vec::new(),
+            at_end: formulation.at_end,
             guards: Vec::new(),
             motions: RefCell::default(),
         };

@@ -38,6 +38,9 @@ pub struct Formulation {
     pub stations: Vec<usize>,
     /// Whether axes that meet in a point share the moment about it.
     pub meeting: bool,
+    /// Whether what acts on the joints of a chain goes to the skeleton as one force at the chain's end, rather than
+    /// joint by joint. Legs of a platform always have it so.
+    pub at_end: bool,
 }
 
 /// A column as a linear combination of other columns.

@@ -86,7 +86,7 @@ impl Assembler<'_> {
             return Ok(forms);
         }
         let (least, mut best) = (start.operations, start.clone());
-        for change in formulation::choices(self.mechanism).iter().flatten() {
+        for change in &formulation::choices_of_function(self.mechanism) {
             let Some(formulation) = change.of(&best.selection.formulation) else {
                 continue;
             };

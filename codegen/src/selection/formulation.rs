@@ -20,6 +20,7 @@ pub(super) fn cheapest_formulation(
     let plain = Formulation {
         stations: vec![0; mechanism.legs.len()],
         meeting: false,
+        at_end: false,
     };
     let regressor = regressor(mechanism, selection, &plain)?;
     let mut best = Best {
@@ -72,6 +73,8 @@ pub(super) enum Change {
     Station(Vec<usize>, usize),
     /// Whether axes that meet share a moment.
     Meeting(bool),
+    /// Whether forces of chains go to the skeleton at their ends.
+    AtEnd(bool),
 }
 
 impl Change {
@@ -83,6 +86,7 @@ impl Change {
                 legs.iter().for_each(|&l| changed.stations[l] = *station);
             }
             Self::Meeting(meeting) => changed.meeting = *meeting,
+            Self::AtEnd(at_end) => changed.at_end = *at_end,
         }
         (changed != *formulation).then_some(changed)
     }
@@ -107,6 +111,15 @@ pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
     let mut choices: Vec<Vec<Change>> = shapes.into_iter().map(of_shape).collect();
     choices.push(vec![Change::Meeting(false), Change::Meeting(true)]);
     choices
+}
+
+/// The changes among which one is chosen after the other for a function on its own.
+pub(super) fn choices_of_function(mechanism: &Mechanism) -> Vec<Change> {
+    let mut all: Vec<Change> = choices(mechanism).into_iter().flatten().collect();
+    if mechanism.skeleton().is_some() {
+        all.extend([Change::AtEnd(true), Change::AtEnd(false)]);
+    }
+    all
 }
 
 /// The regressor in a formulation.
