@@ -182,13 +182,6 @@ impl<'a> LegClosure<'a> {
         self.directions.components(self.arm, [force, zero])
     }
 
-    /// A row of the six-vector (Ṗ, ω) of the platform point per independent coordinate.
-    #[must_use]
-    pub(crate) fn platform_row(&self, row: usize, arena: &'a Arena) -> Vec<Expr<'a>> {
-        let columns = self.directions.columns(arena, self.arm);
-        columns.iter().map(|c| c[row / 3].0[row % 3]).collect()
-    }
-
     /// The rows A of what no joint feels, per component of the platform's velocity.
     #[must_use]
     pub(super) fn blocked_rows(&self) -> Rows<'a> {

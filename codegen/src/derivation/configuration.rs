@@ -184,7 +184,7 @@ impl<'a> Configuration<'a> {
             .all(|(symbol, _)| self.joint(*symbol).is_none())
     }
 
-    /// The angle as a known one plus or minus another, plus a constant.
+    /// The angle as a known one plus or minus another, plus one that holds no joint.
     fn composed(&self, angle: &Direction) -> Option<Unit<'a>> {
         let rest = |known: &Direction, sign: i64| {
             let part = known.times(Ratio::integer(sign))?;
@@ -196,9 +196,9 @@ impl<'a> Configuration<'a> {
                 let Some(rest) = rest(known, sign) else {
                     continue;
                 };
-                if rest.is_constant() {
-                    let constant = self.arena.cosine_and_sine(&rest);
-                    return Some(add_angles(turned(*unit, sign), constant));
+                if self.is_input(&rest) {
+                    let input = self.arena.cosine_and_sine(&rest);
+                    return Some(add_angles(turned(*unit, sign), input));
                 }
             }
         }
@@ -213,7 +213,7 @@ impl<'a> Configuration<'a> {
                         let Some(last) = rest.plus(&part.negative()) else {
                             continue;
                         };
-                        if last.is_constant() {
+                        if self.is_input(&last) {
                             let sum = add_angles(turned(*unit, sign), turned(*other, other_sign));
                             return Some(add_angles(sum, self.arena.cosine_and_sine(&last)));
                         }

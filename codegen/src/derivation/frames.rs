@@ -3,7 +3,7 @@
 
 use super::configuration::Configuration;
 use super::joint::{joint_turn, link_vector};
-use super::orientation::Orientation;
+use super::orientation::{Orientation, Seat};
 use crate::cas::{Arena, Direction, Matrix3, Number, Vector3};
 use crate::mechanism::{JointKind, Leg};
 
@@ -35,13 +35,13 @@ impl<'a> Frame<'a> {
 pub struct LegFrames<'a> {
     /// One per joint.
     pub frames: Vec<Frame<'a>>,
-    /// The orientation of the axes in the robot's base frame.
+    /// The orientation of the axes in the robot's base frame, or in those that the closure is seen in.
     pub axes: Matrix3<'a>,
 }
 
 impl<'a> LegFrames<'a> {
     /// Frames of all joints in the axes of the station of that number ([`Orientation::stations`]; 0
-    /// is the base). `None` if there is no such station or a sine or cosine does not follow from the
+    /// is the base), or of the seat for 0 where there is one. `None` if there is no such station or a sine or cosine does not follow from the
     /// configuration.
     #[must_use]
     pub fn new(
@@ -50,10 +50,18 @@ impl<'a> LegFrames<'a> {
         first_joint: usize,
         configuration: &Configuration<'a>,
         station: usize,
+        seat: Option<&Seat>,
     ) -> Option<Self> {
         let orientations = Orientation::of_leg(leg, first_joint, configuration)?;
-        let axes = Orientation::stations(&orientations).get(station)?.clone();
-        let in_axes = |of: &Orientation| of.relative(&axes, arena, configuration);
+        let whole = |of: &Orientation| match seat {
+            Some(seat) => seat.from.followed_by(of),
+            None => Some(of.clone()),
+        };
+        let axes = match seat {
+            Some(seat) if station == 0 => seat.axes.clone(),
+            _ => whole(Orientation::stations(&orientations).get(station)?)?,
+        };
+        let in_axes = |of: &Orientation| whole(of)?.relative(&axes, arena, configuration);
         let base = in_axes(&Orientation::fixed(leg.base.rotation))?;
         let mut frames: Vec<Frame<'a>> = Vec::new();
         for (index, joint) in leg.joints.iter().enumerate() {
@@ -74,7 +82,8 @@ impl<'a> LegFrames<'a> {
                 origin,
             });
         }
-        let axes = axes.relative(&Orientation::default(), arena, configuration)?;
+        let seen_from = seat.map_or_else(Orientation::default, |seat| seat.axes.clone());
+        let axes = axes.relative(&seen_from, arena, configuration)?;
         Some(Self { frames, axes })
     }
 

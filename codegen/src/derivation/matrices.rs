@@ -51,7 +51,7 @@ impl<'a> Sheet<'a, '_> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let mut errors = Vec::new();
         for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
-            let (Some(closure), Some(platform)) = (&state.closure, &state.platform) else {
+            let (Some(closure), Some(platform)) = (&state.closure, self.robot.end_of(index)) else {
                 // The joints of legs without an end are the pose.
                 let places = mechanism.coordinate_range(index).zip(mechanism.leg_range(index));
                 errors.extend(places.map(|(in_pose, in_joints)| {
@@ -60,7 +60,8 @@ impl<'a> Sheet<'a, '_> {
                 continue;
             };
             let frames = self.robot.base_frames(index);
-            let found = frames.and_then(|frames| missed(platform, closure.arm, leg, &frames));
+            let arm = platform.arm(closure.at);
+            let found = frames.and_then(|frames| missed(&platform, arm, leg, &frames));
             let Some((position, turn)) = found else {
                 continue;
             };
@@ -94,8 +95,8 @@ impl<'a> Sheet<'a, '_> {
         let total = mechanism.joints().len();
         let (mut legs, mut platform) = (Vec::new(), Vec::new());
         for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
-            let (Some(closure), Some(frames)) = (&state.closure, self.robot.base_frames(index))
-            else {
+            let ends = state.closure.as_ref().zip(self.robot.end_of(index));
+            let (Some((closure, end)), Some(frames)) = (ends, self.robot.base_frames(index)) else {
                 // The rates of joints of legs without an end are independent ones.
                 let own = mechanism.leg_range(index).len();
                 for (i, row) in state.rows[..own].iter().enumerate() {
@@ -113,7 +114,7 @@ impl<'a> Sheet<'a, '_> {
                     entries[state.first_joint + k] = column[row / 3].0[row % 3];
                 }
                 legs.push(entries);
-                let own = closure.platform_row(row, arena);
+                let own = end.row(closure.at, row);
                 platform.push(self.robot.on_independent(own));
             }
         }

@@ -124,16 +124,21 @@ impl Orientation {
     }
 }
 
+/// The axes in which a chain's closure sees what it ends on, where they are not those of the body that it starts
+/// from: both as orientations in the robot's base frame.
+#[derive(Debug)]
+pub(super) struct Seat {
+    /// Of the body that the chain starts from.
+    pub(super) from: Orientation,
+    /// Of the axes.
+    pub(super) axes: Orientation,
+}
+
 /// How many stations a leg has to choose axes from. Only the base, if the closure is of some components
 /// of the end's velocity or angular velocity alone: those are the base's.
 #[must_use]
 pub(crate) fn station_count(mechanism: &Mechanism, leg: usize) -> usize {
-    let rows = mechanism.closure_rows(leg);
-    let whole = |part: usize| {
-        let count = rows.iter().filter(|&&row| row / 3 == part).count();
-        count == 0 || count == 3
-    };
-    if !whole(0) || !whole(1) {
+    if !is_whole(mechanism, leg) {
         return 1;
     }
     let arena = Arena::new();
@@ -141,6 +146,15 @@ pub(crate) fn station_count(mechanism: &Mechanism, leg: usize) -> usize {
     let first_joint = mechanism.leg_range(leg).start;
     Orientation::of_leg(&mechanism.legs[leg], first_joint, &configuration)
         .map_or(1, |frames| Orientation::stations(&frames).len())
+}
+
+/// Whether a leg is closed in all three components of a velocity or in none, so that any axes will do.
+pub(super) fn is_whole(mechanism: &Mechanism, leg: usize) -> bool {
+    let rows = mechanism.closure_rows(leg);
+    [0, 1].iter().all(|&part| {
+        let count = rows.iter().filter(|&&row| row / 3 == part).count();
+        count == 0 || count == 3
+    })
 }
 
 impl Part {

@@ -1,7 +1,7 @@
 //! The way between the two bodies that a chain joins, and the motion of the one as it is seen from the other.
 //!
-//! The observer stands on the body that the chain starts from, in whose frame all vectors are written. The
-//! way goes up to the body that both follow and down to the one that the chain ends on, through the skeleton
+//! The observer stands on the body that the chain starts from. All vectors are written in that body's axes, or in
+//! others of the way, in which they have fewer components. The way goes up to the body that both follow and down to the one that the chain ends on, through the skeleton
 //! and through chains before, whose rates follow from the skeleton's. Against its direction a joint takes its
 //! rate away: with z its axis and q̇ its rate, from the body behind it ω' = ω - z q̇, and the joint's origin
 //! belongs to both bodies but for its slide.
@@ -9,7 +9,8 @@
 use super::configuration::Configuration;
 use super::elimination::Rows;
 use super::joint::link_vector;
-use super::orientation::{Orientation, constant_rotation};
+use super::motion_input::MotionInput;
+use super::orientation::{Orientation, constant_rotation, is_whole};
 use super::rates::{Form, Rates};
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::mechanism::{BodyIndex, JointKind, Mechanism};
@@ -72,16 +73,17 @@ impl<'a> Path<'a> {
         known: &Known<'_, 'a>,
         from: Option<BodyIndex>,
         to: BodyIndex,
+        axes: &Orientation,
     ) -> Option<Self> {
         let (arena, mechanism) = (known.arena, known.mechanism);
         let steps = way(mechanism, from, Some(to));
-        let step = |(joint, is_forward)| Step::new(known, from, joint, is_forward);
+        let step = |(joint, is_forward)| Step::new(known, axes, joint, is_forward);
         let steps = steps.into_iter().map(step).collect::<Option<Vec<_>>>()?;
         let mut path = Self {
             arena,
             steps,
             origin: Vector3::zero(arena),
-            rotation: seen(known, from, Some(to))?,
+            rotation: seen(known, axes, Some(to))?,
             columns: Vec::new(),
         };
         path.columns = (0..mechanism.dof()).map(|i| path.column(i)).collect();
@@ -162,17 +164,17 @@ impl<'a> Path<'a> {
 }
 
 impl<'a> Step<'a> {
-    /// The step at a joint, seen from the body `from`.
+    /// The step at a joint, in given axes.
     fn new(
         known: &Known<'_, 'a>,
-        from: Option<BodyIndex>,
+        axes: &Orientation,
         at: BodyIndex,
         is_forward: bool,
     ) -> Option<Self> {
         let (arena, leg) = (known.arena, &known.mechanism.legs[at.leg]);
         let (first, rates, rows) = known.legs[at.leg];
         let own = link_vector(arena, leg, at.joint, first, known.configuration)?;
-        let before = seen(known, from, antecedent(known.mechanism, at))?;
+        let before = seen(known, axes, antecedent(known.mechanism, at))?;
         let link = match leg.joints[at.joint].antecedent {
             Some(_) => own,
             // The leg's base frame stands in the body that carries it.
@@ -188,32 +190,76 @@ impl<'a> Step<'a> {
             rate,
             first,
             is_forward,
-            axis: seen(known, from, Some(at))?.column(2),
+            axis: seen(known, axes, Some(at))?.column(2),
             link: before * link,
         })
     }
 }
 
-/// The orientation of a body in the frame of another.
+/// The orientation of a body in given axes.
 fn seen<'a>(
     known: &Known<'_, 'a>,
-    from: Option<BodyIndex>,
+    axes: &Orientation,
     body: Option<BodyIndex>,
 ) -> Option<Matrix3<'a>> {
-    let from = orientation(known, from)?;
-    let body = orientation(known, body)?;
-    body.relative(&from, known.arena, known.configuration)
+    let body = orientation(known.mechanism, known.configuration, body)?;
+    body.relative(axes, known.arena, known.configuration)
 }
 
-/// The orientation of a body in the robot's base frame.
-fn orientation(known: &Known<'_, '_>, body: Option<BodyIndex>) -> Option<Orientation> {
+/// The orientation of a body in the robot's base frame; `None` is the ground.
+pub(super) fn orientation(
+    mechanism: &Mechanism,
+    configuration: &Configuration<'_>,
+    body: Option<BodyIndex>,
+) -> Option<Orientation> {
     let Some(body) = body else {
         return Some(Orientation::default());
     };
-    let leg = &known.mechanism.legs[body.leg];
-    let (first_joint, ..) = known.legs[body.leg];
-    let all = Orientation::of_leg(leg, first_joint, known.configuration)?;
-    orientation(known, leg.base_body)?.followed_by(&all[body.joint])
+    let leg = &mechanism.legs[body.leg];
+    let first_joint = mechanism.leg_range(body.leg).start;
+    let all = Orientation::of_leg(leg, first_joint, configuration)?;
+    orientation(mechanism, configuration, leg.base_body)?.followed_by(&all[body.joint])
+}
+
+/// Axes that a chain's closure may be seen in, the first those of the body that it starts from: of the frames that
+/// are met on the way to the body that it ends on.
+pub(super) fn seats(
+    mechanism: &Mechanism,
+    configuration: &Configuration<'_>,
+    index: usize,
+) -> Option<Vec<Orientation>> {
+    let leg = &mechanism.legs[index];
+    let of = |body| orientation(mechanism, configuration, body);
+    let from = of(leg.base_body)?;
+    let mut bodies = Vec::new();
+    for (at, is_forward) in way(mechanism, leg.base_body, Some(leg.end_body?)) {
+        bodies.push(of(if is_forward {
+            Some(at)
+        } else {
+            antecedent(mechanism, at)
+        })?);
+    }
+    let before = Orientation::stations(std::slice::from_ref(&from));
+    let mut all = vec![from];
+    let met = Orientation::stations(&bodies).into_iter();
+    for axes in met.filter(|axes| !before.contains(axes)) {
+        if !all.contains(&axes) {
+            all.push(axes);
+        }
+    }
+    Some(all)
+}
+
+/// How many [`seats`] there are to choose from: one for legs of a platform, and for chains that are closed in some
+/// components alone, which are those of the body that they start from.
+#[must_use]
+pub(crate) fn seat_count(mechanism: &Mechanism, leg: usize) -> usize {
+    if mechanism.skeleton().is_none() || !is_whole(mechanism, leg) {
+        return 1;
+    }
+    let arena = Arena::new();
+    let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
+    seats(mechanism, &configuration, leg).map_or(1, |all| all.len())
 }
 
 impl<'a> Relative<'a> {

@@ -149,6 +149,13 @@ impl<'a> PlatformPose<'a> {
         self.rotation * Vector3::constant(self.arena, at)
     }
 
+    /// A row of the six-vector (Ṗ, ω) of a platform point per independent coordinate.
+    #[must_use]
+    pub(super) fn row(&self, at: [Number; 3], row: usize) -> Vec<Expr<'a>> {
+        let columns = self.directions.columns(self.arena, self.arm(at));
+        columns.iter().map(|c| c[row / 3].0[row % 3]).collect()
+    }
+
     /// Orientation of a frame that is fixed on the platform.
     #[must_use]
     pub fn orientation(&self, placement: &Placement) -> Matrix3<'a> {

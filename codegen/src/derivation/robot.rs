@@ -16,7 +16,8 @@ use super::motion::{Moved, RobotMotion};
 use super::motion_input::MotionInput;
 use super::names::{Accelerations, coordinate_label, joined};
 use super::parasitic::Aside;
-use super::path::{Known, Path};
+use super::orientation::{Orientation, Seat};
+use super::path::{Known, Path, orientation, seats};
 use super::platform::PlatformPose;
 use super::rates::Rates;
 use super::selection::Formulation;
@@ -118,7 +119,13 @@ impl<'a> Robot<'a> {
             });
             self.guards.extend(guards);
         }
-        let frames = LegFrames::new(arena, leg, first_joint, &self.configuration, station)
+        let seat = self.seat_of(index, formulation);
+        let platform = match &seat {
+            Some(seat) => self.end_seen(index, &seat.axes),
+            None => platform,
+        };
+        let configuration = &self.configuration;
+        let frames = LegFrames::new(arena, leg, first_joint, configuration, station, seat.as_ref())
             .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
         let rates = Rates::new(leg, platform.is_some());
         let centres = match formulation.meeting {
@@ -182,10 +189,30 @@ impl<'a> Robot<'a> {
     }
 
     /// What a leg ends on: the platform, or a body as it is seen from the one that the leg starts from. `None` for a leg without an end.
-    fn end_of(&self, index: usize) -> Option<PlatformPose<'a>> {
+    pub(super) fn end_of(&self, index: usize) -> Option<PlatformPose<'a>> {
         if let Some(platform) = &self.platform {
             return Some(platform.clone());
         }
+        let from = self.mechanism.legs[index].base_body;
+        let axes = orientation(self.mechanism, &self.configuration, from)?;
+        self.end_seen(index, &axes)
+    }
+
+    /// The axes in which a chain's closure is seen, where they are chosen.
+    fn seat_of(&self, index: usize, formulation: &Formulation) -> Option<Seat> {
+        let seat = formulation.seats.get(index).copied().unwrap_or_default();
+        if seat == 0 {
+            return None;
+        }
+        let all = seats(self.mechanism, &self.configuration, index)?;
+        Some(Seat {
+            from: all.first()?.clone(),
+            axes: all.get(seat)?.clone(),
+        })
+    }
+
+    /// What a chain ends on, as it is seen from the body that it starts from, in given axes.
+    fn end_seen(&self, index: usize, axes: &Orientation) -> Option<PlatformPose<'a>> {
         let leg = &self.mechanism.legs[index];
         leg.end.as_ref()?;
         let legs = self.legs.iter();
@@ -197,7 +224,7 @@ impl<'a> Robot<'a> {
                 .map(|own| (own.first_joint, &own.rates, &own.rows))
                 .collect(),
         };
-        let path = Path::new(&known, leg.base_body, leg.end_body?)?;
+        let path = Path::new(&known, leg.base_body, leg.end_body?, axes)?;
         Some(PlatformPose::on_body(self.arena, path))
     }
 
@@ -206,7 +233,7 @@ impl<'a> Robot<'a> {
     pub(crate) fn base_frames(&self, index: usize) -> Option<LegFrames<'a>> {
         let leg = &self.mechanism.legs[index];
         let first_joint = self.legs[index].first_joint;
-        LegFrames::new(self.arena, leg, first_joint, &self.configuration, 0)
+        LegFrames::new(self.arena, leg, first_joint, &self.configuration, 0, None)
     }
 
     fn guard_leg(&mut self, closure: &LegClosure<'a>, leg: &str) {

@@ -36,6 +36,10 @@ pub struct Formulation {
     /// The axes in which the closure of each leg is written: by number, a frame that is met on the way
     /// from the base along the leg; 0, and none, are the base's.
     pub stations: Vec<usize>,
+    /// The axes in which a chain's closure sees the body that it ends on: by number, a frame that is met on the way
+    /// from the body that it starts from, whose own axes are 0, and none. Where there are others, station 0 stands
+    /// for them.
+    pub seats: Vec<usize>,
     /// Whether axes that meet in a point share the moment about it.
     pub meeting: bool,
     /// Whether what acts on the joints of a chain goes to the skeleton as one force at the chain's end, rather than

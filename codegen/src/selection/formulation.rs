@@ -2,7 +2,7 @@
 //! a search, and counted.
 
 use super::regressor::Regressor;
-use crate::derivation::{Formulation, Selection, Underivable, station_count};
+use crate::derivation::{Formulation, Selection, Underivable, seat_count, station_count};
 use crate::mechanism::Mechanism;
 use crate::parallel;
 use std::collections::BTreeSet;
@@ -19,6 +19,7 @@ pub(super) fn cheapest_formulation(
 ) -> Result<(Formulation, Regressor), Underivable> {
     let plain = Formulation {
         stations: vec![0; mechanism.legs.len()],
+        seats: vec![0; mechanism.legs.len()],
         meeting: false,
         at_end: false,
     };
@@ -71,6 +72,8 @@ impl Best<'_> {
 pub(super) enum Change {
     /// The axes of the closure of legs of one shape.
     Station(Vec<usize>, usize),
+    /// The axes in which their closures see what they end on.
+    Seat(Vec<usize>, usize),
     /// Whether axes that meet share a moment.
     Meeting(bool),
     /// Whether forces of chains go to the skeleton at their ends.
@@ -84,6 +87,11 @@ impl Change {
         match self {
             Self::Station(legs, station) => {
                 legs.iter().for_each(|&l| changed.stations[l] = *station);
+            }
+            Self::Seat(legs, seat) => {
+                for &leg in legs {
+                    (changed.seats[leg], changed.stations[leg]) = (*seat, 0);
+                }
             }
             Self::Meeting(meeting) => changed.meeting = *meeting,
             Self::AtEnd(at_end) => changed.at_end = *at_end,
@@ -103,12 +111,19 @@ pub(super) fn choices(mechanism: &Mechanism) -> Vec<Vec<Change>> {
     let of_shape = |shape| {
         let legs = (0..mechanism.legs.len()).filter(|&l| mechanism.legs[l].shape == shape);
         let legs: Vec<usize> = legs.collect();
-        let count = legs.iter().map(|&l| station_count(mechanism, l)).min();
-        let stations = 0..count.unwrap_or(0);
-        let change = |station| Change::Station(legs.clone(), station);
-        stations.map(change).collect()
+        let least = |count: fn(&Mechanism, usize) -> usize| {
+            0..legs.iter().map(|&l| count(mechanism, l)).min().unwrap_or(0)
+        };
+        let station = |station| Change::Station(legs.clone(), station);
+        let seat = |seat| Change::Seat(legs.clone(), seat);
+        let stations: Vec<Change> = least(station_count).map(station).collect();
+        let seats: Vec<Change> = least(seat_count).map(seat).collect();
+        match seats.len() > 1 {
+            true => vec![stations.clone(), seats, stations],
+            false => vec![stations],
+        }
     };
-    let mut choices: Vec<Vec<Change>> = shapes.into_iter().map(of_shape).collect();
+    let mut choices: Vec<Vec<Change>> = shapes.into_iter().flat_map(of_shape).collect();
     choices.push(vec![Change::Meeting(false), Change::Meeting(true)]);
     choices
 }
