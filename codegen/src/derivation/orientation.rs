@@ -8,6 +8,8 @@ use super::rates::parallel;
 use crate::cas::{Angle, Arena, Direction, Matrix3, Ratio};
 use crate::mechanism::{Leg, Mechanism};
 
+mod right;
+
 /// A factor of an orientation.
 #[derive(Debug, Clone, PartialEq)]
 enum Part {
@@ -66,7 +68,7 @@ impl Orientation {
             rest = others;
         }
         parts.extend_from_slice(rest);
-        Some(Self(parts))
+        Some(Self(right::merged(&parts)?))
     }
 
     /// A constant orientation, as that of a leg's base.

@@ -1,0 +1,100 @@
+//! Constant right angles between turns: where a body that carries a leg and the leg's base are tilted against each
+//! other and back, or over, the turns before and behind are about parallel axes, and one turn.
+
+use super::Part;
+use crate::cas::{Angle, Direction, Ratio};
+
+/// A rotation by right angles, as its matrix.
+type Right = [[i8; 3]; 3];
+
+const IDENTITY: Right = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+
+/// The same orientation with turns about parallel axes as one; `None` if a constant overflows.
+pub(super) fn merged(parts: &[Part]) -> Option<Vec<Part>> {
+    let mut all: Vec<Part> = Vec::new();
+    let mut at = 0;
+    while at < parts.len() {
+        let run = parts[at..].iter().map_while(rotation);
+        let rotations: Vec<Right> = run.collect();
+        let whole = rotations.iter().fold(IDENTITY, |sum, next| product(&sum, next));
+        let count = rotations.len();
+        match (count, whole[2]) {
+            (0, _) => {
+                push(&mut all, parts[at].clone())?;
+                at += 1;
+                continue;
+            }
+            (_, [0, 0, 1]) => push(&mut all, about_z(whole))?,
+            (_, [0, 0, -1]) => {
+                // Rz(a) Rx(180°) is Rx(180°) Rz(-a).
+                let before = match all.pop_if(|part| matches!(part, Part::Turn(_))) {
+                    Some(Part::Turn(turn)) => turn.negative(),
+                    _ => Direction::constant(Angle::ZERO),
+                };
+                all.push(Part::Tilt([half()?, Angle::ZERO, Angle::ZERO]));
+                all.push(Part::Turn(before));
+                let over = [[1, 0, 0], [0, -1, 0], [0, 0, -1]];
+                push(&mut all, about_z(product(&over, &whole)))?;
+            }
+            _ => all.extend_from_slice(&parts[at..at + count]),
+        }
+        at += count;
+    }
+    Some(all)
+}
+
+/// Adds a part; turns that follow each other are one.
+fn push(all: &mut Vec<Part>, part: Part) -> Option<()> {
+    match (all.last_mut(), part) {
+        (Some(Part::Turn(last)), Part::Turn(next)) => *last = last.plus(&next)?,
+        (_, part) => all.push(part),
+    }
+    Some(())
+}
+
+/// A part that is a constant rotation by right angles.
+fn rotation(part: &Part) -> Option<Right> {
+    match part {
+        Part::Tilt([rx, ry, rz]) => {
+            let [x, y, z] = [about(0, *rx)?, about(1, *ry)?, about(2, *rz)?];
+            Some(product(&product(&z, &y), &x))
+        }
+        Part::Turn(turn) if turn.is_constant() => about(2, turn.offset()),
+        Part::Turn(_) => None,
+    }
+}
+
+fn about(axis: usize, angle: Angle) -> Option<Right> {
+    let (cosine, sine) = angle.cosine_and_sine();
+    let whole = |value: f64| match value {
+        0.0 => Some(0),
+        1.0 => Some(1),
+        -1.0 => Some(-1),
+        _ => None,
+    };
+    let (c, s): (i8, i8) = (whole(cosine.value())?, whole(sine.value())?);
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut turn = IDENTITY;
+    (turn[i][i], turn[j][j], turn[i][j], turn[j][i]) = (c, c, -s, s);
+    Some(turn)
+}
+
+fn product(a: &Right, b: &Right) -> Right {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+/// A rotation about z.
+fn about_z(turn: Right) -> Part {
+    let quarters = match (turn[0][0], turn[1][0]) {
+        (0, 1) => 1,
+        (-1, _) => 2,
+        (0, _) => 3,
+        _ => 0,
+    };
+    let angle = Ratio::new(quarters, 2).map_or(Angle::ZERO, Angle::half_turns);
+    Part::Turn(Direction::constant(angle))
+}
+
+fn half() -> Option<Angle> {
+    Some(Angle::half_turns(Ratio::integer(1)))
+}
