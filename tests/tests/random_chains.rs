@@ -65,7 +65,9 @@ fn random_trees_with_chains() -> Result<(), Failure> {
             "hardly a draw closes: {compared} of {drawn}"
         );
     }
-    println!("{compared} robots, {nested} with chains or branches on chains, {branched} with branches, of {seed} draws");
+    println!(
+        "{compared} robots, {nested} with chains or branches on chains, {branched} with branches, of {seed} draws"
+    );
     assert!(errors.is_empty(), "{}", errors.join("\n"));
     assert!(own.is_some() || nested > 0, "no chain on a chain was drawn");
     assert!(own.is_some() || branched > 0, "no branch was drawn");

@@ -171,7 +171,8 @@ impl<'a> LegClosure<'a> {
     #[must_use]
     pub(crate) fn project_at_end(&self, forces: &[Expr<'a>]) -> Vec<Expr<'a>> {
         let zero = Vector3::zero(self.determinant.arena());
-        let force = if self.is_in_base() {
+        // Where the end moves along axes, its components are had for the rows of the reduced Jacobian anyway.
+        let force = if matches!(self.directions, Directions::Axes(_)) || self.is_in_base() {
             let parts = self.forces.iter().zip(forces);
             parts.fold(zero, |sum, (f, s)| sum + f.scaled(*s))
         } else {

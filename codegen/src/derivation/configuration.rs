@@ -52,7 +52,8 @@ impl<'a> Configuration<'a> {
             known: Vec::new(),
             positions: Vec::new(),
             names: names.collect(),
-            in_pose: (mechanism.skeleton()).map_or_else(Vec::new, |_| mechanism.coordinate_joints()),
+            in_pose: (mechanism.skeleton())
+                .map_or_else(Vec::new, |_| mechanism.coordinate_joints()),
         }
     }
 

@@ -57,7 +57,8 @@ impl<'a> Sheet<'a, '_> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let configuration = &self.robot.configuration;
         // A pose of the platform holds no joints.
-        let in_pose = (mechanism.skeleton()).map_or_else(Vec::new, |_| mechanism.coordinate_joints());
+        let in_pose =
+            (mechanism.skeleton()).map_or_else(Vec::new, |_| mechanism.coordinate_joints());
         let position = |(index, of): (usize, &JointIndex)| {
             if mechanism.is_tree() || configuration.from() == MotionInput::Joints {
                 return arena.input("joints", index);

@@ -19,7 +19,12 @@ impl<'a> Robot<'a> {
     /// M of given parameters. `None` if a sine or cosine does not follow from the configuration.
     pub(super) fn masses(&self, values: &[(BodyParameter, Expr<'a>)]) -> Option<Rows<'a>> {
         // Platforms carry no legs.
-        if self.mechanism.legs.iter().any(|leg| leg.base_body.is_some()) {
+        if self
+            .mechanism
+            .legs
+            .iter()
+            .any(|leg| leg.base_body.is_some())
+        {
             return self.tree_masses(values);
         }
         let dof = self.mechanism.dof();

@@ -53,7 +53,9 @@ impl<'a> Sheet<'a, '_> {
         for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
             let (Some(closure), Some(platform)) = (&state.closure, self.robot.end_of(index)) else {
                 // The joints of legs without an end are the pose.
-                let places = mechanism.coordinate_range(index).zip(mechanism.leg_range(index));
+                let places = mechanism
+                    .coordinate_range(index)
+                    .zip(mechanism.leg_range(index));
                 errors.extend(places.map(|(in_pose, in_joints)| {
                     arena.input("pose", in_pose) - arena.input("joints", in_joints)
                 }));

@@ -72,7 +72,7 @@ pub(crate) use inventory::sources;
 pub use inventory::{function_name, inventory};
 pub use motion_input::MotionInput;
 pub(crate) use orientation::station_count;
-pub(crate) use path::seat_count;
 pub use parameter::BodyParameter;
+pub(crate) use path::seat_count;
 pub use selection::{Combination, DynamicsBy, Formulation, JointsBy, Selection};
 pub use underivable::Underivable;

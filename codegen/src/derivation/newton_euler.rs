@@ -34,13 +34,7 @@ impl<'a> Robot<'a> {
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
         // Of a platform that moves aside: what all put on its six components, which goes to the others at once.
         let mut free = vec![self.arena.zero(); self.free.len()];
-        let mut hung = Hung::of(self, values)?;
-        let mut of_legs = Vec::new();
-        for index in (0..self.legs.len()).rev() {
-            self.arena.enter(&self.mechanism.legs[index].name);
-            of_legs.push(self.summed_leg_forces(motion, values, index, &mut hung));
-        }
-        let of_legs = of_legs.into_iter().rev();
+        let of_legs = self.forces_of_legs(motion, values)?.into_iter();
         for (index, (leg, mut forces)) in self.mechanism.legs.iter().zip(of_legs).enumerate() {
             self.arena.enter(&leg.name);
             for (joint, force) in leg.independent().zip(&forces) {
@@ -82,19 +76,43 @@ impl<'a> Robot<'a> {
         Some(total)
     }
 
+    /// The forces on the quasi-velocities of all legs.
+    fn forces_of_legs(
+        &self,
+        motion: &RobotMotion<'a>,
+        values: &[(BodyParameter, Expr<'a>)],
+    ) -> Option<Vec<Vec<Expr<'a>>>> {
+        let legs = &self.mechanism.legs;
+        let mut order: Vec<usize> = (0..legs.len()).collect();
+        if legs.iter().any(|leg| leg.base_body.is_some()) {
+            order.reverse();
+        }
+        let mut hung = Hung::nothing(self.arena, legs);
+        let mut all = vec![Vec::new(); legs.len()];
+        for index in order {
+            self.arena.enter(&legs[index].name);
+            all[index] = self.summed_leg_forces(motion, values, index, &mut hung)?;
+        }
+        Some(all)
+    }
+
     /// The forces on the quasi-velocities of a leg; its base hands its wrench on to the body that it stands on.
     fn summed_leg_forces(
         &self,
         motion: &RobotMotion<'a>,
         values: &[(BodyParameter, Expr<'a>)],
         index: usize,
-        hung: &mut Hung<'_, 'a>,
-    ) -> Vec<Expr<'a>> {
+        hung: &mut Hung<'a>,
+    ) -> Option<Vec<Expr<'a>>> {
+        let chain = self.chain(index, values)?;
+        let mut bodies = chain.bodies();
+        hung.add_to(index, &mut bodies);
+        let kept = chain.group(&mut bodies);
         let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
         let count = leg.joints.len();
         let mut wrenches: Vec<[Vector3<'a>; 2]> = Vec::new();
         let mut about_axes = Vec::new();
-        for (joint, body) in hung.bodies[index].iter().enumerate() {
+        for (joint, body) in bodies.iter().enumerate() {
             let own = motion.bodies[index][joint].wrench(body);
             let carried = hung.wrenches[index][joint];
             let wrench = [own[0] + carried[0], own[1] + carried[1]];
@@ -107,7 +125,7 @@ impl<'a> Robot<'a> {
             let joint = &leg.joints[j];
             let wrench = wrenches[j];
             self.name_wrench(wrench, &joint.name, &leg.name);
-            let [force, moment, lever] = hung.chains[index].handed_down(j, wrench);
+            let [force, moment, lever] = chain.handed_down(j, wrench);
             if let Some(before) = joint.antecedent {
                 about_axes[before] = about_axes[before] + lever.z();
                 if state.rates.run[j].is_none() {
@@ -133,54 +151,61 @@ impl<'a> Robot<'a> {
             let shares = (0..forces.len()).map(share).collect();
             add(&mut forces, shares);
         }
-        hung.hand_on(arena, leg, at_base);
-        forces
+        hung.hand_on(arena, leg, &kept, at_base);
+        Some(forces)
     }
 }
 
 /// What legs hand down to the bodies that they stand on.
-struct Hung<'c, 'a> {
-    chains: Vec<Chain<'c, 'a>>,
-    /// Of every leg its bodies, with what the joints behind leave as it is.
-    bodies: Vec<Vec<Inertia<'a>>>,
-    /// Of every leg the wrenches that carried legs put on its bodies.
+struct Hung<'a> {
+    /// Of every leg, for its bodies, what the joints of carried legs leave as it is.
+    inertias: Vec<Vec<Option<Inertia<'a>>>>,
+    /// And the wrenches that carried legs put on them.
     wrenches: Vec<Vec<[Vector3<'a>; 2]>>,
 }
 
-impl<'c, 'a> Hung<'c, 'a> {
-    /// The bodies of all legs, without any wrench yet. `None` if a sine or cosine does not follow from the
-    /// configuration.
-    fn of(robot: &'c Robot<'a>, values: &[(BodyParameter, Expr<'a>)]) -> Option<Self> {
-        let (arena, legs) = (robot.arena, &robot.mechanism.legs);
-        let chains = (0..legs.len()).map(|index| robot.chain(index, values));
-        let chains = chains.collect::<Option<Vec<_>>>()?;
-        let mut bodies: Vec<Vec<Inertia<'a>>> = chains.iter().map(Chain::bodies).collect();
-        for (index, leg) in legs.iter().enumerate().rev() {
-            arena.enter(&leg.name);
-            let kept = chains[index].group(&mut bodies[index]);
-            if let Some(carrier) = leg.base_body {
-                let still = Vector3::zero(arena);
-                let onto = &mut bodies[carrier.leg][carrier.joint];
-                *onto = on_carrier(arena, leg, &kept).moved_onto(onto, still);
-            }
+impl<'a> Hung<'a> {
+    fn nothing(arena: &'a Arena, legs: &[Leg]) -> Self {
+        let still = [Vector3::zero(arena); 2];
+        let counts = || legs.iter().map(|leg| leg.joints.len());
+        Self {
+            inertias: counts().map(|count| vec![None; count]).collect(),
+            wrenches: counts().map(|count| vec![still; count]).collect(),
         }
-        let none = [Vector3::zero(arena); 2];
-        Some(Self {
-            chains,
-            bodies,
-            wrenches: legs.iter().map(|leg| vec![none; leg.joints.len()]).collect(),
-        })
     }
 
-    /// Puts the wrench at a leg's base on the body that it stands on.
-    fn hand_on(&mut self, arena: &'a Arena, leg: &Leg, [force, moment]: [Vector3<'a>; 2]) {
+    /// Adds to a leg's bodies what was handed down to them.
+    fn add_to(&self, index: usize, bodies: &mut [Inertia<'a>]) {
+        for (body, other) in bodies.iter_mut().zip(&self.inertias[index]) {
+            if let Some(other) = other {
+                *body = with(other, body);
+            }
+        }
+    }
+
+    /// Puts what a leg's first joints leave as it is, and the wrench at its base, on the body that it stands on.
+    fn hand_on(
+        &mut self,
+        arena: &'a Arena,
+        leg: &Leg,
+        kept: &Inertia<'a>,
+        [force, moment]: [Vector3<'a>; 2],
+    ) {
         let Some(carrier) = leg.base_body else { return };
+        let kept = on_carrier(arena, leg, kept);
+        let onto = &mut self.inertias[carrier.leg][carrier.joint];
+        *onto = Some(onto.map_or(kept, |onto| with(&kept, &onto)));
         let turn = constant_rotation(arena, leg.base.rotation);
         let (force, moment) = (turn * force, turn * moment);
         let lever = Vector3::constant(arena, leg.base.at).cross(force);
         let sum = &mut self.wrenches[carrier.leg][carrier.joint];
         *sum = [sum[0] + force, sum[1] + (moment + lever)];
     }
+}
+
+/// Two inertias in one frame together.
+fn with<'a>(one: &Inertia<'a>, other: &Inertia<'a>) -> Inertia<'a> {
+    one.moved_onto(other, Vector3::zero(one.mass.arena()))
 }
 
 impl<'a> BodyMotion<'a> {

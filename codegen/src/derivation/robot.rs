@@ -15,8 +15,8 @@ use super::leg::LegState;
 use super::motion::{Moved, RobotMotion};
 use super::motion_input::MotionInput;
 use super::names::{Accelerations, coordinate_label, joined};
-use super::parasitic::Aside;
 use super::orientation::{Orientation, Seat};
+use super::parasitic::Aside;
 use super::path::{Known, Path, orientation, seats};
 use super::platform::PlatformPose;
 use super::rates::Rates;
@@ -125,18 +125,22 @@ impl<'a> Robot<'a> {
             None => platform,
         };
         let configuration = &self.configuration;
-        let frames = LegFrames::new(arena, leg, first_joint, configuration, station, seat.as_ref())
-            .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
+        let frames = LegFrames::new(
+            arena,
+            leg,
+            first_joint,
+            configuration,
+            station,
+            seat.as_ref(),
+        )
+        .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
         let rates = Rates::new(leg, platform.is_some());
         let centres = match formulation.meeting {
             true => centres(leg, &rates),
             false => Vec::new(),
         };
         let (closure, mut rows) = match &platform {
-            None => (
-                None,
-                self.identity_rows(mechanism.coordinate_range(index)),
-            ),
+            None => (None, self.identity_rows(mechanism.coordinate_range(index))),
             Some(platform) => {
                 let home = |e: Expr<'a>| self.at_home(e);
                 let [selected, over] = match self.mechanism.is_parasitic() {

@@ -31,7 +31,11 @@ impl<'a> Robot<'a> {
             .collect();
         let dof = self.mechanism.dof();
         let entry = |a: usize, b: usize| dot(&columns[a.min(b)], &moved[a.max(b)]);
-        Some((0..dof).map(|a| (0..dof).map(|b| entry(a, b)).collect()).collect())
+        Some(
+            (0..dof)
+                .map(|a| (0..dof).map(|b| entry(a, b)).collect())
+                .collect(),
+        )
     }
 
     /// M_u, in the quasi-velocities of all legs.

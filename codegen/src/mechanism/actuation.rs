@@ -73,9 +73,7 @@ fn on_body(
     let frames = mechanism.frames_of(body.leg, pose, joints);
     let own = leg.body_jacobian(&frames, body.joint, point);
     let rates = match shared_velocities(mechanism, body.leg, pose, joints) {
-        Some(shared) => {
-            rates_per_velocity(leg, &joints[mechanism.leg_range(body.leg)])? * shared
-        }
+        Some(shared) => rates_per_velocity(leg, &joints[mechanism.leg_range(body.leg)])? * shared,
         None => mechanism.coordinate_rates(body.leg),
     };
     let carried = leg.base_body;

@@ -16,7 +16,9 @@ pub(super) fn merged(parts: &[Part]) -> Option<Vec<Part>> {
     while at < parts.len() {
         let run = parts[at..].iter().map_while(rotation);
         let rotations: Vec<Right> = run.collect();
-        let whole = rotations.iter().fold(IDENTITY, |sum, next| product(&sum, next));
+        let whole = rotations
+            .iter()
+            .fold(IDENTITY, |sum, next| product(&sum, next));
         let count = rotations.len();
         match (count, whole[2]) {
             (0, _) => {
