@@ -64,8 +64,13 @@ mod tests {
 
     /// Rows of rods that hold a plane body: x, y, phi.
     fn rods(length: f64) -> DMatrix<f64> {
-        let rows = [1.0, 0.0, length, -0.5, 0.8, 0.9 * length, -0.5, -0.8, length];
-        DMatrix::from_row_slice(3, 3, &rows)
+        let rod = |x: f64, y: f64, arm: f64| [x, y, arm * length];
+        let rows = [
+            rod(1.0, 0.0, 1.0),
+            rod(-0.5, 0.8, 0.9),
+            rod(-0.5, -0.8, 1.0),
+        ];
+        DMatrix::from_row_iterator(3, 3, rows.into_iter().flatten())
     }
 
     #[test]
