@@ -31,6 +31,7 @@ robot!(palletiser: Palletiser);
 robot!(planar_3prr: Planar3Prr);
 robot!(planar_3rrr: Planar3Rrr);
 robot!(planar_4prr: Planar4Prr);
+robot!(reachy_mini: ReachyMini);
 robot!(schoenflies_4: Schoenflies4);
 robot!(scotch_yoke: ScotchYoke);
 robot!(spatial_3prs: Spatial3Prs);
@@ -74,6 +75,7 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
         "planar_3prr" => &Planar3Prr,
         "planar_3rrr" => &Planar3Rrr,
         "planar_4prr" => &Planar4Prr,
+        "reachy_mini" => &ReachyMini,
         "rx90" => &Rx90,
         "schoenflies_4" => &Schoenflies4,
         "scotch_yoke" => &ScotchYoke,

@@ -34,6 +34,7 @@ pub mod robots;
 pub mod states;
 pub mod torques;
 pub mod trajectory;
+pub mod units;
 
 use std::fmt;
 

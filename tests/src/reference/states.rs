@@ -7,15 +7,16 @@
 use super::Error;
 use super::aside;
 use super::closure::State;
-use super::linear::condition;
 use super::mechanism::Mechanism;
 use super::motion::Motion;
 use super::parameters::{BODY, INERTIAL, count, platform_start};
+use super::units::unitless_condition;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Largest condition number of a leg's Jacobian, of J_p^inv and of A_p in a regular state.
+/// Largest condition number of a leg's Jacobian, of J_p^inv and of A_p in a regular state, the latter two in the unit of
+/// length that suits the robot.
 pub const MAX_CONDITION: f64 = 60.0;
 /// Largest twist coordinate, m/s and rad/s.
 pub const MAX_SPEED: f64 = 1.5;
@@ -65,9 +66,10 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Result<V
 #[must_use]
 pub fn is_regular(mechanism: &Mechanism, state: &State) -> bool {
     state.jacobians(mechanism).is_ok_and(|jacobians| {
+        let per_twist = |matrix: &DMatrix<f64>| unitless_condition(&mechanism.motion, matrix);
         jacobians.worst_leg_condition(mechanism) < MAX_CONDITION
-            && condition(&jacobians.inverse) < MAX_CONDITION
-            && condition(&reduced_closure(mechanism, &jacobians.a_p)) < MAX_CONDITION
+            && per_twist(&jacobians.inverse) < MAX_CONDITION
+            && per_twist(&reduced_closure(mechanism, &jacobians.a_p)) < MAX_CONDITION
     })
 }
 

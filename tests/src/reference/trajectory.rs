@@ -10,8 +10,16 @@ use super::mechanism::Mechanism;
 use super::motion::Motion;
 use nalgebra::DVector;
 
-/// Step of the finite differences, s.
-pub const STEP: f64 = 3e-4;
+/// Largest step of the finite differences, s.
+const STEP: f64 = 3e-4;
+/// How far a joint goes in a step at most, rad or m: small robots turn fast where others hardly move.
+const REACH: f64 = 0.003;
+
+/// Step of the finite differences at a state, s.
+#[must_use]
+pub fn step(state: &State) -> f64 {
+    STEP.min(REACH / state.qd.amax())
+}
 
 /// State at time `t` on the path through `state`.
 ///
@@ -43,7 +51,8 @@ pub fn derivatives(
 ) -> Result<(DVector<f64>, DVector<f64>), Error> {
     const FIRST: [f64; 4] = [0.0, 0.75, -0.15, 1.0 / 60.0];
     const SECOND: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
-    let sample = |n: f64| Ok(quantity(&at(mechanism, state, n * STEP)?));
+    let step = step(state);
+    let sample = |n: f64| Ok(quantity(&at(mechanism, state, n * step)?));
     let mut second: DVector<f64> = sample(0.0)? * SECOND[0];
     let mut first = DVector::zeros(second.len());
     for n in 1..4 {
@@ -52,5 +61,5 @@ pub fn derivatives(
         first += (&ahead - &behind) * FIRST[n];
         second += (ahead + behind) * SECOND[n];
     }
-    Ok((first / STEP, second / (STEP * STEP)))
+    Ok((first / step, second / (step * step)))
 }

@@ -34,6 +34,7 @@ macro_rules! library {
             planar_3prr: Planar3Prr,
             planar_3rrr: Planar3Rrr,
             planar_4prr: Planar4Prr,
+            reachy_mini: ReachyMini,
             rx90: Rx90,
             schoenflies_4: Schoenflies4,
             scotch_yoke: ScotchYoke,

@@ -1,8 +1,9 @@
 //! A state of a robot with everything that its functions take, by the names of their arguments.
 
 use super::Failure;
-use crate::reference::linear::{condition, pseudo_inverse};
+use crate::reference::linear::pseudo_inverse;
 use crate::reference::states::{MAX_CONDITION, random_parameters, random_states};
+use crate::reference::units::unitless_condition;
 use crate::reference::{Dynamics, Mechanism, State};
 use nalgebra::DVector;
 use rand::{RngExt, SeedableRng};
@@ -198,6 +199,9 @@ pub fn samples(
 
 fn every_partition(mechanism: &Mechanism, state: &State) -> Result<bool, Failure> {
     let inverse = Dynamics::new(mechanism, state)?.jacobians.inverse;
-    let regular = |without: usize| condition(&inverse.clone().remove_row(without)) < MAX_CONDITION;
+    let regular = |without: usize| {
+        let kept = inverse.clone().remove_row(without);
+        unitless_condition(&mechanism.motion, &kept) < MAX_CONDITION
+    };
     Ok((0..inverse.nrows()).all(regular))
 }

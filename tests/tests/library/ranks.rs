@@ -1,4 +1,4 @@
-//! Number of base parameters of nine structures: ranks of the standard case-1 regressor over random
+//! Number of base parameters of ten structures: ranks of the standard case-1 regressor over random
 //! states.
 //!
 //! Each structure is a robot of `robots/` with three lists of parameters: all 14 of every joint and the
@@ -170,6 +170,11 @@ fn six_ups() -> Result<(), Failure> {
 #[test]
 fn eight_ups() -> Result<(), Failure> {
     check("octopod", [194, 186, 114])
+}
+
+#[test]
+fn six_rus() -> Result<(), Failure> {
+    check("reachy_mini", [142, 130, 76])
 }
 
 #[test]
