@@ -162,6 +162,49 @@ fn on_a_chain_that_is_carried() -> Result<(), Failure> {
     compare("a chain on a chain on a chain", text)
 }
 
+/// A branch of two driven joints on a body of a chain.
+fn branch(name: &str, body: &str) -> String {
+    format!(
+        r#"[leg.{name}]
+base = {{ body = "{body}", at = ["0.2 m", "0.1 m", "-0.05 m"], rotation = ["-25 deg", "70 deg", "10 deg"] }}
+[[leg.{name}.joint]]
+name = "turn"
+type = "revolute"
+alpha = "35 deg"
+actuated = true
+[[leg.{name}.joint]]
+name = "slide"
+type = "prismatic"
+alpha = "-80 deg"
+d = "0.1 m"
+actuated = true
+[[place]]
+name = "{name}"
+shape = "{name}"
+home = {{ turn = "15 deg", slide = "0.1 m" }}
+"#
+    )
+}
+
+/// Branches on bodies of chains: at the end of all, and one from which a chain starts and another on which it ends.
+#[test]
+fn branches_on_chains() -> Result<(), Failure> {
+    let first = drive("one", "ground", "c");
+    compare(
+        "a branch",
+        format!("{SKELETON}{first}{}", branch("hand", "one.2")),
+    )?;
+    for (from, to) in [("hand.slide", "e"), ("one.3", "hand.turn")] {
+        let text = format!(
+            "{SKELETON}{first}{}{}",
+            branch("hand", "one.2"),
+            drive("two", from, to)
+        );
+        compare(&format!("a branch, and from {from} to {to}"), text)?;
+    }
+    Ok(())
+}
+
 /// A four-bar whose coupler is fixed on the crank by a pin of its own, on an arm that moves.
 #[test]
 fn rigid_ends() -> Result<(), Failure> {

@@ -107,7 +107,7 @@ impl<'a> Robot<'a> {
         let chain = self.chain(index, values)?;
         let mut bodies = chain.bodies();
         hung.add_to(index, &mut bodies);
-        let kept = chain.group(&mut bodies);
+        let kept = chain.group(&mut bodies, leg.base_body.is_some());
         let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
         let count = leg.joints.len();
         let mut wrenches: Vec<[Vector3<'a>; 2]> = Vec::new();
@@ -219,8 +219,8 @@ impl<'a> BodyMotion<'a> {
 
 impl<'a> Chain<'_, 'a> {
     /// Moves what each joint leaves as it is onto the body before it; what the first ones leave, in the axes of
-    /// the leg's base.
-    fn group(&self, bodies: &mut [Inertia<'a>]) -> Inertia<'a> {
+    /// the leg's base, where that moves.
+    fn group(&self, bodies: &mut [Inertia<'a>], is_carried: bool) -> Inertia<'a> {
         let mut at_base = Inertia::zero(self.arena());
         for j in (0..bodies.len()).rev() {
             let [kept, rest] = match self.kind(j) {
@@ -231,7 +231,8 @@ impl<'a> Chain<'_, 'a> {
             bodies[j] = rest;
             match self.antecedent(j) {
                 Some(before) => bodies[before] = self.moved_onto(&kept, &bodies[before], j),
-                None => at_base = self.moved_onto(&kept, &at_base, j),
+                None if is_carried => at_base = self.moved_onto(&kept, &at_base, j),
+                None => {}
             }
         }
         at_base

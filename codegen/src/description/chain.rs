@@ -119,11 +119,17 @@ impl Bodies<'_> {
     ) -> Result<BodyIndex, Diagnostic> {
         let named = |leg: &Leg| leg.name.value == chain;
         if let Some(leg) = self.before.iter().position(named) {
-            return body_of(leg, &self.before[leg], name, joint, "chain", &[]);
+            let own = &self.before[leg];
+            let what = match (leg, &own.end) {
+                (0, _) => "skeleton",
+                (_, None) => "branch",
+                (_, Some(_)) => "chain",
+            };
+            return body_of(leg, own, name, joint, what, &[]);
         }
         let message = match self.after.iter().any(named) {
             true => format!("the chain `{chain}` is not placed before the one that it carries"),
-            false => format!("no chain `{chain}` is placed before this one"),
+            false => format!("no chain or branch `{chain}` is placed before this one"),
         };
         let help = "chains are solved in the order of their places, so a body that carries a chain \
                     stands in the skeleton or in a chain that is placed before";

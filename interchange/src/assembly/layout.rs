@@ -439,7 +439,7 @@ fn refuse(files: &Files, network: &Network<'_>, furthest: &[bool], tries: usize,
         }
         (false, true) => "name the coordinates: `--coordinates a,b,c`",
         (false, false) => {
-            "a body that carries others with motors has to be reached from the ground by joints that are independent of each other; a closed chain with fewer degrees of freedom than joints on every way to such a body can't be said"
+            "chains of at most six joints, or of three to a ball, have to lead to every body between others that are known; name other coordinates, `--coordinates a,b,c`, or hold a joint still in the file"
         }
     };
     let place = first.map(|edge| match edge.origin {

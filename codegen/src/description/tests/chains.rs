@@ -83,10 +83,10 @@ fn chains_on_chains() {
     let expected = "the chain `rod` has no body `3`; bodies have the names of their joints: 1, 2";
     assert!(errors[0].ends_with(expected), "{errors:?}");
     let errors = listed(&two_rods("body = \"rode.1\"", "body = \"fore\""));
-    let expected = "no chain `rode` is placed before this one; did you mean `rod`?";
+    let expected = "no chain or branch `rode` is placed before this one; did you mean `rod`?";
     assert!(errors[0].ends_with(expected), "{errors:?}");
     let errors = listed(&two_rods("body = \"second.1\"", "body = \"fore\""));
-    let expected = "no chain `second` is placed before this one; chains are solved in the order of their \
+    let expected = "no chain or branch `second` is placed before this one; chains are solved in the order of their \
                     places, so a body that carries a chain stands in the skeleton or in a chain that is \
                     placed before";
     assert!(errors[0].ends_with(expected), "{errors:?}");
@@ -100,6 +100,38 @@ fn chains_on_chains() {
     let errors = listed(&turned);
     let expected = "the chain `second` is not placed before the one that it carries";
     assert!(errors[0].contains(expected), "{errors:?}");
+}
+
+/// The arm with its rod and a hand on a body.
+fn with_hand(base: &str) -> String {
+    let hand = format!(
+        "[leg.hand]\nbase = {{ {base} }}\n[[leg.hand.joint]]\nname = \"grip\"\ntype = \"revolute\"\nactuated = true\n"
+    );
+    let text = robot("", "body = \"fore\"").replacen("[[place]]", &format!("{hand}[[place]]"), 1);
+    text + "[[place]]\nname = \"hand\"\nshape = \"hand\"\n"
+}
+
+#[test]
+fn branches_on_chains() {
+    let description = good(&with_hand("body = \"rod.2\""));
+    assert_eq!(
+        description.legs[2].base_body,
+        Some(BodyIndex { leg: 1, joint: 1 })
+    );
+    let own = crate::description::independent_joints(&description.legs).into_iter();
+    let names: Vec<String> = own.map(|(name, _)| name).collect();
+    assert_eq!(names, ["upper", "fore", "hand.grip"]);
+    // A tree without a body to stand on is no branch.
+    let errors = listed(&with_hand("at = [0, 0, 0]"));
+    assert!(
+        errors[0].contains("one leg without an end, and others only on bodies of chains"),
+        "{errors:?}"
+    );
+    let errors = listed(&with_hand("body = \"rod.3\""));
+    assert!(
+        errors[0].contains("the chain `rod` has no body `3`"),
+        "{errors:?}"
+    );
 }
 
 #[test]
