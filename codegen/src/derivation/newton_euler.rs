@@ -104,11 +104,11 @@ impl<'a> Robot<'a> {
         index: usize,
         hung: &mut Hung<'a>,
     ) -> Option<Vec<Expr<'a>>> {
+        let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
         let chain = self.chain(index, values)?;
         let mut bodies = chain.bodies();
         hung.add_to(index, &mut bodies);
         let kept = chain.group(&mut bodies, leg.base_body.is_some());
-        let (arena, leg, state) = (self.arena, &self.mechanism.legs[index], &self.legs[index]);
         let count = leg.joints.len();
         let mut wrenches: Vec<[Vector3<'a>; 2]> = Vec::new();
         let mut about_axes = Vec::new();
