@@ -57,6 +57,21 @@ fn loops_of_mjcf_are_chains_on_a_skeleton() {
     assert!(text.contains("spins freely"), "{text}");
 }
 
+#[test]
+fn a_body_of_a_chain_that_carries_a_motor_has_a_branch() {
+    let (text, checked) = made("leg.xml", &Options::default());
+    let mechanism = &checked.mechanism;
+    assert_eq!((mechanism.dof(), mechanism.actuated().len()), (3, 3));
+    assert_eq!(mechanism.coordinates(), ["hip", "knee", "foot.ankle"]);
+    assert!(
+        text.contains("A branch on `tarsus`, a body of a chain"),
+        "{text}"
+    );
+    let experiment = checked.description.experiment.expect("an experiment");
+    let names = experiment.runs[0].terms.iter();
+    assert!(names.clone().any(|term| term.coordinate.value == "foot.ankle"));
+}
+
 /// The four-bar of the table, with lengths that its symbols have.
 fn of_table() -> Options {
     let lengths = [("L1", 0.2), ("D3", 0.5), ("L2", 0.52), ("L3", 0.25)];
