@@ -125,15 +125,16 @@ impl<'a> Robot<'a> {
             let joint = &leg.joints[j];
             let wrench = wrenches[j];
             self.name_wrench(wrench, &joint.name, &leg.name);
-            let [force, moment, lever] = chain.handed_down(j, wrench);
             if let Some(before) = joint.antecedent {
+                let [force, moment, lever] = chain.handed_down(j, wrench);
                 about_axes[before] = about_axes[before] + lever.z();
                 if state.rates.run[j].is_none() {
                     about_axes[before] = about_axes[before] + moment.z();
                 }
                 let sum = &mut wrenches[before];
                 *sum = [sum[0] + force, sum[1] + (moment + lever)];
-            } else {
+            } else if leg.base_body.is_some() {
+                let [force, moment, lever] = chain.handed_down(j, wrench);
                 at_base = [at_base[0] + force, at_base[1] + (moment + lever)];
             }
             let on_joint = values.iter().filter_map(|(p, value)| {
