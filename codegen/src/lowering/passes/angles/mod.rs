@@ -24,17 +24,15 @@ pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
         let (turn, direction) = (turns[at], &directions[at]);
         let unit = match how {
             Plan::Direct => work.direct(turn, direction),
-            Plan::Sum {
-                first,
-                second,
-                sign,
-                rest,
-            } => {
-                let mut angle: Unit = turned(units[first], sign < 0);
+            Plan::Sum { of, rest } => {
+                let mut parts = of.iter().map(|&(at, sign)| turned(units[at], sign < 0));
                 let mut products = Vec::new();
-                if let Some((second, sign)) = second {
-                    let second = turned(units[second], sign < 0);
-                    angle = work.sum(angle, second, &mut products);
+                let mut angle = match parts.next() {
+                    Some(first) => first,
+                    None => work.constant(ConstantAngle::ZERO),
+                };
+                for part in parts {
+                    angle = work.sum(angle, part, &mut products);
                 }
                 if !rest.offset().is_zero() {
                     let rest = work.constant(rest.offset());

@@ -2,7 +2,7 @@
 //!
 //! A sine and cosine of an input costs tens of multiplications; a sum of two known angles costs six
 //! operations. So angles with few terms are evaluated, and every angle that is the sum or difference
-//! of two known ones is composed of them.
+//! of two known ones, or of three, is composed of them.
 
 use crate::cas::{Direction, Ratio, SymbolId};
 
@@ -11,14 +11,10 @@ use crate::cas::{Direction, Ratio, SymbolId};
 pub(super) enum Plan {
     /// By evaluation.
     Direct,
-    /// As first + sign × second + constant, where first and second are places in the order of the plan.
+    /// As the sum of other angles and a constant.
     Sum {
-        /// First angle.
-        first: usize,
-        /// Second angle with the sign with which it enters; `None` if only a constant is added.
-        second: Option<(usize, i64)>,
-        /// Sign with which the first angle enters.
-        sign: i64,
+        /// The angles, places in the order of the plan, with the signs with which they enter; one at least.
+        of: Vec<(usize, i64)>,
         /// The constant part that is left.
         rest: Direction,
     },
@@ -43,10 +39,13 @@ pub(super) fn plan(angles: &[Direction]) -> Vec<(usize, Plan)> {
     planned
 }
 
-/// A known angle and a constant are preferred to two known ones, which take an addition theorem more.
+/// The fewest known angles and a constant: each takes an addition theorem more.
 fn composed(angle: &Direction, known: &[&Direction]) -> Option<Plan> {
-    turned(angle, known).or_else(|| sum_of_two(angle, known))
+    (1..=MOST).find_map(|count| sum_of(angle, known, count))
 }
+
+/// Most known angles that one is composed of: two addition theorems are fewer operations than a sine and cosine.
+const MOST: usize = 3;
 
 /// What is left of an angle without ± a part.
 fn less(angle: &Direction, part: &Direction, sign: i64) -> Option<Direction> {
@@ -61,26 +60,23 @@ fn rests(angle: &Direction, known: &[&Direction]) -> impl Iterator<Item = (usize
     signed.filter_map(|(at, sign, part)| Some((at, sign, less(angle, part, sign)?)))
 }
 
-/// The angle as ± a known one and a constant.
-fn turned(angle: &Direction, known: &[&Direction]) -> Option<Plan> {
-    let mut found = rests(angle, known).filter(|(_, _, rest)| rest.is_constant());
-    found.next().map(|(first, sign, rest)| Plan::Sum {
-        first,
-        second: None,
-        sign,
-        rest,
-    })
-}
-
-/// The angle as ± a known one ± another and a constant.
-fn sum_of_two(angle: &Direction, known: &[&Direction]) -> Option<Plan> {
+/// The angle as the sum of as many known ones, each with a sign, and a constant.
+fn sum_of(angle: &Direction, known: &[&Direction], count: usize) -> Option<Plan> {
+    if count == 0 {
+        return angle.is_constant().then(|| Plan::Sum {
+            of: Vec::new(),
+            rest: angle.clone(),
+        });
+    }
     rests(angle, known).find_map(|(first, sign, rest)| {
-        let mut found = rests(&rest, known).filter(|(_, _, last)| last.is_constant());
-        found.next().map(|(second, other_sign, rest)| Plan::Sum {
-            first,
-            second: Some((second, other_sign)),
-            sign,
-            rest,
-        })
+        // Parts that leave more terms than they take lead nowhere.
+        if count > 1 && rest.terms().len() >= angle.terms().len() {
+            return None;
+        }
+        let Plan::Sum { mut of, rest } = sum_of(&rest, known, count - 1)? else {
+            return None;
+        };
+        of.insert(0, (first, sign));
+        Some(Plan::Sum { of, rest })
     })
 }
