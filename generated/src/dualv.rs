@@ -54,7 +54,7 @@
 /// | `bias` | 465, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `bias_base` | 378, 4 √, 1 sc, 12 sg, 12 gd |  |
 /// | `forward_dynamics` | 715, 4 √, 1 sc, 12 sg, 15 gd |  |
-/// | `forward_dynamics_base` | 605, 4 √, 1 sc, 12 sg, 15 gd |  |
+/// | `forward_dynamics_base` | 609, 4 √, 1 sc, 12 sg, 15 gd |  |
 /// | `inverse_dynamics_preloaded` | 580, 5 √, 1 sc, 12 sg, 16 gd |  |
 /// | `project_torques` | 191, 4 √, 1 sc, 15 gd |  |
 /// | `null_space` | 135, 5 √, 1 sc, 16 gd |  |
@@ -11643,7 +11643,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 605 operations (264 additions, 323 multiplications, 18 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 608 intermediates.
+    /// 609 operations (263 additions, 335 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 15 guards, 612 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -11672,54 +11672,51 @@ impl DualV {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
-        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
-        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
-        let half_d_x_leg3 = 0.5 * d_x_leg3;
-        let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
-        let t1_leg1 = half_d_x_minus_p_x_leg3 - 0.3950502153918333;
-        let d_x_leg1 = t1_leg1 + t1_leg1;
+        let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
+        let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let p_y_leg1 = R_P * c_phi;
-        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
-        let half_d_y_leg3 = 0.5 * d_y_leg3;
-        let y_minus_half_d_y_leg3 = pose[1] - half_d_y_leg3;
-        let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
+        let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg1, 0.15606475932928948, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
         ::overact::guard::reach(h_squared_leg1, "leg1")?;
         let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
-        let l1_x_leg1 = t1_leg1 + d_y_leg1 * h_leg1;
+        let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
         ::overact::guard::leg(det_leg1, 0.07839913810297301, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         // --- leg2
-        let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
+        let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         ::overact::guard::leg(rho_squared_leg2, 0.15606475932928948, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
         ::overact::guard::reach(h_squared_leg2, "leg2")?;
         let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
-        let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
+        let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         ::overact::guard::leg(det_leg2, 0.07839913810297301, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
+        let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
+        let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
+        let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         ::overact::guard::leg(rho_squared_leg3, 0.15606475932928948, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
         ::overact::guard::reach(h_squared_leg3, "leg3")?;
         let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
-        let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
+        let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         ::overact::guard::leg(det_leg3, 0.07839913810297301, "leg3")?;
-        let g1_vx_leg3 = l2_x_leg3 / det_leg3;
+        let k1_leg3 = 1.0 / det_leg3;
+        let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
@@ -11736,7 +11733,8 @@ impl DualV {
         // --- leg1
         let v_arm_y_leg3 = p_x_leg3 * twist[2];
         let bias_a_end_x_leg1 = twist[2] * v_arm_y_leg3;
-        let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
+        let half_d_y_leg1 = 0.5 * d_y_leg1;
+        let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
         let bias_a_end_y_leg3 = twist[2] * v_arm_x_leg3;
         let v_end_x_leg1 = twist[0] - v_arm_x_leg3;
@@ -11755,9 +11753,9 @@ impl DualV {
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
             - l2_x_leg1 * bias_a_end_x_leg1 - L_AB_SQUARED * rate_2_squared_leg1;
-        let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
         let minus_bias_rate_dot_1_leg1 = k1_leg1
-            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+            * (bias_a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
         let tau_1_leg1 = base_parameters[8] * rate_1_leg1
             + ::overact::math::signed(base_parameters[12], rate_1_leg1)
             + base_parameters[16];
@@ -11768,7 +11766,7 @@ impl DualV {
         let force_on_u1_leg1 = bias_a_on_f2_leg1 * my_2_leg1_inv_l_ab
             - base_parameters[4] * minus_bias_rate_dot_1_leg1 + tau_1_leg1 - tau_2_leg1;
         let minus_bias_rate_dot_2_leg1 = k1_leg1
-            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
+            * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
         let moment2_z_leg1 = bias_a_on_f1_leg1 * my_2_leg1_inv_l_ab
             - base_parameters[20] * minus_bias_rate_dot_2_leg1;
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
@@ -11778,7 +11776,7 @@ impl DualV {
         let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
         // --- leg2
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
-        let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
+        let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
@@ -11813,26 +11811,27 @@ impl DualV {
         let force_on_u1_leg2 = base_parameters[5] * bias_rate_dot_1_leg2
             + bias_a_on_f2_leg2 * inv_l_ab_my_2_leg2 + tau_1_leg2 - tau_2_leg2;
         // --- leg3
+        let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
-        let g1_vy_leg3 = l2_y_leg3 / det_leg3;
+        let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
         let bias_a_on_f2_leg3 = l1_y_leg3 * bias_a_end_y_leg3
             - l1_x_leg3 * bias_a_end_x_leg1 + L_AB_SQUARED * rate_1_squared_leg3;
         let inv_l_ab_my_2_leg3 = INV_L_AB * base_parameters[26];
-        let minus_g2_vx_leg3 = l1_x_leg3 / det_leg3;
-        let minus_g2_vy_leg3 = l1_y_leg3 / det_leg3;
+        let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
+        let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
             - l2_y_leg3 * bias_a_end_y_leg3 - L_AB_SQUARED * rate_2_squared_leg3;
         let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
-        let minus_bias_rate_dot_1_leg3 = (bias_a_on_f1_leg3
-            - rate_1_squared_leg3 * t1_leg3) / det_leg3;
+        let minus_bias_rate_dot_1_leg3 = k1_leg3
+            * (bias_a_on_f1_leg3 - rate_1_squared_leg3 * t1_leg3);
         let tau_1_leg3 = base_parameters[10] * rate_1_leg3
             + ::overact::math::signed(base_parameters[14], rate_1_leg3)
             + base_parameters[18];
@@ -11842,8 +11841,8 @@ impl DualV {
                 + ::overact::math::signed(base_parameters[34], minus_qd_2_leg3));
         let force_on_u1_leg3 = bias_a_on_f2_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[6] * minus_bias_rate_dot_1_leg3 + tau_1_leg3 - tau_2_leg3;
-        let minus_bias_rate_dot_2_leg3 = (bias_a_on_f2_leg3
-            + rate_2_squared_leg3 * t1_leg3) / det_leg3;
+        let minus_bias_rate_dot_2_leg3 = k1_leg3
+            * (bias_a_on_f2_leg3 + rate_2_squared_leg3 * t1_leg3);
         let moment2_z_leg3 = bias_a_on_f1_leg3 * inv_l_ab_my_2_leg3
             - base_parameters[22] * minus_bias_rate_dot_2_leg3;
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
@@ -11905,7 +11904,7 @@ impl DualV {
             * (g1_vx_leg1 * base_parameters[4]
                 + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
             + minus_g2_vx_leg1
-                * (l2_x_leg1 * my_2_leg1_inv_l_ab
+                * (g1_vx_leg1 * minus_masses_leg1_1_2
                     + minus_g2_vx_leg1 * base_parameters[20])
             + g2_vx_leg2
                 * (g2_vx_leg2 * base_parameters[21] - minus_g1_vx_leg2 * masses_leg2_1_2)
@@ -11917,7 +11916,7 @@ impl DualV {
                 * (g1_vx_leg3 * base_parameters[6]
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
-                * (g1_vx_leg3 * minus_masses_leg3_1_2
+                * (l2_x_leg3 * inv_l_ab_my_2_leg3
                     + minus_g2_vx_leg3 * base_parameters[22]);
         let masses_leg4_1_2 = det_leg4 * inv_l_ab_my_2_leg4;
         let t2_leg4 = t3_leg3
@@ -11928,9 +11927,10 @@ impl DualV {
         let mass_platform = base_parameters[3] + base_parameters[52];
         let mass_1_1 = t2_leg4 + mass_platform;
         ::overact::guard::mass(mass_1_1)?;
-        let t3_leg1 = g1_vy_leg1 * base_parameters[4]
+        let inv_pivot_1 = 1.0 / mass_1_1;
+        let t2_leg1 = g1_vy_leg1 * base_parameters[4]
             + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
-        let t4_leg1 = l2_y_leg1 * my_2_leg1_inv_l_ab
+        let t3_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
             + minus_g2_vy_leg1 * base_parameters[20];
         let t3_leg2 = g2_vy_leg2 * base_parameters[21]
             - minus_g1_vy_leg2 * masses_leg2_1_2;
@@ -11938,9 +11938,9 @@ impl DualV {
             - minus_g1_vy_leg2 * base_parameters[5];
         let t4_leg3 = g1_vy_leg3 * base_parameters[6]
             + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t5_leg3 = l2_y_leg3 * inv_l_ab_my_2_leg3
+        let t5_leg3 = g1_vy_leg3 * minus_masses_leg3_1_2
             + minus_g2_vy_leg3 * base_parameters[22];
-        let t6_leg3 = g1_vx_leg1 * t3_leg1 + minus_g2_vx_leg1 * t4_leg1
+        let t6_leg3 = g1_vx_leg1 * t2_leg1 + minus_g2_vx_leg1 * t3_leg1
             + g2_vx_leg2 * t3_leg2 - minus_g1_vx_leg2 * t4_leg2 + g1_vx_leg3 * t4_leg3
             + minus_g2_vx_leg3 * t5_leg3;
         let t3_leg4 = g2_vy_leg4 * base_parameters[23]
@@ -11948,8 +11948,8 @@ impl DualV {
         let t4_leg4 = g2_vy_leg4 * masses_leg4_1_2
             - minus_g1_vy_leg4 * base_parameters[7];
         let mass_1_2 = t6_leg3 + g2_vx_leg4 * t3_leg4 - minus_g1_vx_leg4 * t4_leg4;
-        let l_2_1 = mass_1_2 / mass_1_1;
-        let t7_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t4_leg1
+        let l_2_1 = mass_1_2 * inv_pivot_1;
+        let t7_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t3_leg1
             + g2_vy_leg2 * t3_leg2 - minus_g1_vy_leg2 * t4_leg2 + g1_vy_leg3 * t4_leg3
             + minus_g2_vy_leg3 * t5_leg3;
         let mass_2_2 = t7_leg3 + g2_vy_leg4 * t3_leg4 - minus_g1_vy_leg4 * t4_leg4
@@ -11977,9 +11977,9 @@ impl DualV {
         // --- leg1
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let t5_leg1 = minus_g1_wz_leg1 * base_parameters[4]
+        let t4_leg1 = minus_g1_wz_leg1 * base_parameters[4]
             + g2_wz_leg1 * minus_masses_leg1_1_2;
-        let t6_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
+        let t5_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
             + g2_wz_leg1 * base_parameters[20];
         // --- leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
@@ -11989,7 +11989,7 @@ impl DualV {
         let t10_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
             + minus_g2_wz_leg3 * base_parameters[22];
         let t11_leg3 = g2_vy_leg2 * t5_leg2 - minus_g1_vy_leg2 * t6_leg2
-            - (g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t6_leg1) + g1_vy_leg3 * t9_leg3
+            - (g1_vy_leg1 * t4_leg1 + minus_g2_vy_leg1 * t5_leg1) + g1_vy_leg3 * t9_leg3
             + minus_g2_vy_leg3 * t10_leg3;
         // --- leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
@@ -12001,11 +12001,11 @@ impl DualV {
         let mass_2_3 = t11_leg3 + g2_vy_leg4 * t5_leg4 - minus_g1_vy_leg4 * t6_leg4
             + c_phi * first_x_platform - s_phi * first_y_platform;
         let t12_leg3 = g2_vx_leg2 * t5_leg2 - minus_g1_vx_leg2 * t6_leg2
-            - (g1_vx_leg1 * t5_leg1 + minus_g2_vx_leg1 * t6_leg1) + g1_vx_leg3 * t9_leg3
+            - (g1_vx_leg1 * t4_leg1 + minus_g2_vx_leg1 * t5_leg1) + g1_vx_leg3 * t9_leg3
             + minus_g2_vx_leg3 * t10_leg3;
         let mass_1_3 = t12_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
             - (s_phi * first_x_platform + c_phi * first_y_platform);
-        let l_3_1 = mass_1_3 / mass_1_1;
+        let l_3_1 = mass_1_3 * inv_pivot_1;
         let schur_2_3 = mass_2_3 - mass_1_2 * l_3_1;
         let l_3_2 = schur_2_3 * inv_pivot_2;
         let t13_leg3 = g2_wz_leg1 * force_on_u2_leg1
@@ -12017,7 +12017,7 @@ impl DualV {
             + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3]
             - (t13_leg3 + g2_wz_leg4 * force_on_u2_leg4
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4);
-        let t14_leg3 = minus_g1_wz_leg1 * t5_leg1 + g2_wz_leg1 * t6_leg1
+        let t14_leg3 = minus_g1_wz_leg1 * t4_leg1 + g2_wz_leg1 * t5_leg1
             + g1_wz_leg2 * t6_leg2 - minus_g2_wz_leg2 * t5_leg2 + g1_wz_leg3 * t9_leg3
             + minus_g2_wz_leg3 * t10_leg3;
         let inertia_zz_platform = base_parameters[0] + base_parameters[49];
@@ -12027,7 +12027,7 @@ impl DualV {
         ::overact::guard::mass(pivot_3)?;
         let t5 = (t4 - t1 * l_3_1 - l_3_2 * t3) / pivot_3;
         let t6 = inv_pivot_2 * t3 - l_3_2 * t5;
-        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t6 - l_3_1 * t5, t6, t5])
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t6 - l_3_1 * t5, t6, t5])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///

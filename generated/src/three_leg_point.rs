@@ -50,7 +50,7 @@
 /// | `bias` | 261, 3 √, 6 sg, 9 gd |  |
 /// | `bias_base` | 221, 3 √, 6 sg, 9 gd |  |
 /// | `forward_dynamics` | 374, 3 √, 6 sg, 11 gd |  |
-/// | `forward_dynamics_base` | 301, 3 √, 6 sg, 11 gd |  |
+/// | `forward_dynamics_base` | 306, 3 √, 6 sg, 11 gd |  |
 /// | `inverse_dynamics_preloaded` | 343, 4 √, 6 sg, 12 gd |  |
 /// | `project_torques` | 114, 3 √, 11 gd |  |
 /// | `null_space` | 89, 4 √, 12 gd |  |
@@ -6662,7 +6662,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 301 operations (119 additions, 173 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 303 intermediates.
+    /// 306 operations (119 additions, 179 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 1 negation, 308 intermediates.
     ///
     /// # Errors
     /// An input that is not finite, a pose out of reach, or a singular configuration.
@@ -6839,41 +6839,44 @@ impl ThreeLegPoint {
             - minus_g2_vx_leg3 * force_on_u2_leg3;
         let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
             + g1_vx_leg3 * torques[2] - t2_leg3;
-        let t4_leg2 = g1_vx_leg2
-            * (g1_vx_leg2 * base_parameters[2] + fk2_x_leg2 * base_parameters[17])
-            + minus_g2_vx_leg2
-                * (minus_fk1_x_leg2 * base_parameters[17]
-                    + minus_g2_vx_leg2 * base_parameters[14])
-            - (minus_g1_vx_leg1
+        let minus_masses_leg2_1_2 = INV_L_1 * (det_leg2 * base_parameters[17]);
+        let t4_leg2 = minus_g2_vx_leg1
+            * (minus_g2_vx_leg1 * base_parameters[13] - l2_y_leg1 * my_2_leg1_inv_l_1)
+            - minus_g1_vx_leg1
                 * (minus_l1_y_leg1 * my_2_leg1_inv_l_1
                     - minus_g1_vx_leg1 * base_parameters[1])
-                + minus_g2_vx_leg1
-                    * (l2_y_leg1 * my_2_leg1_inv_l_1
-                        - minus_g2_vx_leg1 * base_parameters[13]));
+            + g1_vx_leg2
+                * (g1_vx_leg2 * base_parameters[2]
+                    + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
+            + minus_g2_vx_leg2
+                * (g1_vx_leg2 * minus_masses_leg2_1_2
+                    + minus_g2_vx_leg2 * base_parameters[14]);
+        let minus_masses_leg3_1_2 = INV_L_1 * (det_leg3 * base_parameters[18]);
         let t3_leg3 = t4_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * base_parameters[3]
-                    + minus_fk2_x_leg3 * base_parameters[18])
+                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
-                * (fk1_x_leg3 * base_parameters[18]
+                * (g1_vx_leg3 * minus_masses_leg3_1_2
                     + minus_g2_vx_leg3 * base_parameters[15]);
         let mass_1_1 = t3_leg3 + base_parameters[0];
         ::overact::guard::mass(mass_1_1)?;
+        let inv_pivot_1 = 1.0 / mass_1_1;
         let t2_leg1 = l2_x_leg1 * my_2_leg1_inv_l_1
             + minus_g2_vy_leg1 * base_parameters[13];
         let t3_leg1 = g1_vy_leg1 * base_parameters[1] + l1_x_leg1 * my_2_leg1_inv_l_1;
-        let t5_leg2 = minus_fk2_y_leg2 * base_parameters[17]
+        let t5_leg2 = g2_vy_leg2 * minus_masses_leg2_1_2
             - g1_vy_leg2 * base_parameters[2];
         let t6_leg2 = g2_vy_leg2 * base_parameters[14]
-            - minus_fk1_y_leg2 * base_parameters[17];
+            - g1_vy_leg2 * minus_masses_leg2_1_2;
         let t4_leg3 = minus_g1_vy_leg3 * base_parameters[3]
-            - minus_fk2_y_leg3 * base_parameters[18];
-        let t5_leg3 = minus_fk1_y_leg3 * base_parameters[18]
+            - minus_g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t5_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
             - minus_g2_vy_leg3 * base_parameters[15];
         let mass_1_2 = minus_g2_vx_leg1 * t2_leg1 - minus_g1_vx_leg1 * t3_leg1
             - (g1_vx_leg2 * t5_leg2 + minus_g2_vx_leg2 * t6_leg2)
             - (g1_vx_leg3 * t4_leg3 + minus_g2_vx_leg3 * t5_leg3);
-        let l_2_1 = mass_1_2 / mass_1_1;
+        let l_2_1 = mass_1_2 * inv_pivot_1;
         let t6_leg3 = g1_vy_leg1 * force_on_u1_leg1
             + minus_g2_vy_leg1 * minus_force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
             + g1_vy_leg2 * force_on_u1_leg2
@@ -6887,7 +6890,7 @@ impl ThreeLegPoint {
         ::overact::guard::mass(pivot_2)?;
         let t2 = (g1_vy_leg1 * torques[0] + g1_vy_leg2 * torques[1]
             - minus_g1_vy_leg3 * torques[2] - t6_leg3 - t1 * l_2_1) / pivot_2;
-        ::core::result::Result::Ok([t1 / mass_1_1 - l_2_1 * t2, t2])
+        ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t2, t2])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
