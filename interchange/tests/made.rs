@@ -69,7 +69,11 @@ fn a_body_of_a_chain_that_carries_a_motor_has_a_branch() {
     );
     let experiment = checked.description.experiment.expect("an experiment");
     let names = experiment.runs[0].terms.iter();
-    assert!(names.clone().any(|term| term.coordinate.value == "foot.ankle"));
+    assert!(
+        names
+            .clone()
+            .any(|term| term.coordinate.value == "foot.ankle")
+    );
 }
 
 /// The four-bar of the table, with lengths that its symbols have.

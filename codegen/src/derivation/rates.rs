@@ -4,10 +4,11 @@
 //! the joint rate, is what closure and dynamics are simplest in. So joint j of a leg has the
 //! quasi-velocity u_j = q̇_j + s u_i, where i is the preceding revolute joint of its parallel run and
 //! s = ±1 tells whether the axes point the same way; a prismatic joint has u_j = q̇_j. Every joint
-//! rate, dependent ones included, is a linear form with constant coefficients of the u.
+//! rate, dependent ones included, is a linear form with constant coefficients of the u. Where a joint follows
+//! one that stands behind it, as an ankle the toe, every u is a joint rate: a sum along the run would hold itself.
 
 use crate::cas::{Angle, Arena, Expr, Number, Ratio};
-use crate::mechanism::{JointKind, Leg};
+use crate::mechanism::{Joint, JointKind, Leg};
 
 /// A linear form Σ coefficient × u_i.
 #[derive(Debug, Clone, Default)]
@@ -101,6 +102,13 @@ impl Rates {
     #[must_use]
     pub fn new(leg: &Leg, absolute: bool) -> Self {
         let independent: Vec<usize> = leg.independent().collect();
+        let own_rate = |joint: usize| {
+            let own = independent.iter().position(|i| *i == joint);
+            own.map_or_else(Form::default, Form::unit)
+        };
+        let follows_later =
+            |(index, j): (usize, &Joint)| j.variable.iter().any(|(of, _)| *of > index);
+        let absolute = absolute && !leg.joints.iter().enumerate().any(follows_later);
         let mut joint: Vec<Form> = Vec::new();
         let mut turning: Vec<Form> = Vec::new();
         let mut run = Vec::new();
@@ -110,14 +118,13 @@ impl Rates {
             let before = previous.map(|(at, sign)| (turning[at].clone(), sign));
             let mut rate = Form::default();
             if j.is_independent(index) {
-                let own = independent.iter().position(|i| *i == index).unwrap_or(0);
-                rate = Form::unit(own);
+                rate = own_rate(index);
                 if let (Some((before, sign)), JointKind::Revolute) = (&before, j.kind) {
                     rate.add(before, -Number::ratio(*sign));
                 }
             } else {
                 for (of, factor) in &j.variable {
-                    let form = joint.get(*of).cloned().unwrap_or_default();
+                    let form = joint.get(*of).cloned().unwrap_or_else(|| own_rate(*of));
                     rate.add(&form, Number::ratio(*factor));
                 }
             }

@@ -163,7 +163,7 @@ fn body_of(
 }
 
 /// The body that chains start from without a name.
-const GROUND: &str = "ground";
+pub(super) const GROUND: &str = "ground";
 
 fn no_body(name: &str, skeleton: &Leg, span: Span) -> Diagnostic {
     let names: Vec<&str> = skeleton

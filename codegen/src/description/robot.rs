@@ -258,7 +258,10 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
     // Bodies of chains may carry branches of their own.
     let has_chains = legs.iter().any(|leg| leg.end.is_some());
     let is_branch = |leg: &&Leg| {
-        has_chains && (shapes.get(leg.shape)).is_some_and(|shape| shape.base_body.is_some())
+        let body = shapes
+            .get(leg.shape)
+            .and_then(|shape| shape.base_body.as_ref());
+        has_chains && body.is_some_and(|body| body.value != chain::GROUND)
     };
     let mut endless = legs.iter().filter(|leg| leg.end.is_none());
     let _ = endless.next();

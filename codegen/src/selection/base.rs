@@ -23,6 +23,9 @@ pub struct BaseParameter {
 
 /// Remainder of a column, relative to its length, below which it is dependent.
 const DEPENDENT: f64 = 1e-8;
+/// Length of a column, relative to the longest, below which it is zero: of a joint that the closures hold still, as
+/// the second axis of a universal joint in a plane, rounding is left.
+const NOTHING: f64 = 1e-12;
 /// Coefficients below this are zero.
 const NEGLIGIBLE: f64 = 1e-9;
 
@@ -47,6 +50,11 @@ pub(super) fn select(
     order: &[usize],
     parameters: &[BodyParameter],
 ) -> Vec<BaseParameter> {
+    let longest = matrix
+        .column_iter()
+        .map(|column| column.norm())
+        .fold(0.0, f64::max);
+    let least = NOTHING * longest;
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut kept: Vec<usize> = Vec::new();
     let mut dependent: Vec<usize> = Vec::new();
@@ -61,10 +69,10 @@ pub(super) fn select(
                 rest.axpy(-along, known, 1.0);
             }
         }
-        if size > 0.0 && rest.norm() > DEPENDENT * size {
+        if size > least && rest.norm() > DEPENDENT * size {
             basis.push(rest.normalize());
             kept.push(column);
-        } else if size > 0.0 {
+        } else if size > least {
             dependent.push(column);
         }
     }

@@ -149,9 +149,9 @@ pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
             coordinates()
         ),
         "pose" if of_skeleton => {
-            format!("x = `[{}]` (m, rad), joints of the skeleton", coordinates())
+            format!("x = `[{}]` (m, rad), independent joints", coordinates())
         }
-        "twist" if of_skeleton => "v, velocities of the skeleton's joints (m/s, rad/s)".to_owned(),
+        "twist" if of_skeleton => "v, velocities of the independent joints (m/s, rad/s)".to_owned(),
         "pose" => format!("x = `[{}]` (m, rad), in the base frame", coordinates()),
         "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),
         "actuators" => "q, positions of the actuated joints (m, rad)".to_owned(),
