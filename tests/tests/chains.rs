@@ -205,7 +205,7 @@ fn branches_on_chains() -> Result<(), Failure> {
     Ok(())
 }
 
-/// A joint that follows one that stands behind it: in a tree, along a run of parallel axes, in a chain.
+/// A joint that follows one that stands behind it: in a skeleton, and in a chain.
 #[test]
 fn followers_before_their_leaders() -> Result<(), Failure> {
     let text = r#"name = "Follower"
@@ -236,7 +236,8 @@ actuated = true
 name = "arm"
 shape = "arm"
 "#;
-    compare("a tree", text.to_owned())?;
+    let on_tilt = drive("rod", "ground", "tilt");
+    compare("a skeleton", format!("{text}{on_tilt}"))?;
     let mut chain = drive("one", "ground", "c").replace("3 = ", "c = ");
     for name in ["half", "a", "b", "c"] {
         let named = format!("[[leg.one.part]]\nname = \"{name}\"\n");
