@@ -205,50 +205,25 @@ fn branches_on_chains() -> Result<(), Failure> {
     Ok(())
 }
 
-/// A joint that follows one that stands behind it: in a skeleton, and in a chain.
+/// A joint that follows one that stands behind it: in a skeleton, one of another branch, and in a chain.
 #[test]
 fn followers_before_their_leaders() -> Result<(), Failure> {
-    let text = r#"name = "Follower"
-gravity = ["1 m/s^2", "-2 m/s^2", "-9 m/s^2"]
-[leg.arm]
-[[leg.arm.joint]]
-name = "lift"
-type = "revolute"
-alpha = "50 deg"
-actuated = true
-[[leg.arm.joint]]
-name = "swing"
-type = "revolute"
-d = "0.3 m"
-theta = "-q_turn"
-[[leg.arm.joint]]
-name = "turn"
-type = "revolute"
-d = "0.25 m"
-actuated = true
-[[leg.arm.joint]]
-name = "tilt"
-type = "revolute"
-alpha = "70 deg"
-d = "0.2 m"
-actuated = true
-[[place]]
-name = "arm"
-shape = "arm"
-"#;
-    let on_tilt = drive("rod", "ground", "tilt");
-    compare("a skeleton", format!("{text}{on_tilt}"))?;
-    let mut chain = drive("one", "ground", "c").replace("3 = ", "c = ");
-    for name in ["half", "a", "b", "c"] {
+    let follower = |leg: &str, leader: &str| {
+        format!(
+            "[[leg.{leg}.joint]]\nname = \"f\"\ntype = \"revolute\"\ntheta = \"0.2 * q_{leader}\"\n"
+        )
+    };
+    let before = "[[leg.tree.joint]]\nname = \"c\"";
+    let skeleton = SKELETON.replacen(before, &format!("{}{before}", follower("tree", "e")), 1);
+    let chain = drive("one", "ground", "c");
+    compare("a skeleton", format!("{skeleton}{chain}"))?;
+    let mut chain = chain.replace("3 = ", "c = ");
+    for name in ["a", "b", "c"] {
         let named = format!("[[leg.one.part]]\nname = \"{name}\"\n");
-        let own = match name {
-            "half" => format!(
-                "{named}type = \"revolute\"\nd = \"0.1 m\"\ntheta = \"0.5 * q_b\"\n[[leg.one.joint]]\n"
-            ),
-            _ => named,
-        };
-        chain = chain.replacen("[[leg.one.joint]]\n", &own, 1);
+        chain = chain.replacen("[[leg.one.joint]]\n", &named, 1);
     }
+    let first = "[[leg.one.part]]";
+    let chain = chain.replacen(first, &format!("{}{first}", follower("one", "b")), 1);
     let chain = chain.replace("leg.one.part", "leg.one.joint");
     compare("a chain", format!("{SKELETON}{chain}"))
 }
