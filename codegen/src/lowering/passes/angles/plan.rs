@@ -69,8 +69,8 @@ fn sum_of(angle: &Direction, known: &[&Direction], count: usize) -> Option<Plan>
         });
     }
     rests(angle, known).find_map(|(first, sign, rest)| {
-        // Parts that leave more terms than they take lead nowhere.
-        if count > 1 && rest.terms().len() >= angle.terms().len() {
+        // Of three the first has to leave fewer terms: others lead nowhere, and there are many.
+        if count > 2 && rest.terms().len() >= angle.terms().len() {
             return None;
         }
         let Plan::Sum { mut of, rest } = sum_of(&rest, known, count - 1)? else {
