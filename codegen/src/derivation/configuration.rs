@@ -103,11 +103,20 @@ impl<'a> Configuration<'a> {
         self.arena.input_angle(array, at)
     }
 
+    /// The position of a joint that is one of the pose's numbers; none of a platform's pose is.
+    #[must_use]
+    pub(super) fn in_pose(&self, index: usize) -> Option<Expr<'a>> {
+        match self.place(index) {
+            (POSE, at) => Some(self.arena.input(POSE, at)),
+            _ => None,
+        }
+    }
+
     /// The position of a prismatic joint, m; `None` if it is not known from the pose.
     #[must_use]
     pub(crate) fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
-        if let (POSE, at) = self.place(index) {
-            return Some(self.arena.input(POSE, at));
+        if let Some(position) = self.in_pose(index) {
+            return Some(position);
         }
         match self.from {
             MotionInput::Joints => Some(self.arena.input(JOINTS, index)),

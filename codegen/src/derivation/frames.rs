@@ -41,8 +41,8 @@ pub struct LegFrames<'a> {
 
 impl<'a> LegFrames<'a> {
     /// Frames of all joints in the axes of the station of that number ([`Orientation::stations`]; 0
-    /// is the base), or of the seat for 0 where there is one. `None` if there is no such station or a sine or cosine does not follow from the
-    /// configuration.
+    /// is the base), or of the seat for 0 where there is one. `None` if there is no such station or a sine
+    /// or cosine does not follow from the configuration.
     #[must_use]
     pub fn new(
         arena: &'a Arena,

@@ -56,15 +56,12 @@ impl<'a> Sheet<'a, '_> {
     pub(super) fn joint_positions(&mut self) -> Vec<Expr<'a>> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let configuration = &self.robot.configuration;
-        // A pose of the platform holds no joints.
-        let in_pose =
-            (mechanism.skeleton()).map_or_else(Vec::new, |_| mechanism.coordinate_joints());
         let position = |(index, of): (usize, &JointIndex)| {
             if mechanism.is_tree() || configuration.from() == MotionInput::Joints {
                 return arena.input("joints", index);
             }
-            if let Some(at) = in_pose.iter().position(|&own| own == index) {
-                return arena.input("pose", at);
+            if let Some(position) = configuration.in_pose(index) {
+                return position;
             }
             if mechanism.joint(*of).kind == JointKind::Prismatic {
                 return configuration

@@ -14,11 +14,10 @@ use super::composite::Chain;
 use super::inertia::Inertia;
 use super::motion::RobotMotion;
 use super::names::{coordinate_label, joined};
-use super::orientation::constant_rotation;
 use super::parameter::BodyParameter;
 use super::regressor::add;
 use super::robot::Robot;
-use super::tree_masses::on_carrier;
+use super::tree_masses::{on_carrier, wrench_on_carrier};
 use crate::cas::{Arena, Expr, Vector3};
 use crate::mechanism::{JointKind, Leg};
 
@@ -190,17 +189,15 @@ impl<'a> Hung<'a> {
         arena: &'a Arena,
         leg: &Leg,
         kept: &Inertia<'a>,
-        [force, moment]: [Vector3<'a>; 2],
+        at_base: [Vector3<'a>; 2],
     ) {
         let Some(carrier) = leg.base_body else { return };
         let kept = on_carrier(arena, leg, kept);
         let onto = &mut self.inertias[carrier.leg][carrier.joint];
         *onto = Some(onto.map_or(kept, |onto| with(&kept, &onto)));
-        let turn = constant_rotation(arena, leg.base.rotation);
-        let (force, moment) = (turn * force, turn * moment);
-        let lever = Vector3::constant(arena, leg.base.at).cross(force);
+        let [force, moment] = wrench_on_carrier(arena, leg, at_base);
         let sum = &mut self.wrenches[carrier.leg][carrier.joint];
-        *sum = [sum[0] + force, sum[1] + (moment + lever)];
+        *sum = [sum[0] + force, sum[1] + moment];
     }
 }
 

@@ -90,11 +90,9 @@ impl<'a> Robot<'a> {
         let mut leg = &self.mechanism.legs[index];
         let mut all = Vec::new();
         while let Some(carrier) = leg.base_body {
-            let turn = constant_rotation(self.arena, leg.base.rotation);
-            let [force, moment] = wrench.map(|part| turn * part);
-            let lever = Vector3::constant(self.arena, leg.base.at).cross(force);
             let chain = &chains[carrier.leg];
-            let (forces, at_base) = chain.read_along(carrier.joint, [force, moment + lever]);
+            let on_body = wrench_on_carrier(self.arena, leg, wrench);
+            let (forces, at_base) = chain.read_along(carrier.joint, on_body);
             all.push((carrier, forces));
             wrench = at_base;
             leg = &self.mechanism.legs[carrier.leg];
@@ -107,4 +105,16 @@ impl<'a> Robot<'a> {
 pub(super) fn on_carrier<'a>(arena: &'a Arena, leg: &Leg, at_base: &Inertia<'a>) -> Inertia<'a> {
     let turned = at_base.rotated(constant_rotation(arena, leg.base.rotation));
     turned.moved_onto(&Inertia::zero(arena), Vector3::constant(arena, leg.base.at))
+}
+
+/// A wrench at a leg's base, in its axes, as one about the frame of the body that the leg stands on.
+pub(super) fn wrench_on_carrier<'a>(
+    arena: &'a Arena,
+    leg: &Leg,
+    wrench: [Vector3<'a>; 2],
+) -> [Vector3<'a>; 2] {
+    let turn = constant_rotation(arena, leg.base.rotation);
+    let [force, moment] = wrench.map(|part| turn * part);
+    let lever = Vector3::constant(arena, leg.base.at).cross(force);
+    [force, moment + lever]
 }
